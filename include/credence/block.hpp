@@ -1,0 +1,38 @@
+#pragma once
+// Room 9: the block: 256 consecutive trials of one scenario under every arm. A pure function of (scenario, root seed,
+// block index): threads, shards and resumed runs only choose which blocks to run.
+
+#include <credence/problem.hpp>
+#include <credence/simulate.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace credence {
+
+inline constexpr int block_size = 256;
+
+/// One arm's part of a block. Sums run over the trials that did not fail, folded in trial order.
+struct ArmBlock {
+    std::vector<double> columns;            ///< [column_count, trials], failed trials filled
+    std::vector<double> sums;               ///< [figure_count, K - 1]
+    std::vector<double> square_sums;        ///< [figure_count, K - 1]
+    std::vector<double> run_square_sums;    ///< [figure_count], of each trial's sum over its steps
+    int counted = 0;                        ///< trials that did not fail
+};
+
+struct Block {
+    std::int64_t index = 0;
+    int trials = 0;
+    std::vector<ArmBlock> arms;             ///< in the order of arms_of
+};
+
+/// Number of blocks that hold `trials` trials, and the number of trials in block `index` of them.
+std::int64_t block_count(std::int64_t trials);
+int trials_in_block(std::int64_t trials, std::int64_t index);
+
+/// Simulates the first `trials` trials of a block. Thread-safe.
+Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
+                SimulateFunction simulate = simulate_function());
+
+}  // namespace credence

@@ -1,0 +1,34 @@
+#pragma once
+// The two ways in which credence refuses or fails. Numerical trouble inside a trial is neither: it is data (record.hpp).
+
+#include <stdexcept>
+#include <string>
+
+namespace credence {
+
+/// What was given cannot be used: nothing has been computed or written. The program exits with 2.
+/// The message reads `<problem>: name=value (<why>). <remedy>`, on one line.
+class InputError : public std::runtime_error {
+public:
+    explicit InputError(const std::string& message, std::string key = {})
+        : std::runtime_error(message), key_(std::move(key)) {}
+    /// The scenario key that the message is about, so that a reader of files can add its line; empty for none.
+    const std::string& key() const { return key_; }
+
+private:
+    std::string key_;
+};
+
+/// The work itself failed (no space, a replay that differs, a requirement not met). The program exits with 1.
+class Failure : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// `invalid NAME=VALUE (WHY). REMEDY`: the one grammar of every refused value.
+inline InputError invalid_value(const std::string& name, const std::string& value, const std::string& why,
+                                const std::string& remedy) {
+    return InputError("invalid " + name + "=" + value + " (" + why + "). " + remedy + ".", name);
+}
+
+}  // namespace credence

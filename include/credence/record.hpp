@@ -1,0 +1,77 @@
+#pragma once
+// Room 8: what a trial reports, declared as data. Engine, statistics, store and report walk these lists and know
+// nothing else about the world.
+
+#include <credence/scenario.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Numerical trouble inside a trial is data. Only the last two exclude a trial from figures.
+enum class Status : std::int8_t {
+    completed = 0,
+    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; figures are kept
+    covariance_not_positive_definite = 2,
+    non_finite = 3,
+};
+inline constexpr double divergence_bound = 1e12;
+
+const std::vector<std::string>& status_names();
+
+inline bool failed(Status status) { return status >= Status::covariance_not_positive_definite; }
+
+enum class ColumnType { real, integer, status };
+
+/// One number per trial.
+struct Column {
+    std::string name, long_name, unit;
+    ColumnType type = ColumnType::real;
+    double fill = 0;                       ///< value of a failed trial: NaN for real columns
+};
+
+/// What a figure means to the statistics.
+enum class FigureRole {
+    nees,                                  ///< normalised squared error of one block of the state, chi-square(dimension)
+    standardised_error,                    ///< e_j / sqrt(P_jj), mean 0 and variance 1
+    nis,                                   ///< normalised innovation squared
+    rows,                                  ///< number of measurement rows of that step's NIS
+    other,
+};
+
+/// One number per trial and step k = 1 ... K - 1, of which the file keeps totals over trials.
+struct Figure {
+    std::string name, long_name, unit;
+    FigureRole role = FigureRole::other;
+    int dimension = 0;                     ///< of a nees
+    bool integer = false;
+};
+
+/// A contiguous part of the state that is judged by itself.
+struct StateBlock {
+    std::string name;
+    int first = 0, count = 0;
+};
+
+/// all, pose, heading and position (heading model), features, feature_0 ...
+std::vector<StateBlock> state_blocks(const Scenario& scenario);
+
+/// Name of each component of the state: theta, r_x, r_y, f0_x, f0_y ...
+std::vector<std::string> component_names(const Scenario& scenario);
+
+/// Unit of trace(P): length^2, and in the heading model + rad^2.
+std::string trace_unit(const Scenario& scenario);
+
+/// Positions in the list of `trial_columns`.
+enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
+                   column_status, column_status_pose, column_count };
+
+/// The per-trial columns, in the order of ColumnIndex.
+std::vector<Column> trial_columns(const Scenario& scenario);
+
+/// The per-step figures, in the order in which trial.hpp writes them.
+std::vector<Figure> step_figures(const Scenario& scenario);
+
+}  // namespace credence

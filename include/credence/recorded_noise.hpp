@@ -1,0 +1,41 @@
+#pragma once
+// Room 2: recorded noise with the same face as the keyed draws. Reading it from HDF5: store.hpp.
+
+#include <credence/draws.hpp>
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Standardised noise of one trial, as read from a record: multiply by sigma. Row k belongs to pose k, feature j;
+/// `odometry` holds [heading, x, y] used on arrival at pose k (row 0: the initial pose); `walk` row k leaves pose k;
+/// `edge` follows the graph order. All arrays are row-major.
+struct NoiseRecord {
+    int poses = 0, features = 0, edges = 0;
+    std::vector<double> odometry;     ///< [poses, 3]
+    std::vector<double> walk;         ///< [poses, features, 2]
+    std::vector<double> deformation;  ///< [poses, features, 2]
+    std::vector<double> measurement;  ///< [poses, features, 2]
+    std::vector<double> edge;         ///< [poses, edges, 2], empty where the record has none
+};
+
+/// A recorded trial as a noise source. The record must outlive it and must cover the scenario (see `check_covers`).
+class RecordedDraws {
+public:
+    explicit RecordedDraws(const NoiseRecord& record) : record_(&record) {}
+
+    Vector2<double> normal(Source source, int pose, int index) const;
+    /// A record holds no detection draws: a study with detection below 1 cannot be replayed from one.
+    double uniform(Source, int, int) const { return 0; }
+
+private:
+    const NoiseRecord* record_;
+};
+
+struct Scenario;
+
+/// Throws InputError where the record is too short, too narrow or lacks what the scenario draws.
+void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file);
+
+}  // namespace credence

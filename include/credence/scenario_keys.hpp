@@ -1,0 +1,30 @@
+#pragma once
+// Room 3: the scenario as text. One table of keys serves the scenario files, `--set`, `credence show`, the stored
+// scenario, the study's hash and the documentation.
+
+#include <credence/scenario.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// One key `section.name` of a scenario.
+struct ScenarioKey {
+    std::string name;     ///< section.key
+    std::string help;     ///< one line: meaning, unit, choices
+    std::function<void(Scenario&, const std::string&)> set;  ///< throws InputError where the value is not in range
+    std::function<std::string(const Scenario&)> get;         ///< text that `set` reads back to the same value
+};
+
+/// All keys, grouped by section, in the order in which they are shown.
+const std::vector<ScenarioKey>& scenario_keys();
+
+/// Sets `section.key`; throws InputError for an unknown key (with the closest known one) or a value out of range.
+void set_key(Scenario& scenario, const std::string& name, const std::string& value);
+
+/// A resolved scenario as an INI text that names every key. Reading it back gives the same scenario.
+std::string scenario_text(const Scenario& scenario);
+
+}  // namespace credence

@@ -1,0 +1,86 @@
+#pragma once
+// Room 5: the sensor: which features are in sight, how noisy they are, and what is measured [model.md, Filter: See, Edges].
+//
+//   q  range to a feature, length units; z  measurement, relative position of a feature in the body frame
+
+#include <credence/world.hpp>
+
+namespace credence {
+
+struct SensorParameters {
+    double range_min = 0, range_max = 0;
+    RangeNoise noise = RangeNoise::constant;
+    double sigma = 0;                 ///< constant noise
+    double sigma_near = 0;            ///< ranged: at range_min
+    double sigma_slope = 0;           ///< ranged: (sigma_far - sigma_near) / (range_max - range_min)
+    double detection = 1;
+    double sigma_edge = 0;            ///< of the edge measurement itself; 0 where the truth has none
+};
+
+inline namespace CREDENCE_UNIT {
+
+template <class Real>
+Real range(const Vector2<Real>& from, const Vector2<Real>& to) {
+    return sqrt(squared_norm(to - from));
+}
+
+/// r_min <= q <= r_max, both ends included.
+template <class Real>
+Mask<Real> in_range(const SensorParameters& sensor, Real q) {
+    return both(q >= Real(sensor.range_min), q <= Real(sensor.range_max));
+}
+
+/// sigma_feat(q): constant, or growing linearly from range_min on, not clamped above.
+template <class Real>
+Real sigma_at(const SensorParameters& sensor, Real q) {
+    if (sensor.noise == RangeNoise::constant) return Real(sensor.sigma);
+    const Real beyond = q - Real(sensor.range_min);
+    const Real clamped = select(beyond > Real(0), beyond, Real(0));
+    return fma(Real(sensor.sigma_slope), clamped, Real(sensor.sigma_near));
+}
+
+/// One look at one feature. Where it is not seen, z and sigma are those it would have had.
+template <class Real>
+struct Sighting {
+    Mask<Real> seen{};
+    Vector2<Real> z;  ///< body frame
+    Real sigma{};     ///< true standard deviation of each axis
+};
+
+/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas. The draws are consumed whether or not the feature is in sight.
+template <class Layout, class Real, int capacity, class Noise>
+Sighting<Real> look_at(const Truth<Real, capacity>& truth, const Rotation<Real>& heading,
+                       const SensorParameters& sensor, int k, int j, const Noise& noise) {
+    const Real q = range(truth.position, truth.feature[j]);
+    Sighting<Real> sighting;
+    sighting.seen = in_range(sensor, q);
+    if (sensor.detection < 1)
+        sighting.seen =
+            both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
+    sighting.sigma = sigma_at(sensor, q);
+    sighting.z = truth.feature[j] - truth.position;
+    if constexpr (Layout::has_heading) sighting.z = rotate_back(heading, sighting.z);
+    sighting.z = add_scaled(sighting.z, sighting.sigma, noise.normal(Source::measurement, k, j));
+    return sighting;
+}
+
+/// The first estimate of feature j, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j}) eps^meas_{0,j}.
+template <class Real, int capacity, class Noise>
+Sighting<Real> first_sight(const Truth<Real, capacity>& truth, const SensorParameters& sensor, int j,
+                           const Noise& noise) {
+    const Real sigma = sigma_at(sensor, range(truth.position, truth.feature[j]));
+    return {{}, add_scaled(truth.feature[j], sigma, noise.normal(Source::measurement, 0, j)), sigma};
+}
+
+/// Edge measurement z = p_b - p_a, world frame, with a noise of its own where the truth has one.
+template <class Real, int capacity, class Noise>
+Vector2<Real> measure_edge(const Truth<Real, capacity>& truth, const SensorParameters& sensor, const Edge& edge,
+                           int k, int index, const Noise& noise) {
+    const Vector2<Real> difference = truth.feature[edge.to] - truth.feature[edge.from];
+    if (sensor.sigma_edge > 0)
+        return add_scaled(difference, Real(sensor.sigma_edge), noise.normal(Source::edge, k, index));
+    return difference;
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,36 @@
+#pragma once
+// Room 9: the door between the engine and the units: the same source, compiled once for each instruction set.
+
+#include <credence/problem.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace credence {
+
+/// Some consecutive trials of one arm. Results are row-major by trial, and the same bits from every unit.
+struct Batch {
+    Controller controller = Controller::fixed;
+    std::uint64_t root_seed = 0;
+    std::int64_t first_trial = 0;
+    int trials = 0;
+    double* columns = nullptr;  ///< [trials, column_count], a failed trial's still unfilled
+    double* figures = nullptr;  ///< [trials, figure_count, K - 1]
+};
+
+using SimulateFunction = void (*)(const ProblemView&, const Batch&);
+
+/// The unit for this processor.
+SimulateFunction simulate_function();
+
+/// Name of that unit: v3 (AVX2 and FMA) or portable.
+std::string instruction_set();
+
+/// Every unit that was built and that this processor can run, by name.
+struct Unit {
+    std::string name;
+    SimulateFunction simulate;
+};
+std::vector<Unit> runnable_units();
+
+}  // namespace credence

@@ -1,0 +1,30 @@
+#pragma once
+// Room 3: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same bits.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace credence {
+
+std::string to_text(double value);
+
+/// The whole text as a number, `inf` and `nan` included; nothing where it is not one.
+std::optional<double> to_number(std::string_view text);
+
+/// The whole text as a whole number; `1e6` is one. Nothing where it is not one or does not fit.
+std::optional<std::int64_t> to_integer(std::string_view text);
+
+std::string trimmed(std::string_view text);
+
+/// The parts between commas, trimmed; an empty text has none.
+std::vector<std::string> split_list(std::string_view text, char separator = ',');
+
+std::string joined(const std::vector<std::string>& parts, std::string_view separator = ", ");
+
+/// The candidate that is fewest edits away from `word`, if it is close enough to be meant; else empty.
+std::string closest(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace credence

@@ -1,0 +1,103 @@
+#pragma once
+// Room 4: the truth. Features that drift and deform, and the robot's motion [model.md, Truth].
+//
+//   c   feature centre, p  deformed feature: what the sensor sees and the filter estimates; o  known local deformation
+//   r   robot position, theta  heading; t_k  known translation of the features from pose k to k + 1
+//   All in the world frame, in length units and radians.
+
+#include <credence/draws.hpp>
+#include <credence/layout.hpp>
+
+namespace credence {
+
+/// What the truth is made of, as plain numbers. The pointers are owned by the Problem.
+struct WorldParameters {
+    int poses = 0, features = 0, edges = 0;
+    const Point* first_position = nullptr;  ///< [M] f_0
+    const Point* translation = nullptr;     ///< [K - 1] t_k
+    const Point* sway = nullptr;            ///< [K, M] o_{k,j}
+    double sigma_heading = 0, sigma_odometry = 0, sigma_walk = 0, sigma_deformation = 0;
+    double sigma_initial_heading = 0, sigma_initial_position = 0;
+    Deformation deformation = Deformation::jitter;
+    double truncate = 0;                    ///< infinity for never
+
+    const Point& sway_at(int k, int j) const { return sway[k * features + j]; }
+};
+
+inline namespace CREDENCE_UNIT {
+
+template <class Real, int feature_capacity>
+struct Truth {
+    Real heading{};
+    Vector2<Real> position;
+    Vector2<Real> centre[feature_capacity];
+    Vector2<Real> feature[feature_capacity];
+};
+
+template <class Real>
+Vector2<Real> broadcast(const Point& point) {
+    return {Real(point.x), Real(point.y)};
+}
+
+/// p_{k,j} = c_{k,j} + o_{k,j} + sigma_def eps^def_{k,j}; where deformation walks, the draw is in c already.
+template <class Real, int capacity, class Noise>
+void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, int features, int k,
+                     const Noise& noise) {
+    for (int j = 0; j < features; ++j) {
+        const Vector2<Real> at_rest = truth.centre[j] + broadcast<Real>(world.sway_at(k, j));
+        if (world.deformation == Deformation::jitter)
+            truth.feature[j] =
+                add_scaled(at_rest, Real(world.sigma_deformation), noise.normal(Source::deformation, k, j));
+        else
+            truth.feature[j] = at_rest;
+    }
+}
+
+/// The truth at pose 0: features about f_0, the robot at 0 (or drawn about it).
+template <class Real, int capacity, class Noise>
+void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, int features, const Noise& noise) {
+    truth.heading = Real(world.sigma_initial_heading) * noise.normal(Source::odometry_heading, 0, 0).x;
+    truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position),
+                                noise.normal(Source::odometry_position, 0, 0));
+    for (int j = 0; j < features; ++j) truth.centre[j] = broadcast<Real>(world.first_position[j]);
+    deform_features(truth, world, features, 0, noise);
+}
+
+/// Features from pose k - 1 to k: c_k = c_{k-1} + t_{k-1} + sigma_walk eps^walk_{k-1} (+ sigma_def eps^def_k where
+/// deformation walks).
+template <class Real, int capacity, class Noise>
+void move_features(Truth<Real, capacity>& truth, const WorldParameters& world, int features, int k,
+                   const Noise& noise) {
+    for (int j = 0; j < features; ++j) {
+        Vector2<Real> centre = truth.centre[j] + broadcast<Real>(world.translation[k - 1]);
+        centre = add_scaled(centre, Real(world.sigma_walk), noise.normal(Source::walk, k - 1, j));
+        if (world.deformation == Deformation::walk)
+            centre = add_scaled(centre, Real(world.sigma_deformation), noise.normal(Source::deformation, k, j));
+        truth.centre[j] = centre;
+    }
+    deform_features(truth, world, features, k, noise);
+}
+
+/// A control of one step: turn in radians; move in length units, body frame (heading model) or world frame.
+template <class Real>
+struct Command {
+    Real turn{};
+    Vector2<Real> move;
+};
+
+/// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v + sigma_odom eps.
+template <class Layout, class Real, int capacity, class Noise>
+void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
+                const Noise& noise) {
+    Vector2<Real> move = command.move;
+    if constexpr (Layout::has_heading) {
+        move = rotate(rotation(truth.heading), command.move);
+        truth.heading = fma(Real(world.sigma_heading), noise.normal(Source::odometry_heading, k, 0).x,
+                            truth.heading + command.turn);
+    }
+    truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry),
+                                noise.normal(Source::odometry_position, k, 0));
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,137 @@
+// One trial of the oracle, from pose 0 to K-1, and its figures. Nomenclature: oracle.hpp.
+
+#include "oracle.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace credence::oracle {
+
+namespace {
+
+/// NEES = e' (filter.covariance P)^-1 e of the whole state, e's heading wrapped to [-pi, pi]
+/// [model.md, Reported per trial].
+double normalized_error(const Scenario& scenario, const Step& step) {
+    Eigen::VectorXd e = step.mean - step.truth;
+    if (scenario.process == Process::heading) e[0] = std::remainder(e[0], 2 * std::numbers::pi);
+    const Eigen::MatrixXd reported = scenario.filter.covariance * step.covariance;
+    return e.dot(reported.ldlt().solve(e));
+}
+
+/// Ratio of the largest to the smallest eigenvalue of a symmetric matrix.
+double condition(const Eigen::MatrixXd& symmetric) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues().maxCoeff() / solver.eigenvalues().minCoeff();
+}
+
+/// Control from pose k-1 to k, with the candidates' costs when greedy [model.md, Controllers].
+void choose_control(const Scenario& scenario, Controller controller, const Belief& belief, int k, Step& step) {
+    if (controller == Controller::fixed) {
+        step.control = fixed_control(scenario, k - 1);
+        return;
+    }
+    const std::vector<Control> list = candidates(scenario);
+    step.candidate_cost.resize(static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i)
+        step.candidate_cost[static_cast<Eigen::Index>(i)] = candidate_cost(scenario, belief, list[i], k);
+    step.control = list[static_cast<std::size_t>(greedy_choice(step.candidate_cost))];
+}
+
+/// Measurements z (m) at pose k: the seen features, then all edges [model.md, Filter, See and Edges].
+Eigen::VectorXd measurements(const Scenario& scenario, const World& world, int k, const Step& step,
+                             const Noise& noise) {
+    const int edge_count = static_cast<int>(graph(scenario).size());
+    Eigen::VectorXd z(step.rows);
+    int row = 0;
+    for (int j = 0; j < feature_count(scenario); ++j) {
+        if (!step.seen[static_cast<std::size_t>(j)]) continue;
+        z.segment<2>(row) = measured_feature(scenario, world, k, j, noise);
+        row += 2;
+    }
+    for (int e = 0; e < edge_count; ++e) {
+        z.segment<2>(row) = measured_edge(scenario, world, k, e, noise);
+        row += 2;
+    }
+    return z;
+}
+
+/// Sees at pose k and updates the prior, gating and taking sigma at the true range; without a row the prior stays
+/// [model.md, Filter, See to Update].
+Belief see_and_update(const Scenario& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
+                      Step& step) {
+    Eigen::VectorXd sigma(feature_count(scenario));
+    for (int j = 0; j < feature_count(scenario); ++j) {
+        const double q = (world.p.col(j) - world.r).norm();
+        step.seen.push_back(in_range(scenario, q) &&
+                            noise.uniform(Source::detection, k, j) < scenario.sensor.detection);
+        sigma[j] = scenario.filter.measurement * measurement_sigma(scenario, q);
+    }
+    const Prediction prediction = predicted_measurements(scenario, prior.x, step.seen, sigma);
+    step.rows = static_cast<int>(prediction.N.size());
+    if (step.rows == 0) return prior;
+    const Correction correction = correct(prior.P, prediction);
+    step.innovation = measurements(scenario, world, k, step, noise) - prediction.z_hat;
+    step.innovation_covariance = correction.S;
+    step.condition_of_S = condition(correction.S);
+    step.nis = step.innovation.dot(correction.S.ldlt().solve(step.innovation));
+    return {prior.x + correction.K * step.innovation, correction.P};
+}
+
+/// Notes truth and belief after the update, and the reported trace.
+void note(const Scenario& scenario, const World& world, const Belief& belief, Step& step) {
+    step.truth = true_state(scenario, world);
+    step.mean = belief.x;
+    step.covariance = belief.P;
+    step.trace_P = scenario.filter.covariance * belief.P.trace();
+}
+
+/// Figures of the whole trial from its steps [model.md, Reported per trial].
+void sum_up(const Scenario& scenario, Trial& trial) {
+    double nees = 0, nis = 0, rows = 0;
+    for (std::size_t k = 0; k < trial.steps.size(); ++k) {
+        const Step& step = trial.steps[k];
+        trial.pose_error += (step.mean - step.truth).head(pose_dimension(scenario)).squaredNorm();
+        if (k == 0) continue;
+        for (const bool feature_seen : step.seen) trial.unseen += feature_seen ? 0 : 1;
+        nees += step.nees;
+        nis += step.nis;
+        rows += step.rows;
+    }
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const double moves = static_cast<double>(trial.steps.size()) - 1;
+    trial.trace_P = trial.steps.back().trace_P;
+    trial.nees_ratio = moves > 0 ? nees / moves / state_dimension(scenario) : none;
+    trial.nis_ratio = rows > 0 ? nis / rows : none;
+}
+
+}  // namespace
+
+Trial run(const Scenario& scenario, Controller controller, const Noise& noise) {
+    if (scenario.planner.horizon != 1)
+        throw std::invalid_argument("invalid planner.horizon=" + std::to_string(scenario.planner.horizon) +
+                                    " (the oracle plans one step ahead). Set it to 1");
+    Trial trial;
+    World world = first_world(scenario, noise);
+    Belief belief = first_belief(scenario, world, noise);
+    trial.steps.emplace_back();
+    note(scenario, world, belief, trial.steps.back());
+    for (int k = 1; k < scenario.poses; ++k) {
+        Step step;
+        choose_control(scenario, controller, belief, k, step);
+        world = next_world(scenario, world, step.control, k, noise);
+        const Belief prior = predict(scenario, belief, step.control, k);
+        step.prior_mean = prior.x;
+        step.prior_covariance = prior.P;
+        belief = see_and_update(scenario, world, prior, k, noise, step);
+        note(scenario, world, belief, step);
+        step.nees = normalized_error(scenario, step);
+        trial.steps.push_back(step);
+    }
+    sum_up(scenario, trial);
+    return trial;
+}
+
+}  // namespace credence::oracle

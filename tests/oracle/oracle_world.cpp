@@ -1,0 +1,172 @@
+// World of the oracle: truth and sensor. Nomenclature: oracle.hpp.
+
+#include "oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace credence::oracle {
+
+int feature_count(const Scenario& scenario) { return static_cast<int>(scenario.features.positions.size()); }
+
+int pose_dimension(const Scenario& scenario) { return scenario.process == Process::heading ? 3 : 2; }
+
+int state_dimension(const Scenario& scenario) { return pose_dimension(scenario) + 2 * feature_count(scenario); }
+
+int row_of_position(const Scenario& scenario) { return scenario.process == Process::heading ? 1 : 0; }
+
+int row_of_feature(const Scenario& scenario, int j) { return pose_dimension(scenario) + 2 * j; }
+
+/// Edges in graph order: `all` takes every pair a < b, a outer; `chain` takes (j, j+1) [model.md, Filter, Edges].
+std::vector<Edge> graph(const Scenario& scenario) {
+    const int M = feature_count(scenario);
+    std::vector<Edge> edges;
+    switch (scenario.edges.graph) {
+        case EdgeGraph::all:
+            for (int a = 0; a < M; ++a)
+                for (int b = a + 1; b < M; ++b) edges.push_back({a, b});
+            break;
+        case EdgeGraph::chain:
+            for (int j = 0; j + 1 < M; ++j) edges.push_back({j, j + 1});
+            break;
+        case EdgeGraph::none: break;
+        case EdgeGraph::list: edges = scenario.edges.list; break;
+    }
+    return edges;
+}
+
+/// R(theta) = [cos, -sin; sin, cos], from the body's frame to the world's [model.md, Two process models].
+Eigen::Matrix2d rotation(double theta) {
+    Eigen::Matrix2d R;
+    R << std::cos(theta), -std::sin(theta),
+         std::sin(theta),  std::cos(theta);
+    return R;
+}
+
+/// J = [0, -1; 1, 0], so that dR/dtheta = R J = J R [model.md, Two process models].
+Eigen::Matrix2d quarter_turn() {
+    Eigen::Matrix2d J;
+    J << 0, -1,
+         1,  0;
+    return J;
+}
+
+/// Translation t_k (2, world, length) of every feature from pose k to k+1: straight (d, 0); circle
+/// d (cos phi_k, sin phi_k), phi_k = delta/2 + k delta; still 0 [model.md, Truth].
+Eigen::Vector2d translation(const Scenario& scenario, int k) {
+    const double d = scenario.features.step, delta = scenario.features.turn;
+    const double phi = delta / 2 + k * delta;
+    switch (scenario.features.path) {
+        case Path::straight: return {d, 0};
+        case Path::circle: return {d * std::cos(phi), d * std::sin(phi)};
+        case Path::still: break;
+    }
+    return {0, 0};
+}
+
+/// Known local deformation o_{k,j} (2, world, length) = A (sin psi, cos psi) - A (sin psi_0, cos psi_0),
+/// psi = 2 pi k/T + 2 pi j/M [model.md, Truth].
+Eigen::Vector2d local_deformation(const Scenario& scenario, int k, int j) {
+    const double A = scenario.features.sway_amplitude, T = scenario.features.sway_period;
+    const double psi_0 = 2 * std::numbers::pi * j / feature_count(scenario);
+    const double psi = 2 * std::numbers::pi * k / T + psi_0;
+    return {A * std::sin(psi) - A * std::sin(psi_0), A * std::cos(psi) - A * std::cos(psi_0)};
+}
+
+namespace {
+
+/// Deformed features p (2 x M, world) at pose k: c + o + sigma_def eps^def for jitter; c + o for walk, whose
+/// deformation is already in the centres [model.md, Truth; Truth against filter].
+Eigen::Matrix2Xd deformed(const Scenario& scenario, const Eigen::Matrix2Xd& c, int k, const Noise& noise) {
+    Eigen::Matrix2Xd p = c;
+    for (int j = 0; j < feature_count(scenario); ++j) {
+        p.col(j) += local_deformation(scenario, k, j);
+        if (scenario.truth.deformation == Deformation::jitter)
+            p.col(j) += scenario.noise.deformation * noise.normal(Source::deformation, k, j);
+    }
+    return p;
+}
+
+}  // namespace
+
+/// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [model.md, Truth; design.md,
+/// The scenario file, noise].
+World first_world(const Scenario& scenario, const Noise& noise) {
+    World world;
+    if (scenario.process == Process::heading)
+        world.theta = scenario.noise.initial_heading * noise.normal(Source::odometry_heading, 0, 0)[0];
+    world.r = scenario.noise.initial_position * noise.normal(Source::odometry_position, 0, 0);
+    world.c.resize(2, feature_count(scenario));
+    for (int j = 0; j < feature_count(scenario); ++j) {
+        const Point f_0 = scenario.features.positions[static_cast<std::size_t>(j)];
+        world.c.col(j) << f_0.x, f_0.y;
+    }
+    world.p = deformed(scenario, world.c, 0, noise);
+    return world;
+}
+
+/// World at pose k from that at pose k-1 and the control between them: the robot turns and moves by its heading of
+/// before; centres translate and walk, and with deformation = walk gain the deformation too [model.md, Truth; Truth
+/// against filter].
+World next_world(const Scenario& scenario, const World& world, const Control& control, int k, const Noise& noise) {
+    const Eigen::Vector2d v(control.move.x, control.move.y);
+    World next;
+    next.theta = 0;
+    if (scenario.process == Process::heading)
+        next.theta = world.theta + control.turn +
+                     scenario.noise.heading * noise.normal(Source::odometry_heading, k, 0)[0];
+    next.r = world.r + rotation(world.theta) * v +
+             scenario.noise.odometry * noise.normal(Source::odometry_position, k, 0);
+    next.c = world.c;
+    for (int j = 0; j < feature_count(scenario); ++j) {
+        next.c.col(j) += translation(scenario, k - 1);
+        next.c.col(j) += scenario.noise.walk * noise.normal(Source::walk, k - 1, j);
+        if (scenario.truth.deformation == Deformation::walk)
+            next.c.col(j) += scenario.noise.deformation * noise.normal(Source::deformation, k, j);
+    }
+    next.p = deformed(scenario, next.c, k, noise);
+    return next;
+}
+
+/// True state (n) in the order of the filter's x, with the deformed features [model.md, Two process models].
+Eigen::VectorXd true_state(const Scenario& scenario, const World& world) {
+    Eigen::VectorXd x(state_dimension(scenario));
+    if (scenario.process == Process::heading) x[0] = world.theta;
+    x.segment<2>(row_of_position(scenario)) = world.r;
+    for (int j = 0; j < feature_count(scenario); ++j) x.segment<2>(row_of_feature(scenario, j)) = world.p.col(j);
+    return x;
+}
+
+/// Whether a feature at range q is in the sensor's range, both ends included [model.md, Filter, See].
+bool in_range(const Scenario& scenario, double q) {
+    return scenario.sensor.range_min <= q && q <= scenario.sensor.range_max;
+}
+
+/// True sigma_feat(q) (length): constant, or sigma_near + (sigma_far - sigma_near) max(0, q - r_min)/(r_max - r_min),
+/// not clamped above [model.md, Units].
+double measurement_sigma(const Scenario& scenario, double q) {
+    const SensorSettings& sensor = scenario.sensor;
+    if (sensor.noise == RangeNoise::constant) return sensor.sigma;
+    return sensor.sigma_near + (sensor.sigma_far - sensor.sigma_near) * std::max(0.0, q - sensor.range_min) /
+                                   (sensor.range_max - sensor.range_min);
+}
+
+/// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [model.md, Filter, See].
+Eigen::Vector2d measured_feature(const Scenario& scenario, const World& world, int k, int j, const Noise& noise) {
+    const Eigen::Vector2d offset = world.p.col(j) - world.r;
+    return rotation(world.theta).transpose() * offset +
+           measurement_sigma(scenario, offset.norm()) * noise.normal(Source::measurement, k, j);
+}
+
+/// Construction measurement z (2, world frame) = p_b - p_a of edge e in graph order at pose k, plus sigma_def eps^edge
+/// with independent edge noise [model.md, Filter, Edges; Truth against filter].
+Eigen::Vector2d measured_edge(const Scenario& scenario, const World& world, int k, int e, const Noise& noise) {
+    const Edge edge = graph(scenario)[static_cast<std::size_t>(e)];
+    Eigen::Vector2d z = world.p.col(edge.to) - world.p.col(edge.from);
+    if (scenario.truth.edge_noise == EdgeNoise::independent)
+        z += scenario.noise.deformation * noise.normal(Source::edge, k, e);
+    return z;
+}
+
+}  // namespace credence::oracle
