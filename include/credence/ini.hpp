@@ -1,0 +1,24 @@
+#pragma once
+// Room 12: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
+
+#include <credence/scenario.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace credence {
+
+/// `section.key` and value, as given by --set. Later ones win.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+/// The scenario of a text, with overrides, resolved and validated. `origin` names the text in messages (a file, or a
+/// group of a results file); `default_name` is its name where it gives none.
+/// Throws InputError: unknown or repeated key, broken line, value out of range, keys that contradict each other.
+Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                            const Overrides& overrides = {});
+
+/// The same from a file of at most 1 MiB; the default name is the file's stem.
+Scenario read_scenario(const std::string& path, const Overrides& overrides = {});
+
+}  // namespace credence

@@ -1,0 +1,53 @@
+#pragma once
+// Room 8: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare it.
+
+#include <credence/recorded_noise.hpp>
+#include <credence/scenario.hpp>
+
+#include <Eigen/Dense>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+class Problem;
+
+/// One pose of a trial. What only exists after pose 0 is empty there.
+/// n state dimension, M features, m rows of the largest possible measurement (2 M + 2 edges), C candidates.
+struct TrajectoryStep {
+    Eigen::VectorXd truth;                  ///< [n] true state
+    Eigen::VectorXd mean;                   ///< [n] after the update
+    Eigen::MatrixXd covariance;             ///< [n, n] after the update, as reported (times filter.covariance)
+    Eigen::VectorXd predicted_mean;         ///< [n]
+    Eigen::MatrixXd predicted_covariance;   ///< [n, n], as the filter holds it
+    Control control;                        ///< that led here
+    std::vector<bool> seen;                 ///< [M]
+    Eigen::VectorXd measurement_sigma;      ///< [M] true standard deviation
+    Eigen::MatrixX2d measurement;           ///< [M, 2] body frame, NaN where not seen
+    Eigen::VectorXd innovation;             ///< [m] features (body frame) then edges, NaN where not observed
+    Eigen::MatrixXd innovation_covariance;  ///< [m, m], NaN where not observed
+    double nees = 0, nis = 0, trace_P = 0;
+    int rows = 0;
+    std::vector<double> candidate_cost;     ///< [C] trace(P) each candidate promised; greedy only
+};
+
+struct Trajectory {
+    Scenario scenario;                      ///< resolved
+    Arm arm;
+    std::vector<double> columns;            ///< [column_count], as in the results file
+    std::vector<TrajectoryStep> steps;      ///< [K]
+    std::vector<Control> candidates;        ///< [C]; greedy only
+
+    /// Innovations are kept up to this many rows; beyond, a single trial would take gigabytes.
+    static constexpr int largest_innovation = 512;
+};
+
+/// Runs one trial of one arm again, on the study's draws. The same bits as the engine's.
+Trajectory replay_trial(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t trial);
+
+/// Runs one arm on recorded noise, which must cover the scenario.
+Trajectory replay_record(const Problem& problem, Controller controller, const NoiseRecord& record);
+
+}  // namespace credence
