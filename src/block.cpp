@@ -28,16 +28,6 @@ void fold_figures(const ProblemView& view, const double* figures, ArmBlock& arm)
     }
 }
 
-/// Writes one trial's columns into the block; those of a failed trial are its fill values.
-void store_columns(const std::vector<Column>& declared, const double* columns, bool trial_failed, int trial,
-                   int trials, ArmBlock& arm) {
-    for (std::size_t c = 0; c < column_count; ++c) {
-        const bool keep = !trial_failed || c == column_status || c == column_status_pose;
-        arm.columns[c * static_cast<std::size_t>(trials) + static_cast<std::size_t>(trial)] =
-            keep ? columns[c] : declared[c].fill;
-    }
-}
-
 ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t first_trial,
                  int trials, SimulateFunction simulate) {
     const ProblemView& view = problem.view();
@@ -53,9 +43,10 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
         const int count = std::min(batch_trials, trials - done);
         simulate(view, {controller, root_seed, first_trial + done, count, columns.data(), batch_figures.data()});
         for (int i = 0; i < count; ++i) {
-            const double* own = columns.data() + i * column_count;
-            const bool trial_failed = failed(static_cast<Status>(static_cast<int>(own[column_status])));
-            store_columns(declared, own, trial_failed, done + i, trials, arm);
+            double* own = columns.data() + i * column_count;
+            const bool trial_failed = fill_failed(declared, own);
+            for (std::size_t c = 0; c < column_count; ++c)
+                arm.columns[c * static_cast<std::size_t>(trials) + static_cast<std::size_t>(done + i)] = own[c];
             if (trial_failed) continue;
             ++arm.counted;
             fold_figures(view, batch_figures.data() + static_cast<std::size_t>(i) * cells, arm);

@@ -60,6 +60,13 @@ std::vector<Column> trial_columns(const Scenario& scenario) {
             {"status_pose", "pose at which the status arose, -1 for none", "1", ColumnType::integer, -1}};
 }
 
+bool fill_failed(const std::vector<Column>& columns, double* values) {
+    if (!failed(static_cast<Status>(static_cast<int>(values[column_status])))) return false;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (c != column_status && c != column_status_pose) values[c] = columns[c].fill;
+    return true;
+}
+
 std::vector<Figure> step_figures(const Scenario& scenario) {
     std::vector<Figure> figures;
     for (const StateBlock& block : state_blocks(scenario)) figures.push_back(nees_figure(block));

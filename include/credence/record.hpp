@@ -71,6 +71,10 @@ enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees
 /// The per-trial columns, in the order of ColumnIndex.
 std::vector<Column> trial_columns(const Scenario& scenario);
 
+/// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they are.
+/// `values` [column_count]. Returns whether the trial failed.
+bool fill_failed(const std::vector<Column>& columns, double* values);
+
 /// The per-step figures, in the order in which trial.hpp writes them.
 std::vector<Figure> step_figures(const Scenario& scenario);
 

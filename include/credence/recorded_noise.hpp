@@ -20,7 +20,7 @@ struct NoiseRecord {
     std::vector<double> edge;         ///< [poses, edges, 2], empty where the record has none
 };
 
-/// A recorded trial as a noise source. The record must outlive it and must cover the scenario (see `check_covers`).
+/// A recorded trial as a noise source. The record must outlive it and must cover the scenario (check_covers, trajectory.hpp).
 class RecordedDraws {
 public:
     explicit RecordedDraws(const NoiseRecord& record) : record_(&record) {}
@@ -32,10 +32,5 @@ public:
 private:
     const NoiseRecord* record_;
 };
-
-struct Scenario;
-
-/// Throws InputError where the record is too short, too narrow or lacks what the scenario draws.
-void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file);
 
 }  // namespace credence

@@ -1,0 +1,42 @@
+# Sourced by the project's scripts: installs what is missing from the distribution, and builds.
+
+# Installs those of the named packages that are missing (Debian 12, Ubuntu 22.04 and later).
+install_missing() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "cannot install ${missing[*]} (neither root nor sudo)." >&2; return 1; }
+    as_root=(sudo)
+  fi
+  echo "installing: ${missing[*]}"
+  local log
+  log=$(mktemp)
+  if ! "${as_root[@]}" apt-get update -qq >"$log" 2>&1; then cat "$log" >&2; return 1; fi
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+      "${missing[@]}" >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    return 1
+  fi
+  rm -f "$log"
+}
+
+build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev nlohmann-json3-dev"
+test_packages="catch2 librandom123-dev hdf5-tools"
+
+# build DIRECTORY TARGET [cmake arguments]: configures and builds, showing the log only where it fails.
+build() {
+  local directory=$1 target=$2 log
+  shift 2
+  mkdir -p "$directory"
+  log=$directory/build.log
+  echo "building $target in $directory"
+  if ! { cmake -S . -B "$directory" "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    echo "the build failed; all of it is in $log" >&2
+    return 1
+  fi
+}

@@ -1,0 +1,46 @@
+#pragma once
+// Room 10: figures of a sample of trials, and of pairs of trials. Every value is one trial's; trials are independent.
+
+#include <cstdint>
+#include <vector>
+
+namespace credence {
+
+struct Interval {
+    double low = 0, high = 0;
+};
+
+/// Two-sided quantiles: P(|T| <= q) = 1 - alpha for Student's t with `degrees` of freedom, and for the standard normal.
+/// Infinity where there is no degree of freedom.
+double t_quantile(double alpha, double degrees);
+double normal_quantile(double alpha);
+
+/// Mean, standard error and t interval of independent values; NaN where there are too few.
+struct Summary {
+    std::int64_t count = 0;
+    double mean = 0;
+    double standard_error = 0;      ///< sd / sqrt(count)
+    Interval ci95;                  ///< mean -+ t_{0.975, count - 1} standard_error
+    double median = 0;              ///< type 7
+    double standard_deviation = 0;  ///< with count - 1
+};
+
+/// Values that are NaN are left out. The mean is the exact sum, rounded, over the count.
+Summary summarise(std::vector<double> values);
+
+/// Quantile of type 7 [Hyndman and Fan 1996] of values without NaN, 0 <= p <= 1; reorders them. NaN for no values.
+double quantile(std::vector<double>& values, double p);
+
+/// Share of values below `x`, ties counted half (mid-rank), in percent. NaN values are left out.
+double percentile_of(const std::vector<double>& values, double x);
+
+/// Differences a - b of the pairs in which neither is NaN.
+std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Mean and spread from sums alone: of `count` values with sum and sum of squares.
+struct Moments {
+    double count = 0, mean = 0, standard_deviation = 0, standard_error = 0;
+};
+Moments moments_from_sums(std::int64_t count, double sum, double square_sum);
+
+}  // namespace credence

@@ -1,0 +1,151 @@
+#include "command.hpp"
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include <boost/program_options.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+
+namespace credence::cli {
+
+namespace {
+
+namespace po = boost::program_options;
+
+std::string long_name(const Option& option) { return option.name.substr(0, option.name.find(',')); }
+
+po::options_description described(const Command& command) {
+    po::options_description description("options", 100, 60);
+    description.add_options()("help,h", "print this");
+    for (const Option& option : command.options) {
+        if (option.value.empty())
+            description.add_options()(option.name.c_str(), option.help.c_str());
+        else
+            description.add_options()(option.name.c_str(),
+                                      po::value<std::vector<std::string>>()->value_name(option.value),
+                                      option.help.c_str());
+    }
+    return description;
+}
+
+[[noreturn]] void refuse_unknown(const Command& command, const std::string& given) {
+    std::vector<std::string> names{"help"};
+    for (const Option& option : command.options) names.push_back(long_name(option));
+    const std::size_t first = given.find_first_not_of('-');
+    const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
+    throw InputError("unknown option " + given + ". " +
+                     (meant.empty() ? "`credence " + command.name + " --help` lists them." : "Did you mean --" + meant + "?"));
+}
+
+void check_repeats(const Command& command, const Parsed& parsed) {
+    for (const Option& option : command.options) {
+        const auto found = parsed.values.find(long_name(option));
+        if (found != parsed.values.end() && found->second.size() > 1 && !option.repeatable)
+            throw InputError("repeated option --" + found->first + ". Give it once.");
+    }
+}
+
+}  // namespace
+
+std::optional<std::string> Parsed::text(const std::string& option) const {
+    const auto found = values.find(option);
+    if (found == values.end() || found->second.empty()) return std::nullopt;
+    return found->second.back();
+}
+
+std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const {
+    const std::optional<std::string> given = text(option);
+    if (!given) return otherwise;
+    const std::optional<std::int64_t> number = to_integer(*given);
+    const std::string name = "--" + option;
+    if (!number) throw invalid_value(name, *given, "not a whole number", "Give a number such as 10000 or 1e6");
+    if (*number < low)
+        throw invalid_value(name, *given, "must be at least " + std::to_string(low), "Give a larger number");
+    if (*number > high)
+        throw invalid_value(name, *given, "must be at most " + std::to_string(high), "Give a smaller number");
+    return *number;
+}
+
+std::string Parsed::choice(const std::string& option, const std::vector<std::string>& choices) const {
+    const std::optional<std::string> given = text(option);
+    if (!given) return choices.front();
+    for (const std::string& choice : choices)
+        if (*given == choice) return choice;
+    throw invalid_value("--" + option, *given, "not one of its choices", "Give one of " + joined(choices));
+}
+
+Overrides Parsed::overrides() const {
+    Overrides overrides;
+    const auto found = values.find("set");
+    if (found == values.end()) return overrides;
+    for (const std::string& assignment : found->second) {
+        const std::size_t equals = assignment.find('=');
+        if (equals == std::string::npos)
+            throw invalid_value("--set", assignment, "there is no = in it", "Write --set section.key=value");
+        overrides.emplace_back(trimmed(assignment.substr(0, equals)), trimmed(assignment.substr(equals + 1)));
+    }
+    return overrides;
+}
+
+std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments) {
+    const po::options_description description = described(command);
+    Parsed parsed;
+    try {
+        namespace style = po::command_line_style;
+        const int strict = style::unix_style & ~style::allow_guessing;
+        for (const auto& option : po::command_line_parser(arguments).options(description).style(strict).run().options) {
+            if (option.position_key != -1) parsed.arguments.push_back(option.value.front());
+            else if (auto& values = parsed.values[option.string_key]; option.value.empty()) values.push_back("");
+            else values.insert(values.end(), option.value.begin(), option.value.end());
+        }
+    } catch (const po::unknown_option& error) {
+        refuse_unknown(command, error.get_option_name());
+    } catch (const po::error& error) {
+        throw InputError(std::string(error.what()) + ". `credence " + command.name + " --help` shows how.");
+    }
+    if (parsed.has("help")) {
+        std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n" << command.summary << "\n\n"
+                  << description << command.details;
+        return std::nullopt;
+    }
+    check_repeats(command, parsed);
+    return parsed;
+}
+
+double parse_margin(const Parsed& parsed) {
+    const std::string given = parsed.text("margin").value_or("5%");
+    const bool percent = !given.empty() && given.back() == '%';
+    const std::optional<double> number = to_number(percent ? given.substr(0, given.size() - 1) : given);
+    const double margin = number.value_or(0) / (percent ? 100 : 1);
+    if (!(margin > 0 && margin < 1))
+        throw invalid_value("--margin", given, "must be between 0 and 100 %, both excluded", "Write 5% or 0.05");
+    return margin;
+}
+
+void write_output(const Parsed& parsed, const std::string& text) {
+    const std::optional<std::string> path = parsed.text("output");
+    if (!path) {
+        std::cout << text << std::flush;
+        if (!std::cout) throw Failure("cannot write to the standard output.");
+        return;
+    }
+    std::ofstream stream(*path, std::ios::binary);
+    if (!stream) throw InputError("cannot write " + *path + ". Give a path in a folder that exists and can be written to.");
+    stream << text << std::flush;
+    if (!stream) throw Failure("cannot write " + *path + " (no space left?).");
+}
+
+Option set_option() {
+    return {"set", "section.key=value", "override a key of every scenario; repeatable, the last wins", true};
+}
+
+Option margin_option() {
+    return {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"};
+}
+
+Option output_option(const std::string& help) { return {"output,o", "FILE", help}; }
+
+}  // namespace credence::cli

@@ -1,0 +1,69 @@
+#pragma once
+// Room 14: what the subcommands share. One file a subcommand; main.cpp lists them.
+
+#include <credence/ini.hpp>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence::cli {
+
+/// An option as its help shows it. Every value arrives as text: Boost's own conversions wrap -1 and refuse 1e6.
+struct Option {
+    std::string name;          ///< long name, with a short one after a comma: "output,o"
+    std::string value;         ///< name of its value in the help; empty for a switch
+    std::string help;
+    bool repeatable = false;
+};
+
+/// A subcommand as its help shows it.
+struct Command {
+    std::string name, arguments, summary;
+    std::string details;       ///< after the options
+    std::vector<Option> options;
+};
+
+/// What stood on the command line.
+class Parsed {
+public:
+    std::vector<std::string> arguments;               ///< those that are not options
+    std::map<std::string, std::vector<std::string>> values;
+
+    bool has(const std::string& option) const { return values.count(option) > 0; }
+    std::optional<std::string> text(const std::string& option) const;
+    /// A whole number in [low, high]; throws InputError naming the option.
+    std::int64_t integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const;
+    /// One of `choices`, the first by default.
+    std::string choice(const std::string& option, const std::vector<std::string>& choices) const;
+    /// `--set section.key=value`, in order.
+    Overrides overrides() const;
+};
+
+/// Reads the arguments after the subcommand; throws InputError for an unknown, repeated or incomplete option, with the
+/// closest known one. Nothing if `--help` was asked for and has been printed.
+std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments);
+
+/// `5%` or `0.05` as a number in (0, 1); throws InputError.
+double parse_margin(const Parsed& parsed);
+
+/// Writes a text to `-o`'s file, or to the standard output.
+void write_output(const Parsed& parsed, const std::string& text);
+
+/// `--margin`, `--format` and `-o` as report and judge share them.
+Option set_option();
+Option margin_option();
+Option output_option(const std::string& help);
+
+// The subcommands: their description, and their work. They return the exit code.
+const Command& run_command();
+const Command& report_command();
+const Command& replay_command();
+const Command& show_command();
+int run(const Parsed& parsed, const std::string& command_line);
+int report(const Parsed& parsed);
+int replay(const Parsed& parsed, const std::string& command_line);
+int show(const Parsed& parsed);
+
+}  // namespace credence::cli

@@ -1,0 +1,68 @@
+// credence: can a filter's covariance be believed?
+
+#include "command.hpp"
+#include "version.hpp"
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+
+namespace {
+
+using namespace credence;
+
+int help() {
+    std::cout << "credence: can a filter's covariance be believed, and does planning a path pay?\n\n"
+                 "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
+    for (const cli::Command* command : {&cli::run_command(), &cli::report_command(), &cli::replay_command(), &cli::show_command()})
+        std::cout << "  " << command->name << std::string(9 - command->name.size(), ' ') << command->summary << "\n";
+    std::cout << "\n  --help   this\n  --version  the version and how it was built\n\n"
+                 "Exit codes: 0 done, 1 failed, 2 bad input.\n";
+    return 0;
+}
+
+/// The command line as it was given, quoted where a shell would need it.
+std::string command_line(int argc, char** argv) {
+    std::vector<std::string> words{"credence"};
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#!~") == std::string::npos;
+        words.push_back(plain ? word : "'" + word + "'");
+    }
+    return joined(words, " ");
+}
+
+int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
+    const auto parsed = [&](const cli::Command& command) { return cli::parse(command, arguments); };
+    if (name == "run") { const auto p = parsed(cli::run_command()); return p ? cli::run(*p, line) : 0; }
+    if (name == "report") { const auto p = parsed(cli::report_command()); return p ? cli::report(*p) : 0; }
+    if (name == "replay") { const auto p = parsed(cli::replay_command()); return p ? cli::replay(*p, line) : 0; }
+    if (name == "show") { const auto p = parsed(cli::show_command()); return p ? cli::show(*p) : 0; }
+    const std::string meant = closest(name, {"run", "report", "replay", "show", "--help", "--version"});
+    throw InputError("unknown command " + name + ". " + (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::string name = argc > 1 ? argv[1] : "--help";
+    const bool known = name != "--help" && name != "-h" && name != "--version" && name.front() != '-';
+    const std::string prefix = known ? "credence " + name + ": " : "credence: ";
+    try {
+        if (name == "--help" || name == "-h" || name == "help") return help();
+        if (name == "--version") { std::cout << version_text(); return 0; }
+        return dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
+    } catch (const InputError& error) {
+        std::cerr << prefix << error.what() << "\n";
+        return 2;
+    } catch (const std::bad_alloc&) {
+        std::cerr << prefix << "out of memory. Ask for fewer trials; --dry-run says what they take.\n";
+        return 1;
+    } catch (const std::exception& error) {
+        std::cerr << prefix << error.what() << "\n";
+        return 1;
+    }
+}

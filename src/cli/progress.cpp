@@ -1,0 +1,55 @@
+#include "progress.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+namespace credence::cli {
+
+namespace {
+
+std::string formatted(const char* format, double value, const char* unit) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return std::string(text) + unit;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+    if (seconds < 10) return formatted("%.1f", seconds, " s");
+    if (seconds < 120) return formatted("%.0f", seconds, " s");
+    if (seconds < 7200) return formatted("%.0f", seconds / 60, " min");
+    return formatted("%.1f", seconds / 3600, " h");
+}
+
+std::string bytes_text(std::int64_t bytes) {
+    const double value = static_cast<double>(bytes);
+    if (value < 1e6) return formatted("%.0f", value / 1e3, " kB");
+    if (value < 1e9) return formatted("%.1f", value / 1e6, " MB");
+    return formatted("%.1f", value / 1e9, " GB");
+}
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {
+    next_ = terminal_ ? 0.5 : 10;
+}
+
+void ProgressLine::operator()(const Progress& progress) {
+    if (quiet_ || progress.done == 0 || progress.seconds < next_) return;
+    next_ = progress.seconds + (terminal_ ? 0.2 : 30);
+    const double rate = static_cast<double>(progress.done) / progress.seconds;
+    const double left = static_cast<double>(progress.total - progress.done) / rate;
+    const double share = 100 * static_cast<double>(progress.done) / static_cast<double>(progress.total);
+    std::cerr << (terminal_ ? "\r\033[K" : "") << progress.done << " of " << progress.total << " trials ("
+              << formatted("%.0f", share, " %") << "), " << formatted("%.0f", rate, " trials/s, ") << duration_text(left)
+              << " left" << (terminal_ ? "" : "\n") << std::flush;
+    drawn_ = terminal_;
+}
+
+void ProgressLine::finish() {
+    if (drawn_) std::cerr << "\r\033[K" << std::flush;
+    drawn_ = false;
+}
+
+}  // namespace credence::cli

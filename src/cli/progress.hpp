@@ -1,0 +1,25 @@
+#pragma once
+// Progress of long work: a line that is drawn again on a terminal, a line now and then elsewhere, nothing with --quiet.
+
+#include <credence/study.hpp>
+
+namespace credence::cli {
+
+class ProgressLine {
+public:
+    explicit ProgressLine(bool quiet);
+    void operator()(const Progress& progress);
+    /// Clears the line on a terminal.
+    void finish();
+
+private:
+    bool quiet_, terminal_, drawn_ = false;
+    double next_ = 0;  ///< seconds at which the next line is due
+};
+
+/// `75 s`, `12 min`, `3.4 h`.
+std::string duration_text(double seconds);
+/// `12.3 MB`
+std::string bytes_text(std::int64_t bytes);
+
+}  // namespace credence::cli

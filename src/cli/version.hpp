@@ -1,0 +1,15 @@
+#pragma once
+// Facts of the build, for --version and for /run of every file.
+
+#include <credence/store.hpp>
+
+#include <string>
+
+namespace credence {
+
+std::string version_text();
+
+/// Version, git revision, compiler, flags, processor, instruction set, lane width.
+RunFacts build_facts();
+
+}  // namespace credence

@@ -1,0 +1,118 @@
+#include <credence/ini.hpp>
+
+#include <credence/error.hpp>
+#include <credence/scenario_keys.hpp>
+#include <credence/text.hpp>
+
+#include <boost/program_options.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace credence {
+
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr std::uintmax_t largest_file = 1 << 20;
+
+/// Keys of a scenario text with their values and lines.
+struct Assignment {
+    std::string key, value;
+    int line = 0;
+};
+
+std::string place(const std::string& origin, int line) { return origin + ":" + std::to_string(line) + ": "; }
+
+/// Reads one line through Boost's INI parser; `section` is carried from line to line.
+std::vector<Assignment> read_line(const std::string& text, const std::string& origin, int line, std::string& section) {
+    const std::string bare = trimmed(text.substr(0, text.find('#')));
+    if (bare.empty()) return {};
+    if (bare.front() == '[') {
+        if (bare.back() != ']' || bare.size() < 3)
+            throw InputError(place(origin, line) + "broken section `" + bare.substr(0, 60) + "`. Write [section].");
+        section = trimmed(std::string_view(bare).substr(1, bare.size() - 2));
+        return {};
+    }
+    const po::options_description nothing_declared;
+    std::istringstream stream((section.empty() ? "" : "[" + section + "]\n") + bare + "\n");
+    std::vector<Assignment> read;
+    try {
+        for (const auto& option : po::parse_config_file(stream, nothing_declared, true).options)
+            read.push_back({option.string_key, trimmed(joined(option.value)), line});
+    } catch (const po::error&) {
+        throw InputError(place(origin, line) + "broken line `" + bare.substr(0, 60) + "`. Write key = value.");
+    }
+    return read;
+}
+
+std::vector<Assignment> read_lines(const std::string& text, const std::string& origin) {
+    std::vector<Assignment> all;
+    std::map<std::string, int> lines;
+    std::istringstream stream(text);
+    std::string line, section;
+    for (int number = 1; std::getline(stream, line); ++number)
+        for (Assignment& one : read_line(line, origin, number, section)) {
+            const auto [first, is_new] = lines.emplace(one.key, number);
+            if (!is_new)
+                throw InputError(place(origin, number) + "repeated key " + one.key + " (it stands in line " +
+                                 std::to_string(first->second) + " already). Keep one of them.");
+            all.push_back(std::move(one));
+        }
+    return all;
+}
+
+}  // namespace
+
+Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                            const Overrides& overrides) {
+    Scenario scenario;
+    scenario.name = default_name;
+    std::map<std::string, int> lines;
+    for (const Assignment& one : read_lines(text, origin)) {
+        try {
+            set_key(scenario, one.key, one.value);
+        } catch (const InputError& error) {
+            throw InputError(place(origin, one.line) + error.what(), error.key());
+        }
+        lines[one.key] = one.line;
+    }
+    for (const auto& [key, value] : overrides) {
+        try {
+            set_key(scenario, key, value);
+        } catch (const InputError& error) {
+            throw InputError("--set " + key + ": " + error.what(), error.key());
+        }
+        lines.erase(key);
+    }
+    try {
+        if (scenario.name == default_name) set_key(scenario, "scenario.name", default_name);
+        validate(scenario);
+    } catch (const InputError& error) {
+        const auto line = lines.find(error.key());
+        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(), error.key());
+    }
+    return resolved(scenario);
+}
+
+Scenario read_scenario(const std::string& path, const Overrides& overrides) {
+    std::error_code trouble;
+    const std::filesystem::file_status status = std::filesystem::status(path, trouble);
+    if (!std::filesystem::exists(status))
+        throw InputError("cannot read scenario " + path + " (there is no such file). Check the path.");
+    if (!std::filesystem::is_regular_file(status))
+        throw InputError("cannot read scenario " + path + " (it is not a file). Give an INI file.");
+    if (std::filesystem::file_size(path, trouble) > largest_file)
+        throw InputError("cannot read scenario " + path + " (it is larger than 1 MiB). Give an INI file.");
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream || (!text && text.tellp() > 0))
+        throw InputError("cannot read scenario " + path + " (reading failed). Check its permissions.");
+    return read_scenario_text(text.str(), path, std::filesystem::path(path).stem().string(), overrides);
+}
+
+}  // namespace credence

@@ -1,0 +1,135 @@
+// Room 10: the verdict. Every kind has a case that must get it and one that must not.
+
+#include "catch.hpp"
+
+#include <credence/consistency.hpp>
+#include <credence/study.hpp>
+
+#include <algorithm>
+
+using namespace credence;
+
+namespace {
+
+/// The truth that the linear filter assumes: NEES ~ chi-square(n) exactly [model.md, Truth against filter].
+Scenario matched() {
+    Scenario s;
+    s.process = Process::translation;
+    s.truth = {Deformation::walk, EdgeNoise::independent};
+    s.sensor.range_min = 0;
+    s.sensor.range_max = std::numeric_limits<double>::infinity();
+    s.arms.controllers = {Controller::fixed};
+    return s;
+}
+
+ScenarioResults simulated(const Scenario& scenario, std::int64_t trials) {
+    validate(scenario);
+    Study study = new_study({resolved(scenario)}, 1);
+    run_study(study, {trials, 0, {}});
+    return study.scenarios.front();
+}
+
+Consistency verdict_of(const Scenario& scenario, std::int64_t trials, double margin = 0.05) {
+    const ScenarioResults results = simulated(scenario, trials);
+    return judge(results, results.arms.front(), margin);
+}
+
+double ratio(const Consistency& consistency, const std::string& block) {
+    for (const BlockConsistency& b : consistency.blocks)
+        if (b.block == block) return b.ratio;
+    FAIL("no block " << block);
+    return 0;
+}
+
+bool has(const Consistency& consistency, const std::string& what, const std::string& where) {
+    return std::any_of(consistency.findings.begin(), consistency.findings.end(),
+                       [&](const Finding& f) { return f.what == what && f.where == where; });
+}
+
+}  // namespace
+
+TEST_CASE("consistency: the matched linear filter is consistent") {
+    const Consistency c = verdict_of(matched(), 20000);
+    CHECK(verdict_name(c.verdict) == "consistent");
+    CHECK(c.findings.empty());
+    // model.md: 0.9989 +- 0.0039 of 3,000 trials; 20,000 trials have a standard error of 0.0015. 4 sigma: 6e-5.
+    CHECK(ratio(c, "all") == Approx(1).margin(0.006));
+}
+
+TEST_CASE("consistency: the same filter is undecided with few trials, and the trials that decide are named") {
+    const Consistency c = verdict_of(matched(), 200);
+    CHECK(verdict_name(c.verdict) == "undecided");
+    CHECK(c.trials_to_decide > 200);
+    CHECK(c.trials_to_decide < 20000);
+}
+
+TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
+    Scenario s = matched();
+    s.filter.measurement = 0.8;
+    const Consistency c = verdict_of(s, 4000);
+    CHECK(verdict_name(c.verdict) == "optimistic");
+    // model.md: 1.382 (all), 0.98 (pose), 1.16 to 1.17 (each feature), 1,500 trials, +- 0.006, 0.02, 0.015.
+    CHECK(ratio(c, "all") == Approx(1.382).margin(0.02));
+    CHECK(ratio(c, "pose") == Approx(0.99).margin(0.05));
+    CHECK(ratio(c, "feature_1") == Approx(1.165).margin(0.04));
+    CHECK(has(c, "optimistic", "all"));
+    CHECK_FALSE(has(c, "optimistic", "pose"));
+}
+
+TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic") {
+    Scenario s = matched();
+    s.filter.covariance = 1.1;
+    const Consistency c = verdict_of(s, 20000);
+    CHECK(verdict_name(c.verdict) == "pessimistic");
+    CHECK(ratio(c, "all") == Approx(1 / 1.1).margin(0.006));
+    CHECK(has(c, "pessimistic", "all"));
+}
+
+TEST_CASE("consistency: errors that cancel in one average are mixed") {
+    // statistics.md: the seed's EKF with sigma_head = 0.042 gives 0.97 over all, 1.20 for the pose, 0.70 for the features.
+    Scenario s;
+    s.noise.heading = 0.042;
+    s.arms.controllers = {Controller::fixed};
+    const Consistency c = verdict_of(s, 10000);
+    CHECK(verdict_name(c.verdict) == "mixed");
+    CHECK(ratio(c, "all") == Approx(0.97).margin(0.04));
+    CHECK(has(c, "optimistic", "pose"));
+    CHECK(has(c, "pessimistic", "features"));
+}
+
+TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent") {
+    ScenarioResults results = simulated(matched(), 20000);
+    REQUIRE(judge(results, results.arms.front(), 0.05).verdict == Verdict::consistent);
+    const auto bias = std::find_if(results.figures.begin(), results.figures.end(),
+                                   [](const Figure& f) { return f.name == "standardised_error_f1_x"; });
+    REQUIRE(bias != results.figures.end());
+    FigureTotals& totals = results.arms.front().totals[static_cast<std::size_t>(bias - results.figures.begin())];
+    totals.sum[6].add(20000 * 0.05);  // a mean of 0.05 sigma at step 7, 7 standard errors
+    const Consistency c = judge(results, results.arms.front(), 0.05);
+    CHECK(verdict_name(c.verdict) == "undecided");
+    REQUIRE(c.findings.size() == 1);
+    CHECK(c.findings.front().what == "biased");
+    CHECK(c.findings.front().where == "f1_x");
+    CHECK(c.findings.front().when == "step 7");
+}
+
+TEST_CASE("consistency: trouble at some steps only is found there") {
+    ScenarioResults results = simulated(matched(), 20000);
+    FigureTotals& whole = results.arms.front().totals.front();
+    for (const std::size_t k : {2u, 3u, 4u, 8u}) {  // 10 % more NEES at steps 3 to 5 and 9
+        whole.sum[k].add(0.1 * whole.sum[k].rounded());
+        whole.square_sum[k].add(0.21 * whole.square_sum[k].rounded());
+    }
+    const Consistency c = judge(results, results.arms.front(), 0.05);
+    CHECK(verdict_name(c.verdict) == "optimistic");
+    REQUIRE(c.findings.size() == 1);
+    CHECK(c.findings.front().where == "all");
+    CHECK(c.findings.front().when == "steps 3 to 5, 9");
+    CHECK(sentence(c.findings.front()).find("optimistic: all, steps 3 to 5, 9, NEES/dim 1.1") == 0);
+}
+
+TEST_CASE("consistency: a wider margin forgives more") {
+    Scenario s = matched();
+    s.filter.covariance = 1.1;
+    CHECK(verdict_name(verdict_of(s, 20000, 0.15).verdict) == "consistent");
+}

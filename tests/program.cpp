@@ -1,0 +1,61 @@
+#include "program.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace credence {
+
+namespace {
+
+std::string read_file(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+Workplace::Workplace() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "credence-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    folder_ = pattern;
+}
+
+Workplace::~Workplace() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+}
+
+void Workplace::write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+}
+
+std::vector<std::string> Workplace::names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Outcome Workplace::credence(const std::string& arguments) const { return shell(CREDENCE_PROGRAM " " + arguments); }
+
+Outcome Workplace::shell(const std::string& command) const {
+    // What the command prints goes beside the folder, so that the folder holds what the program wrote and nothing else.
+    const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
+    const int status = std::system(("cd " + folder_.string() + " && " + command + " >" + out + " 2>" + err).c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+    std::filesystem::remove(out);
+    std::filesystem::remove(err);
+    return outcome;
+}
+
+std::string seed_scenario(const std::string& name) { return std::string(CREDENCE_SOURCE) + "/experiments/seed/" + name + ".ini"; }
+
+}  // namespace credence

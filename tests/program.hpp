@@ -1,0 +1,40 @@
+#pragma once
+// Runs the built program as a user would, in a folder of its own.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+struct Outcome {
+    int exit_code = -1;
+    std::string out, err;
+};
+
+/// A fresh temporary folder, removed with everything in it at the end of the test.
+class Workplace {
+public:
+    Workplace();
+    ~Workplace();
+    Workplace(const Workplace&) = delete;
+    Workplace& operator=(const Workplace&) = delete;
+
+    /// Path of a file in the folder.
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void write(const std::string& name, const std::string& text) const;
+    /// Names of everything in the folder, sorted.
+    std::vector<std::string> names() const;
+    /// Runs `credence ARGUMENTS` in the folder through the shell.
+    Outcome credence(const std::string& arguments) const;
+    /// Runs any shell command in the folder.
+    Outcome shell(const std::string& command) const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+/// The project's own scenario files.
+std::string seed_scenario(const std::string& name);
+
+}  // namespace credence

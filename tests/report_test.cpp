@@ -1,0 +1,108 @@
+// Room 13: the report says what the study holds.
+
+#include "catch.hpp"
+#include "study_support.hpp"
+
+#include <credence/error.hpp>
+#include <credence/report.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace credence;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A study of 300 trials in which a tenth of one arm's trials are made to have failed.
+Study with_failures() {
+    Study study = small_study(1, 300, 1);
+    ArmResults& arm = study.scenarios.front().arms.front();
+    for (std::size_t i = 0; i < 30; ++i) {
+        std::vector<double> values;
+        for (const auto& column : arm.columns) values.push_back(column[i]);
+        values[column_status] = static_cast<double>(Status::non_finite);
+        values[column_status_pose] = 3;
+        fill_failed(study.scenarios.front().columns, values.data());
+        for (std::size_t c = 0; c < values.size(); ++c) arm.columns[c][i] = values[c];
+    }
+    return study;
+}
+
+}  // namespace
+
+TEST_CASE("report: its means are the means of the columns") {
+    const Study study = small_study(1, 300, 1);
+    const Report report = make_report(study, 0.05);
+    REQUIRE(report.arms.size() == 4);
+    REQUIRE(report.pairs.size() == 2);
+    const auto& planned = study.scenarios[1].arms[1].columns[column_trace_P];
+    const auto& fixed = study.scenarios[1].arms[0].columns[column_trace_P];
+    double mean = 0, difference = 0;
+    for (std::size_t i = 0; i < 300; ++i) mean += planned[i] / 300, difference += (planned[i] - fixed[i]) / 300;
+    CHECK(report.arms[3].figures[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
+    CHECK(report.pairs[1].figures[column_trace_P].summary.mean == Approx(difference).epsilon(1e-12));
+    CHECK(report.pairs[1].name == "greedy.kf - fixed.kf");
+}
+
+TEST_CASE("report: failed trials are counted and shown, and figures are given without them") {
+    const Study study = with_failures();
+    const Report report = make_report(study, 0.05);
+    CHECK(report.arms.front().trials == 300);
+    CHECK(report.arms.front().failed == 30);
+    CHECK(report.arms.front().figures[column_unseen].summary.count == 270);
+    CHECK(report.arms.front().figures[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
+    CHECK(report.pairs.front().figures[column_trace_P].summary.count == 270);
+    CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
+    CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
+}
+
+TEST_CASE("report: diverged trials stay in the figures and are named") {
+    Study study = small_study(1, 300, 1);
+    study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::diverged);
+    const Report report = make_report(study, 0.05);
+    CHECK(report.arms.front().diverged == 1);
+    CHECK(report.arms.front().failed == 0);
+    CHECK(report.arms.front().figures.front().summary.count == 300);
+    CHECK_THAT(report_text(report), Contains("1 trials of heading-straight/fixed.ekf diverged"));
+}
+
+TEST_CASE("report: a published figure is shown at its percentile") {
+    std::vector<Scenario> scenarios = small_scenarios();
+    scenarios.front().published.unseen = {{"greedy.ekf", 2}};
+    Study study = new_study(scenarios, 1);
+    run_study(study, {300, 1, {}});
+    const Report report = make_report(study, 0.05);
+    const auto& unseen = study.scenarios.front().arms[1].columns[column_unseen];
+    double below = 0, equal = 0;
+    for (const double value : unseen) below += value < 2, equal += value == 2;
+    const FigureReport& figure = report.arms[1].figures[column_unseen];
+    REQUIRE(figure.published);
+    CHECK(figure.published->percentile == Approx(100 * (below + equal / 2) / 300).epsilon(1e-13));
+    CHECK_FALSE(report.arms[0].figures[column_unseen].published);
+}
+
+TEST_CASE("report: JSON has every figure with NaN as null, CSV a row for each") {
+    Study study = with_failures();
+    for (double& status : study.scenarios.front().arms.front().columns[column_status]) status = 3;  // all failed
+    const Report report = make_report(study, 0.05);
+    const Json arms = Json::parse(report_json(report));
+    REQUIRE(arms.size() == 4);
+    CHECK(arms[0]["failed"] == 300);
+    CHECK(arms[0]["trace_P"]["mean"].is_null());
+    CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].figures[column_trace_P].summary.mean);
+    CHECK(arms[1]["blocks"].size() == 8);  // all, pose, heading, position, features, 3 features
+    const std::string csv = report_csv(report);
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 5 * (4 + 2));
+    CHECK_THAT(csv, Contains("heading-straight,fixed.ekf,300,300,trace_P,dm^2 + rad^2,,,,,,,"));
+}
+
+TEST_CASE("report: requiring consistency names the arms that are not") {
+    const Report report = make_report(small_study(1, 300, 1), 0.05);
+    CHECK_THROWS_WITH(require_consistent(report), Contains("heading-straight/fixed.ekf is "));
+    Report none = report;
+    none.arms.clear();
+    CHECK_NOTHROW(require_consistent(none));
+}

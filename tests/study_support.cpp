@@ -1,0 +1,67 @@
+#include "study_support.hpp"
+
+#include <bit>
+
+namespace credence {
+
+namespace {
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i]) && !(a[i] != a[i] && b[i] != b[i]))
+            return false;
+    return true;
+}
+
+bool same_sums(const std::vector<ExactSum>& a, const std::vector<ExactSum>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        if (!same_bits(a[k].parts(), b[k].parts())) return false;
+    return true;
+}
+
+bool same_arm(const ArmResults& a, const ArmResults& b) {
+    if (a.name != b.name || a.counted != b.counted || a.columns.size() != b.columns.size()) return false;
+    for (std::size_t c = 0; c < a.columns.size(); ++c)
+        if (!same_bits(a.columns[c], b.columns[c])) return false;
+    for (std::size_t f = 0; f < a.totals.size(); ++f)
+        if (!same_sums(a.totals[f].sum, b.totals[f].sum) || !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
+            !same_bits(a.totals[f].run_square_sum.parts(), b.totals[f].run_square_sum.parts()))
+            return false;
+    return true;
+}
+
+}  // namespace
+
+std::vector<Scenario> small_scenarios() {
+    Scenario straight;
+    straight.name = "heading-straight";
+    straight.poses = 8;
+    Scenario circle;
+    circle.name = "translation-circle";
+    circle.poses = 8;
+    circle.process = Process::translation;
+    circle.features.path = Path::circle;
+    circle.sensor.noise = RangeNoise::ranged;
+    circle.planner.speeds = 2;
+    return {resolved(straight), resolved(circle)};
+}
+
+Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads) {
+    Study study = new_study(small_scenarios(), root_seed);
+    run_study(study, {trials, threads, {}});
+    return study;
+}
+
+bool same_results(const Study& a, const Study& b) {
+    if (a.scenarios.size() != b.scenarios.size()) return false;
+    for (std::size_t s = 0; s < a.scenarios.size(); ++s) {
+        if (a.scenarios[s].trials != b.scenarios[s].trials) return false;
+        for (std::size_t i = 0; i < a.scenarios[s].arms.size(); ++i)
+            if (!same_arm(a.scenarios[s].arms[i], b.scenarios[s].arms[i])) return false;
+    }
+    return true;
+}
+
+}  // namespace credence

@@ -1,0 +1,17 @@
+#pragma once
+// Small studies, and what it means that two are the same.
+
+#include <credence/study.hpp>
+
+namespace credence {
+
+/// Two scenarios with both arms each, of either model; resolved.
+std::vector<Scenario> small_scenarios();
+
+/// The study of small_scenarios, run.
+Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads);
+
+/// The same bits in every column and every total (NaN equals NaN).
+bool same_results(const Study& a, const Study& b);
+
+}  // namespace credence
