@@ -69,7 +69,7 @@ template <class Real, int capacity, class Noise>
 Sighting<Real> first_sight(const Truth<Real, capacity>& truth, const SensorParameters& sensor, int j,
                            const Noise& noise) {
     const Real sigma = sigma_at(sensor, range(truth.position, truth.feature[j]));
-    return {{}, add_scaled(truth.feature[j], sigma, noise.normal(Source::measurement, 0, j)), sigma};
+    return {Mask<Real>{}, add_scaled(truth.feature[j], sigma, noise.normal(Source::measurement, 0, j)), sigma};
 }
 
 /// Edge measurement z = p_b - p_a, world frame, with a noise of its own where the truth has one.
