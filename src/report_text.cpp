@@ -2,6 +2,7 @@
 
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -41,16 +42,16 @@ std::string title_of(const std::string& figure, const std::string& unit) {
     return unit == "1" ? name : name + " [" + unit + "]";
 }
 
-std::string published_text(const FigureReport& figure) {
-    if (!figure.published) return "";
-    return to_text(figure.published->value) + " (" + number(figure.published->percentile, 1) + " %)";
+std::string published_text(const PublishedPlace& published) {
+    return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
 }
 
 std::string figure_row(const std::string& label, const FigureReport& figure) {
     const Summary& s = figure.summary;
     const int digits = decimals_for((s.ci95.high - s.ci95.low) / 2);
     return "    " + padded(label, 24, false) + padded(with_interval(s), 22) + padded(number(s.median, digits), 12) +
-           padded(number(s.standard_deviation, digits), 12) + padded(published_text(figure), 20) + "\n";
+           padded(number(s.standard_deviation, digits), 12) +
+           (figure.published ? padded(published_text(*figure.published), 20) : "") + "\n";
 }
 
 const FigureReport& figure_of(const std::vector<FigureReport>& figures, const std::string& name) {
@@ -84,24 +85,65 @@ std::string consistency_part(const Report& report, const std::string& scenario) 
     return text;
 }
 
-/// The findings of one arm, the widest blocks first, cut to what a reader takes in; JSON has them all.
-std::string findings_part(const ArmReport& arm) {
-    constexpr std::size_t most = 6;
-    std::string text;
-    const std::vector<Finding>& findings = arm.consistency.findings;
-    for (std::size_t i = 0; i < std::min(most, findings.size()); ++i)
-        text += "    " + padded(i == 0 ? arm.arm : "", 12, false) + sentence(findings[i]) + "\n";
-    if (findings.size() > most)
-        text += "    " + padded("", 12) + "and " + std::to_string(findings.size() - most) + " more (--format json)\n";
-    if (arm.consistency.verdict == Verdict::undecided && arm.consistency.trials_to_decide > 0)
-        text += "    " + padded(findings.empty() ? arm.arm : "", 12, false) + "undecided: about " +
-                number(arm.consistency.trials_to_decide, 0) + " trials would decide\n";
+/// How far a finding is from what a consistent filter gives.
+double distance_off(const Finding& finding) {
+    return finding.what == "biased" ? std::abs(finding.value) : std::abs(std::log(finding.value));
+}
+
+/// The findings of one kind: each block or component at its worst, the farthest off first.
+std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what) {
+    constexpr std::size_t most = 4;
+    std::vector<Finding> worst;
+    for (const Finding& finding : findings) {
+        if (finding.what != what) continue;
+        const auto same = std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
+        if (same == worst.end()) worst.push_back(finding);
+        else if (distance_off(finding) > distance_off(*same)) *same = finding;
+    }
+    std::sort(worst.begin(), worst.end(), [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
+        parts.push_back(worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+    if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
+    return parts;
+}
+
+/// `head` and the parts between commas, wrapped.
+std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts) {
+    constexpr std::size_t width = 96;
+    std::string text = head;
+    std::size_t column = head.size();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (column + parts[i].size() > width) {
+            text += "\n" + std::string(18, ' ');
+            column = 2;
+        }
+        text += (i > 0 && text.back() == ' ' ? "" : " ") + parts[i] + (i + 1 < parts.size() ? "," : "");
+        column += parts[i].size() + 2;
+    }
     return text;
+}
+
+/// Why an arm has its verdict; JSON has every finding with its interval.
+std::string findings_part(const ArmReport& arm) {
+    std::string text;
+    const auto add = [&](const std::string& line) { text += "    " + padded(text.empty() ? arm.arm : "", 12, false) + line + "\n"; };
+    for (const char* what : {"optimistic", "pessimistic", "biased"})
+        if (const auto parts = findings_parts(arm.consistency.findings, what); !parts.empty())
+            add(wrapped_list(std::string(what) + (std::string(what) == "biased" ? " (error/sigma):" : " (NEES/dim):"), parts));
+    if (arm.consistency.verdict == Verdict::undecided && arm.consistency.trials_to_decide > 0)
+        add("undecided: about " + number(arm.consistency.trials_to_decide, 0) + " trials would decide");
+    return text;
+}
+
+bool has_published(const Scenario& scenario) {
+    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() && scenario.published.pose_error.empty());
 }
 
 std::string scenario_part(const Report& report, const Scenario& scenario) {
     std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";
-    text += padded("mean ± 95 %", 50) + padded("median", 12) + padded("sd", 12) + padded("published (pctl.)", 20) + "\n";
+    text += padded("mean ± 95 %", 50) + padded("median", 12) + padded("sd", 12) +
+            (has_published(scenario) ? padded("published (pctl.)", 20) : "") + "\n";
     for (const char* name : {"trace_P", "unseen", "pose_error"}) text += figure_part(report, scenario.name, name);
     text += consistency_part(report, scenario.name);
     for (const ArmReport& arm : report.arms)
