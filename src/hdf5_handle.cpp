@@ -1,0 +1,59 @@
+#include "hdf5_handle.hpp"
+
+#include <exception>
+
+namespace credence::hdf5 {
+
+QuietErrors::QuietErrors() : exceptions_(std::uncaught_exceptions()) {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietErrors::~QuietErrors() {
+    H5Eclear2(H5E_DEFAULT);
+    if (std::uncaught_exceptions() == exceptions_) H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
+
+Handle::Handle(hid_t id, Close close, const std::string& place, const std::string& problem) : id_(id), close_(close) {
+    if (id_ < 0) throw Error(place, problem);
+}
+
+Handle::~Handle() {
+    if (id_ >= 0) close_(id_);
+}
+
+void Handle::close() {
+    const std::string place = place_of(*this);
+    check(close_(std::exchange(id_, H5I_INVALID_HID)), place, "HDF5 could not close it");
+}
+
+void check(herr_t returned, const std::string& place, const std::string& problem) {
+    if (returned < 0) throw Error(place, problem);
+}
+
+std::string printable(const std::string& text) {
+    constexpr std::size_t longest = 200;
+    std::string shown = text.substr(0, longest);
+    for (char& c : shown)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text.size() > longest ? shown + "..." : shown;
+}
+
+std::string place_of(const Handle& object) {
+    const ssize_t length = H5Iget_name(object.id(), nullptr, 0);
+    if (length <= 0) return "/";
+    std::string name(static_cast<std::size_t>(length), '\0');
+    H5Iget_name(object.id(), name.data(), name.size() + 1);
+    return printable(name);
+}
+
+std::string place_of(const Handle& object, const std::string& name) {
+    const std::string place = place_of(object);
+    return (place == "/" ? place : place + "/") + printable(name);
+}
+
+std::string attribute_place(const Handle& object, const std::string& name) {
+    return place_of(object) + "@" + printable(name);
+}
+
+}  // namespace credence::hdf5

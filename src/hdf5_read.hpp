@@ -1,0 +1,86 @@
+#pragma once
+// Room 12: reading HDF5. Files are hostile until shown otherwise: kind, type, rank, extents and storage are checked
+// before anything is allocated. HDF5's parser itself has known overflows on crafted files; newer releases have fewer.
+
+#include <credence/error.hpp>
+
+#include "hdf5_handle.hpp"
+
+namespace credence::hdf5 {
+
+// All but `read_file` throw Error.
+
+/// Opens a file for reading, after checks of our own: a regular file that starts with HDF5's signature.
+Handle open_file(const std::string& path);
+
+/// Names of a group's links, and of an object's attributes, in the order in which they were made. Links other than hard
+/// ones could lead to other files and are refused.
+std::vector<std::string> link_names(const Handle& group);
+std::vector<std::string> attribute_names(const Handle& object);
+bool has_link(const Handle& group, const std::string& name);
+bool has_attribute(const Handle& object, const std::string& name);
+
+Handle open_group(const Handle& parent, const std::string& name);
+
+/// A scalar attribute of fixed-length text, without the nulls that pad it.
+std::string read_text(const Handle& object, const std::string& name);
+
+void read_attribute(const Handle& object, const std::string& name, Type type, void* value);
+
+/// A scalar attribute of exactly T's type.
+template <class T>
+T read_number(const Handle& object, const std::string& name) {
+    T value{};
+    read_attribute(object, name, type_of<T>(), &value);
+    return value;
+}
+
+/// A dataset whose storage could be what its extents say.
+class Dataset {
+public:
+    Dataset(const Handle& group, const std::string& name);
+
+    const std::string& place() const { return place_; }
+    const Extents& extents() const { return extents_; }
+    /// Throws where the extents are others; the message shows both.
+    void require_extents(const Extents& extents) const;
+
+    /// All values, row-major; the type in the file must be exactly T's.
+    template <class T>
+    std::vector<T> read() const {
+        require_type(type_of<T>().file);
+        std::vector<T> values(count_);
+        read_into(type_of<T>().memory, values.data());
+        return values;
+    }
+    /// All values, row-major, of any floating-point type.
+    std::vector<double> read_real() const;
+
+private:
+    void check_storage() const;
+    void require_type(hid_t type) const;
+    void read_into(hid_t memory_type, void* values) const;
+
+    std::string place_;
+    Handle dataset_, type_;
+    Extents extents_;
+    std::size_t count_ = 1;
+};
+
+/// `[3, 2]`
+std::string extents_text(const Extents& extents);
+
+/// Opens a file and returns what `read` makes of it. Throws InputError `FILE: PLACE: PROBLEM. REMEDY.`
+template <class Read>
+auto read_file(const std::string& path, const std::string& usual_remedy, Read read) {
+    try {
+        const QuietErrors quiet;
+        const Handle root = open_file(path);
+        return read(root);
+    } catch (const Error& error) {
+        const std::string& remedy = error.remedy().empty() ? usual_remedy : error.remedy();
+        throw InputError(path + ": " + error.what() + ". " + remedy + ".");
+    }
+}
+
+}  // namespace credence::hdf5

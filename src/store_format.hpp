@@ -1,0 +1,72 @@
+#pragma once
+// Room 12: what the two files that the store writes have in common. docs/results-format.md describes them.
+
+#include <credence/error.hpp>
+#include <credence/scenario_keys.hpp>
+#include <credence/store.hpp>
+
+#include "durable_file.hpp"
+#include "hdf5_write.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace credence {
+
+inline const std::string results_format = "credence results", trajectories_format = "credence trajectories";
+inline const std::string run_group = "run";
+
+/// NaNs come with different bits from different processors; files hold one of them.
+inline double one_nan(double value) { return value == value ? value : std::numeric_limits<double>::quiet_NaN(); }
+
+/// The group /run would be mistaken for a scenario, and the other way round.
+inline void refuse_reserved_name(const Scenario& scenario) {
+    if (scenario.name == run_group)
+        throw invalid_value("scenario.name", scenario.name, "the file keeps that group for facts of the machine",
+                            "Give another name");
+}
+
+inline void write_header(const hdf5::Handle& root, const std::string& format, const std::string& title) {
+    hdf5::write_text(root, "format", format);
+    hdf5::write_number<std::int32_t>(root, "schema_version", schema_version);
+    hdf5::write_text(root, "title", title);
+}
+
+inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario& scenario) {
+    hdf5::Handle group = hdf5::new_group(root, scenario.name);
+    hdf5::write_text(group, "title", scenario.title);
+    hdf5::write_text(group, "length_unit", scenario.length_unit);
+    hdf5::write_text(group, "scenario", scenario_text(scenario));
+    return group;
+}
+
+inline void write_run_facts(const hdf5::Handle& root, const RunFacts& run) {
+    const hdf5::Handle group = hdf5::new_group(root, run_group);
+    for (const auto& [name, text] : run) hdf5::write_text(group, name, text);
+}
+
+/// The pose, trial, step or feature numbers of a dimension: first, first + 1 ...
+template <class T>
+hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T first, std::size_t count,
+                         const std::string& long_name) {
+    std::vector<T> values(count);
+    for (T& value : values) value = first++;
+    return hdf5::new_dimension(group, name, values, {long_name, "1"});
+}
+
+/// Builds a file in memory and puts it under its name. HDF5 only refuses there for want of memory.
+template <class Build>
+void write_file(const std::string& path, Build build) {
+    std::vector<unsigned char> image;
+    try {
+        const hdf5::QuietErrors quiet;
+        hdf5::Handle root = hdf5::new_image();
+        build(root);
+        image = hdf5::take_image(std::move(root));
+    } catch (const hdf5::Error& error) {
+        throw Failure("cannot write " + path + " (" + error.what() + "). Free some memory.");
+    }
+    write_durably(path, image.data(), image.size());
+}
+
+}  // namespace credence

@@ -1,0 +1,157 @@
+#include <credence/store.hpp>
+
+#include <credence/text.hpp>
+
+#include "store_format.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Dimension;
+using hdf5::Handle;
+
+template <class T>
+std::vector<T> converted(const std::vector<double>& values) {
+    std::vector<T> result(values.size());
+    std::transform(values.begin(), values.end(), result.begin(), [](double value) { return static_cast<T>(value); });
+    return result;
+}
+
+void write_column(const Handle& group, const Dimension& trial, const Column& column,
+                  const std::vector<double>& values) {
+    const hdf5::Description description{column.long_name, column.unit};
+    switch (column.type) {
+        case ColumnType::real: {
+            std::vector<double> reals(values.size());
+            std::transform(values.begin(), values.end(), reals.begin(), one_nan);
+            const Handle variable = hdf5::new_variable(group, column.name, reals, {&trial}, description);
+            return hdf5::write_numbers<double>(variable, "_FillValue", {one_nan(column.fill)});
+        }
+        case ColumnType::integer: {
+            const Handle variable =
+                hdf5::new_variable(group, column.name, converted<std::int32_t>(values), {&trial}, description);
+            return hdf5::write_numbers<std::int32_t>(variable, "_FillValue", {static_cast<std::int32_t>(column.fill)});
+        }
+        case ColumnType::status: break;
+    }
+    const Handle variable =
+        hdf5::new_variable(group, column.name, converted<std::int8_t>(values), {&trial}, description);
+    std::vector<std::int8_t> codes;
+    for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
+    hdf5::write_numbers(variable, "flag_values", codes);
+    hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
+}
+
+std::string role_name(FigureRole role) {
+    switch (role) {
+        case FigureRole::nees: return "nees";
+        case FigureRole::standardised_error: return "standardised_error";
+        case FigureRole::nis: return "nis";
+        case FigureRole::rows: return "rows";
+        case FigureRole::other: break;
+    }
+    return "other";
+}
+
+std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : "(" + unit + ")^2"; }
+
+/// What a reader needs to know of a figure beside its total.
+void write_role(const Handle& variable, const Figure& figure) {
+    hdf5::write_text(variable, "figure", figure.name);
+    hdf5::write_text(variable, "role", role_name(figure.role));
+    if (figure.role == FigureRole::nees) hdf5::write_number<std::int32_t>(variable, "dimension", figure.dimension);
+}
+
+/// The exact parts of sums, one sum a row, padded with zeros.
+std::vector<double> parts_of(const std::vector<ExactSum>& sums, std::size_t width) {
+    std::vector<double> rows;
+    for (const ExactSum& sum : sums) {
+        std::vector<double> parts = sum.parts();
+        parts.resize(width);
+        std::transform(parts.begin(), parts.end(), std::back_inserter(rows), one_nan);
+    }
+    return rows;
+}
+
+std::int64_t whole_number(const ExactSum& sum, const std::string& name) {
+    std::int64_t total = 0;
+    for (const double part : sum.parts()) {
+        if (!(std::abs(part) < 0x1p62) || part != std::nearbyint(part))
+            throw hdf5::Error(name, "its total is not a whole number");
+        total += static_cast<std::int64_t>(part);
+    }
+    return total;
+}
+
+std::size_t largest_part_count(const std::vector<FigureTotals>& figures) {
+    std::size_t largest = 1;
+    const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
+    for (const FigureTotals& totals : figures) {
+        std::for_each(totals.sum.begin(), totals.sum.end(), note);
+        std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
+        note(totals.run_square_sum);
+    }
+    return largest;
+}
+
+void write_figure(const Handle& group, const Dimension& step, const Dimension& part, const Figure& figure,
+                  const FigureTotals& totals) {
+    const std::string total = figure.long_name + ": total over the counted trials", square = squared_unit(figure.unit);
+    const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
+                                 const hdf5::Dimensions& dimensions, const hdf5::Description& description) {
+        write_role(hdf5::new_variable(group, figure.name + suffix, parts_of(sums, part.size), dimensions, description),
+                   figure);
+    };
+    if (figure.integer) {
+        std::vector<std::int64_t> sums;
+        for (const ExactSum& sum : totals.sum) sums.push_back(whole_number(sum, figure.name));
+        write_role(hdf5::new_variable(group, figure.name + "_total", sums, {&step}, {total, figure.unit}),
+                   figure);
+    } else {
+        write_parts("_total", totals.sum, {&step, &part}, {total, figure.unit});
+        write_parts("_square_total", totals.square_sum, {&step, &part}, {total + " of its square", square});
+    }
+    write_parts("_run_square_total", {totals.run_square_sum}, {&part},
+                {total + " of the square of its sum over a trial's steps", square});
+}
+
+void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
+    const Handle group = hdf5::new_group(scenario_group, arm.name);
+    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
+    const Dimension trial = numbered<std::int64_t>(group, "trial", 0, static_cast<std::size_t>(results.trials),
+                                                   "trial, counted over the whole study");
+    const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
+                                                  "pose that the step leads to");
+    const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm.totals),
+                                                  "part of an exact total: 0 the total, the others what rounding left");
+    for (std::size_t c = 0; c < results.columns.size(); ++c)
+        write_column(group, trial, results.columns[c], arm.columns[c]);
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        write_figure(group, step, part, results.figures[f], arm.totals[f]);
+}
+
+void write_study(const Handle& root, const Study& study, const RunFacts& run) {
+    write_header(root, results_format, "Monte Carlo trials of EKF-SLAM and totals over them");
+    hdf5::write_text(root, "study_hash", study_hash(study));
+    hdf5::write_number<std::uint64_t>(root, "root_seed", study.root_seed);
+    hdf5::write_text(root, "root_seed_text", std::to_string(study.root_seed));
+    hdf5::write_number<std::int8_t>(root, "complete", study.complete ? 1 : 0);
+    for (const ScenarioResults& results : study.scenarios) {
+        const Handle group = new_scenario_group(root, results.scenario);
+        for (const ArmResults& arm : results.arms) write_arm(group, results, arm);
+    }
+    write_run_facts(root, run);
+}
+
+}  // namespace
+
+void write_results(const std::string& path, const Study& study, const RunFacts& run) {
+    for (const ScenarioResults& results : study.scenarios) refuse_reserved_name(results.scenario);
+    write_file(path, [&](const Handle& root) { write_study(root, study, run); });
+}
+
+}  // namespace credence

@@ -1,0 +1,70 @@
+#pragma once
+// Random beliefs of both process models, and the way between Eigen's matrices and the filter's.
+
+#include "support.hpp"
+
+#include <random>
+
+namespace credence::test {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+template <class Layout>
+Belief<double, Layout::capacity> belief_of(const VectorXd& x, const MatrixXd& P) {
+    Belief<double, Layout::capacity> belief{};
+    for (int i = 0; i < x.size(); ++i) {
+        belief.mean[i] = x[i];
+        for (int j = i; j < x.size(); ++j) belief.covariance.entry[i][j] = P(i, j);
+    }
+    return belief;
+}
+
+template <class Belief>
+MatrixXd dense(const Belief& belief, Eigen::Index n) {
+    MatrixXd P(n, n);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) P(i, j) = belief.covariance.at(i, j);
+    return P;
+}
+
+template <class Belief>
+VectorXd mean_of(const Belief& belief, Eigen::Index n) {
+    return Eigen::Map<const VectorXd>(belief.mean, n);
+}
+
+/// A random state near the seed's and a random covariance with everything correlated, eigenvalues from 0.1 to about 10.
+struct Sample {
+    VectorXd x;
+    MatrixXd P;
+    Sample(int n, unsigned seed) : x(n), P(n, n) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        MatrixXd A(n, n);
+        for (int i = 0; i < n; ++i) {
+            x[i] = normal(random);
+            for (int j = 0; j < n; ++j) A(i, j) = 0.7 * normal(random);
+        }
+        P = A * A.transpose() + 0.1 * MatrixXd::Identity(n, n);
+    }
+};
+
+/// Runs a test on samples of one process model: `test(problem, sample, layout)`.
+template <class Layout, class Test>
+void with_samples(const char* process, const Settings& more, const Test& test) {
+    Settings settings{{"model.process", process}, {"features.path", "circle"}, {"features.sway_amplitude", "0.4"}};
+    settings.insert(settings.end(), more.begin(), more.end());
+    const Problem problem(scenario_with(settings));
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        test(problem, Sample(Layout(3).size(), seed), Layout(3));
+    }
+}
+
+/// The same on both.
+template <class Test>
+void with_both(const Settings& more, const Test& test) {
+    with_samples<Layout<Process::heading, 3>>("heading", more, test);
+    with_samples<Layout<Process::translation, 3>>("translation", more, test);
+}
+
+}  // namespace credence::test

@@ -1,0 +1,106 @@
+// Room 12, files: what other tools find in them, and that docs/results-format.md tells it.
+
+#include <credence/problem.hpp>
+
+#include "../src/hdf5_read.hpp"
+#include "store_study.hpp"
+
+#include <hdf5_hl.h>
+
+#include <regex>
+#include <set>
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+/// Names of variables and attributes below an object, as the documentation writes them.
+void collect_names(const hdf5::Handle& object, std::set<std::string>& names) {
+    for (const std::string& name : hdf5::attribute_names(object)) names.insert(name);
+    if (H5Iget_type(object.id()) == H5I_DATASET) return;
+    for (const std::string& name : hdf5::link_names(object)) {
+        if (name == "run") continue;
+        const hdf5::Handle child(H5Oopen(object.id(), name.c_str(), H5P_DEFAULT), H5Oclose, name, "cannot open it");
+        collect_names(child, names);
+        if (H5Iget_type(child.id()) != H5I_DATASET) continue;
+        if (H5Aexists(child.id(), "figure") > 0) {
+            const std::string figure = hdf5::read_text(child, "figure");
+            names.insert("F" + name.substr(figure.size()));
+            const std::string shown = std::regex_replace(figure, std::regex("feature_[0-9]+"), "feature_J");
+            names.insert(std::regex_replace(shown, std::regex("(standardised_error_).*"), "$1COMPONENT"));
+        } else {
+            names.insert(name);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("results format: the documentation names every variable and attribute") {
+    const TemporaryFolder folder;
+    write_results(folder / "study.h5", made_up_study(), {});
+    Scenario wide = scenario("wide");
+    wide.features.positions.assign(23, {0.5, 0.5});
+    write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), Controller::greedy, 1, 0),
+                                             replay_trial(Problem(wide), Controller::fixed, 1, 0)}, {});
+    std::set<std::string> names;
+    for (const char* file : {"study.h5", "trace.h5"}) collect_names(hdf5::open_file(folder / file), names);
+    for (const char* hdf5_own : {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}) CHECK(names.erase(hdf5_own) == 1);
+    CHECK(names.count("candidate_cost") + names.count("innovation_omitted") + names.count("F_run_square_total") == 3);
+
+    const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
+    CHECK(page.find("schema version " + std::to_string(schema_version) + " of the two files") != std::string::npos);
+    for (const std::string& name : names) {
+        INFO(name);
+        CHECK(std::regex_search(page, std::regex("`" + name + "[` ]")));
+    }
+    for (const std::string& status : status_names()) CHECK(page.find(status) != std::string::npos);
+}
+
+TEST_CASE("store: every variable has a long name, units and dimension scales in its own group") {
+    const TemporaryFolder folder;
+    write_results(folder / "study.h5", made_up_study(), run_facts);
+    const hdf5::Handle root = hdf5::open_file(folder / "study.h5");
+    const hdf5::Handle group = hdf5::open_group(hdf5::open_group(root, "first"), "greedy.ekf");
+    const std::vector<std::string> names = hdf5::link_names(group);
+    CHECK(names.front() == "trial");
+    for (const std::string& name : names) {
+        INFO(name);
+        const hdf5::Handle dataset(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name, "missing");
+        CHECK(!hdf5::read_text(dataset, "long_name").empty());
+        CHECK(!hdf5::read_text(dataset, "units").empty());
+        if (H5DSis_scale(dataset.id()) > 0) continue;
+        const std::size_t rank = hdf5::Dataset(group, name).extents().size();
+        for (unsigned axis = 0; axis < rank; ++axis) {
+            CHECK(H5DSget_num_scales(dataset.id(), axis) == 1);
+            int attached = 0;
+            for (const char* scale : {"trial", "step", "part"}) {
+                const hdf5::Handle other(H5Dopen2(group.id(), scale, H5P_DEFAULT), H5Dclose, scale, "missing");
+                attached += H5DSis_attached(dataset.id(), other.id(), axis) > 0;
+            }
+            CHECK(attached == 1);
+        }
+    }
+}
+
+TEST_CASE("store: what outside tools need to know is in the file") {
+    const TemporaryFolder folder;
+    write_results(folder / "study.h5", made_up_study(), run_facts);
+    const hdf5::Handle root = hdf5::open_file(folder / "study.h5");
+    CHECK(hdf5::read_text(root, "root_seed_text") == "18446744073709551615");
+    const hdf5::Handle group = hdf5::open_group(hdf5::open_group(root, "first"), "fixed.ekf");
+    const auto variable = [&](const char* name) {
+        return hdf5::Handle(H5Dopen2(group.id(), name, H5P_DEFAULT), H5Dclose, name, "missing");
+    };
+    CHECK(hdf5::read_text(variable("status"), "flag_meanings") ==
+          "completed diverged covariance_not_positive_definite non_finite");
+    CHECK(hdf5::read_text(variable("trace_P"), "units") == "dm^2 + rad^2");
+    CHECK(hdf5::read_text(variable("trace_P_step_square_total"), "units") == "(dm^2 + rad^2)^2");
+    CHECK(hdf5::read_text(variable("nees_pose_total"), "role") == "nees");
+    CHECK(hdf5::read_text(variable("nees_pose_total"), "figure") == "nees_pose");
+    CHECK(hdf5::read_number<std::int32_t>(variable("nees_pose_total"), "dimension") == 3);
+    CHECK(hdf5::read_text(variable("nis_rows_run_square_total"), "role") == "rows");
+    // NaN has the same bits whatever made it: made_up_study put one with its sign set.
+    CHECK(!std::signbit(hdf5::Dataset(group, "trace_P").read<double>()[1]));
+}

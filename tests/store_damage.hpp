@@ -1,0 +1,95 @@
+#pragma once
+// Ways to damage a results file.
+
+#include <credence/scenario_keys.hpp>
+
+#include "../src/hdf5_write.hpp"
+#include "store_study.hpp"
+
+#include <functional>
+
+namespace credence::test {
+
+using hdf5::Handle;
+
+/// A way to damage a results file, and a part of what reading it must say.
+struct Damage {
+    std::string said;
+    std::function<void(const Handle& root)> apply;
+};
+
+inline Handle open(const Handle& root, const std::string& path) {
+    return {H5Oopen(root.id(), path.c_str(), H5P_DEFAULT), H5Oclose, path, "missing"};
+}
+
+inline void remove(const Handle& root, const std::string& path) { H5Ldelete(root.id(), path.c_str(), H5P_DEFAULT); }
+
+inline void set_text(const Handle& root, const std::string& path, const std::string& name, const std::string& text) {
+    const Handle object = open(root, path);
+    H5Adelete(object.id(), name.c_str());
+    hdf5::write_text(object, name, text);
+}
+
+template <class T>
+inline void set_number(const Handle& root, const std::string& path, const std::string& name, T value) {
+    const Handle object = open(root, path);
+    H5Adelete(object.id(), name.c_str());
+    hdf5::write_number<T>(object, name, value);
+}
+
+/// Puts a dataset of other type, extents or values in the place of one.
+template <class T>
+inline void replace(const Handle& root, const std::string& path, const hdf5::Extents& extents, std::vector<T> values) {
+    remove(root, path);
+    std::size_t count = 1;
+    for (const hsize_t extent : extents) count *= extent;
+    values.resize(count);
+    hdf5::write_dataset(root, path, hdf5::type_of<T>(), values.data(), extents, {"", ""});
+}
+
+/// A dataset whose extents promise terabytes that the file does not hold.
+inline void promise_terabytes(const Handle& root, const std::string& path) {
+    remove(root, path);
+    const hsize_t extents[] = {hsize_t{1} << 40}, chunk[] = {1024};
+    const Handle space(H5Screate_simple(1, extents, nullptr), H5Sclose, path, "space");
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "properties");
+    H5Pset_chunk(properties.id(), 1, chunk);
+    const Handle dataset(H5Dcreate2(root.id(), path.c_str(), H5T_STD_I64LE, space.id(), H5P_DEFAULT, properties.id(),
+                                    H5P_DEFAULT), H5Dclose, path, "dataset");
+    const hsize_t one[] = {1};
+    const Handle memory(H5Screate_simple(1, one, nullptr), H5Sclose, path, "space");
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, std::vector<hsize_t>{0}.data(), nullptr, one, nullptr);
+    const std::int64_t value = 0;
+    H5Dwrite(dataset.id(), H5T_NATIVE_INT64, memory.id(), space.id(), H5P_DEFAULT, &value);
+}
+
+/// A dataset that keeps its values in another file.
+inline void keep_elsewhere(const Handle& root, const std::string& path) {
+    remove(root, path);
+    const hsize_t extents[] = {5};
+    const Handle space(H5Screate_simple(1, extents, nullptr), H5Sclose, path, "space");
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path, "properties");
+    H5Pset_external(properties.id(), "/etc/passwd", 0, 40);
+    Handle(H5Dcreate2(root.id(), path.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+           H5Dclose, path, "dataset");
+}
+
+/// Text as most programs write it, of no fixed length.
+inline void write_variable_text(const Handle& root) {
+    H5Adelete(root.id(), "study_hash");
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "", ""), space(H5Screate(H5S_SCALAR), H5Sclose, "", "");
+    H5Tset_size(type.id(), H5T_VARIABLE);
+    const Handle attribute(H5Acreate2(root.id(), "study_hash", type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, "", "");
+    const char* text = "text";
+    H5Awrite(attribute.id(), type.id(), &text);
+}
+
+/// The text of a scenario with one key changed.
+inline std::string text_of(const std::string& name, const std::string& key, const std::string& value) {
+    Scenario other = scenario(name);
+    set_key(other, key, value);
+    return scenario_text(other);
+}
+
+}  // namespace credence::test

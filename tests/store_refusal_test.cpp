@@ -1,0 +1,171 @@
+// Room 12, files: what is damaged, foreign or hostile is refused by name and place, before anything is computed.
+
+#include "store_damage.hpp"
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+const std::string arm = "/first/greedy.ekf", other_arm = "/first/fixed.ekf";
+
+const std::vector<Damage> header_damages{
+    {"is not a results file", [](auto& r) { set_text(r, "/", "format", "credence trajectories"); }},
+    {"is not a results file", [](auto& r) { H5Adelete(r.id(), "format"); }},
+    {"/@schema_version: is 2, this program's is 1",
+     [](auto& r) { set_number<std::int32_t>(r, "/", "schema_version", 2); }},
+    {"/@schema_version: holds 64-bit integers, not 32-bit",
+     [](auto& r) { set_number<std::int64_t>(r, "/", "schema_version", 1); }},
+    {"/@schema_version: is missing", [](auto& r) { H5Adelete(r.id(), "schema_version"); }},
+    {"/@root_seed_text: is not root_seed=", [](auto& r) { set_text(r, "/", "root_seed_text", "7"); }},
+    {"/@study_hash: does not belong", [](auto& r) {
+         set_number<std::uint64_t>(r, "/", "root_seed", 7);
+         set_text(r, "/", "root_seed_text", "7");
+     }},
+    {"/@study_hash: does not belong", [](auto& r) { remove(r, "/second"); }},
+    {"/@study_hash: is not text of a fixed length", [](auto& r) { write_variable_text(r); }},
+    {"/@complete: is neither 0 nor 1", [](auto& r) { set_number<std::int8_t>(r, "/", "complete", 2); }},
+    {"/@complete: is not a scalar", [](auto& r) {
+         H5Adelete(r.id(), "complete");
+         hdf5::write_numbers<std::int8_t>(r, "complete", {1});
+     }},
+    {"/run: is missing", [](auto& r) { remove(r, "/run"); }},
+    {"/run: is not a readable group", [](auto& r) { replace<double>(r, "/run", {1}, {}); }},
+    {"/run@fact: is not text", [](auto& r) { set_number<double>(r, "/run", "fact", 1); }},
+};
+
+const std::vector<Damage> scenario_damages{
+    {"/first@scenario: is missing", [](auto& r) { H5Adelete(open(r, "/first").id(), "scenario"); }},
+    {"/first@scenario:2: broken line", [](auto& r) { set_text(r, "/first", "scenario", "[scenario]\nposes 3\n"); }},
+    {"/first@scenario: does not agree",
+     [](auto& r) { set_text(r, "/first", "scenario", scenario_text(scenario("x"))); }},
+    {"/first@title: does not agree", [](auto& r) { set_text(r, "/first", "title", "another"); }},
+    {"/first@length_unit: does not agree", [](auto& r) { set_text(r, "/first", "length_unit", "m"); }},
+    {"/first/greedy.ekf: does not belong here",
+     [](auto& r) { set_text(r, "/first", "scenario", text_of("first", "arms.controllers", "fixed")); }},
+    {"/step: has extents [3], not [4]",
+     [](auto& r) { set_text(r, "/first", "scenario", text_of("first", "scenario.poses", "5")); }},
+    {"/nees_feature_1_run_square_total: does not belong here",
+     [](auto& r) { set_text(r, "/first", "scenario", text_of("first", "features.positions", "0 0")); }},
+    {arm + ": is missing", [](auto& r) { remove(r, arm); }},
+    {"/first/more: does not belong here", [](auto& r) { hdf5::new_group(r, "/first/more"); }},
+    {"/data: is not a readable group", [](auto& r) { replace<double>(r, "/data", {1}, {}); }},
+    {"/soft: is a link", [](auto& r) { H5Lcreate_soft("/first", r.id(), "/soft", H5P_DEFAULT, H5P_DEFAULT); }},
+    {"/external: is a link",
+     [](auto& r) { H5Lcreate_external("other.h5", "/", r.id(), "/external", H5P_DEFAULT, H5P_DEFAULT); }},
+    {"/bell?[31m: is a link",
+     [](auto& r) { H5Lcreate_soft("/first", r.id(), "/bell\x1b[31m", H5P_DEFAULT, H5P_DEFAULT); }},
+};
+
+const std::vector<Damage> arm_damages{
+    {arm + "@counted_trials: is 3, but 4", [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
+    {arm + "/trace_P: is missing", [](auto& r) { remove(r, arm + "/trace_P"); }},
+    {arm + "/extra: does not belong here", [](auto& r) { replace<double>(r, arm + "/extra", {1}, {}); }},
+    {arm + "/trace_P: is not a readable dataset", [](auto& r) {
+         remove(r, arm + "/trace_P");
+         hdf5::new_group(r, arm + "/trace_P");
+     }},
+    {arm + "/trace_P: holds 32-bit integers, not 64-bit floats",
+     [](auto& r) { replace<std::int32_t>(r, arm + "/trace_P", {5}, {}); }},
+    {arm + "/unseen: holds 64-bit floats, not 32-bit integers",
+     [](auto& r) { replace<double>(r, arm + "/unseen", {5}, {}); }},
+    {arm + "/trace_P: has extents [5, 1], not [5]", [](auto& r) { replace<double>(r, arm + "/trace_P", {5, 1}, {}); }},
+    {arm + "/trace_P: has extents [4], not [5]", [](auto& r) { replace<double>(r, arm + "/trace_P", {4}, {}); }},
+    {arm + "/status: holds 4, which is no status",
+     [](auto& r) { replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, 4, 0}); }},
+    {arm + "/status: holds -1, which is no status",
+     [](auto& r) { replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, -1}); }},
+    {arm + "/trial: does not count on by one",
+     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {0, 1, 3, 4, 5}); }},
+    {arm + "/trial: does not count on by one",
+     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {1, 2, 3, 4, 5}); }},
+    {arm + "/trial: has extents [4], not [5]",
+     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {4}, {0, 1, 2, 3}); }},
+    {other_arm + "/trace_P: has extents [5], not [4]",
+     [](auto& r) { replace<std::int64_t>(r, other_arm + "/trial", {4}, {0, 1, 2, 3}); }},
+    {arm + "/step: has extents [2], not [3]", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {2}, {1, 2}); }},
+    {arm + "/step: is not a list", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {3, 1}, {1, 2, 3}); }},
+    {arm + "/part: is empty", [](auto& r) { replace<std::int32_t>(r, arm + "/part", {0}, {}); }},
+    {arm + "/nees_total: has extents [3, 1]", [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 1}, {}); }},
+    {arm + "/nees_total: its parts do not follow",
+     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {0, 1}); }},
+    {arm + "/nees_total: its parts do not follow",
+     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {1, 1}); }},
+    {arm + "/nis_rows_total: holds 64-bit floats",
+     [](auto& r) { replace<double>(r, arm + "/nis_rows_total", {3}, {}); }},
+    {arm + "/trial: [1099511627776] does not fit", [](auto& r) { promise_terabytes(r, arm + "/trial"); }},
+    {arm + "/trace_P: keeps its values in other files", [](auto& r) { keep_elsewhere(r, arm + "/trace_P"); }},
+};
+
+void require_refused(const std::vector<Damage>& damages) {
+    const TemporaryFolder folder;
+    write_results(folder / "good.h5", made_up_study(), {{"fact", "x"}});
+    const std::string good = bytes_of(folder / "good.h5"), path = folder / "bad.h5";
+    for (const Damage& damage : damages) {
+        put_bytes(path, good);
+        {
+            const hdf5::QuietErrors quiet;
+            const Handle root(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, path, "cannot open it");
+            damage.apply(root);
+        }
+        const std::string said = refusal<InputError>([&] { read_results(path); });
+        INFO("expected: " << damage.said);
+        INFO("said: " << said);
+        CHECK(said.find(damage.said) != std::string::npos);
+        CHECK(said.starts_with(path + ": "));
+        CHECK(said.ends_with("."));
+        CHECK(said.find('\n') == std::string::npos);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("store: a header that is not of this program, this version or this study is refused") {
+    require_refused(header_damages);
+}
+
+TEST_CASE("store: scenarios that do not agree with their text are refused") { require_refused(scenario_damages); }
+
+TEST_CASE("store: columns and totals that do not agree with the scenario or each other are refused") {
+    require_refused(arm_damages);
+}
+
+TEST_CASE("store: what is not a whole HDF5 file is refused") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "file.h5";
+    write_results(path, made_up_study(), {});
+    const std::string good = bytes_of(path);
+    const auto said = [&](const std::string& bytes) {
+        put_bytes(path, bytes);
+        return refusal<InputError>([&] { read_results(path); });
+    };
+    CHECK(said("").find("is not an HDF5 file") != std::string::npos);
+    CHECK(said("trial,trace_P\n0,0.1\n").find("is not an HDF5 file") != std::string::npos);
+    CHECK(said("x" + good).find("is not an HDF5 file") != std::string::npos);
+    for (const std::size_t kept : {std::size_t{8}, std::size_t{100}, good.size() / 2, good.size() - 1}) {
+        INFO("the first " << kept << " of " << good.size() << " bytes");
+        CHECK(said(good.substr(0, kept)).find("is truncated or damaged") != std::string::npos);
+    }
+    CHECK(said(good).empty());
+    CHECK(refusal<InputError>([&] { read_results(folder / "none.h5"); }).find("cannot be found") != std::string::npos);
+    CHECK(refusal<InputError>([&] { read_results(folder / ""); }).find("is not a regular file") != std::string::npos);
+    CHECK(refusal<InputError>([] { read_results("/dev/null"); }).find("is not a regular file") != std::string::npos);
+}
+
+TEST_CASE("store: a flipped byte is mostly refused, and never crashes the reader") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "flipped.h5";
+    Study study = new_study({scenario("one", "translation")}, 1);
+    write_results(path, study, {{"fact", "x"}});
+    const std::string good = bytes_of(path);
+    std::size_t refused = 0;
+    // A prime step, so that all fields of HDF5's structures come up.
+    constexpr std::size_t step = 211;
+    for (std::size_t at = 0; at < good.size(); at += step) {
+        std::string bad = good;
+        bad[at] = static_cast<char>(bad[at] ^ 0x40);
+        put_bytes(path, bad);
+        refused += !refusal<InputError>([&] { read_results(path); }).empty();
+    }
+    CHECK(refused > good.size() / step / 2);
+}

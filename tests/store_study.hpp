@@ -1,0 +1,109 @@
+#pragma once
+// Small studies, folders and damaged files for the tests of the store.
+
+#include <credence/error.hpp>
+#include <credence/ini.hpp>
+#include <credence/store.hpp>
+
+#include "catch.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace credence::test {
+
+/// A folder of the test's own, gone with it.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "credence_XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+        path_ = name;
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+    std::size_t entries() const {
+        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline std::string bytes_of(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void put_bytes(const std::string& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// What a call says when it refuses; empty where it does not.
+template <class Problem, class Call>
+std::string refusal(Call call) {
+    try {
+        call();
+    } catch (const Problem& problem) {
+        return problem.what();
+    }
+    return {};
+}
+
+inline Scenario scenario(const std::string& name, const std::string& process = "heading") {
+    return read_scenario_text("[scenario]\nname = " + name + "\ntitle = größer als 1\nposes = 4\n" +
+                                  "[model]\nprocess = " + process, name, name);
+}
+
+/// Sums that need one, two and more parts, are negative, or are not finite.
+inline ExactSum awkward_sum(std::size_t i) {
+    switch (i % 5) {
+        case 0: return ExactSum::from_parts({0.1 * static_cast<double>(i)});
+        case 1: return ExactSum::from_parts({1e16, 1, 1e-10});
+        case 2: return ExactSum::from_parts({-1.0 / 3, 1e-30});
+        case 3: return ExactSum::from_parts({1e200, -1, 1e-200, 3});
+        default: return i == 4 ? ExactSum::from_parts({NAN}) : ExactSum();
+    }
+}
+
+/// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 diverged.
+inline Study made_up_study() {
+    Study study = new_study({scenario("first"), scenario("second", "translation")}, 18446744073709551615u);
+    for (ScenarioResults& results : study.scenarios) {
+        extend(results, 5);
+        for (ArmResults& arm : results.arms) {
+            arm.counted = 4;
+            for (std::size_t c = 0; c < results.columns.size(); ++c)
+                for (std::size_t i = 0; i < 5; ++i) {
+                    const bool real = results.columns[c].type == ColumnType::real;
+                    arm.columns[c][i] = real ? std::sqrt(static_cast<double>(7 * c + i)) : static_cast<double>(c + i);
+                }
+            arm.columns[column_status] = {0, 2, 0, 1, 0};
+            arm.columns[column_trace_P][1] = -NAN;
+            arm.columns[column_unseen][1] = -1;
+            std::size_t next = 0;
+            for (std::size_t f = 0; f < results.figures.size(); ++f) {
+                const bool integer = results.figures[f].integer;
+                for (ExactSum& sum : arm.totals[f].sum) {
+                    sum = integer ? ExactSum::from_parts({0x1p60, 1, -static_cast<double>(next)}) : awkward_sum(next);
+                    ++next;
+                }
+                for (ExactSum& sum : arm.totals[f].square_sum) sum = awkward_sum(next++);
+                arm.totals[f].run_square_sum = awkward_sum(next++);
+            }
+        }
+    }
+    return study;
+}
+
+inline const RunFacts run_facts{{"zebra", "first in order"}, {"compiler", "g++ ü"}, {"empty", ""}};
+
+}  // namespace credence::test

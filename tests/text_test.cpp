@@ -1,0 +1,104 @@
+// Room 3: numbers and lists as text.
+
+#include "catch.hpp"
+
+#include <credence/real.hpp>
+#include <credence/text.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace credence;
+
+namespace {
+using Parts = std::vector<std::string>;
+}
+
+TEST_CASE("text: a number's text reads back to the same bits") {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 50000; ++i) {
+        const double value = from_bits(random());
+        if (std::isnan(value)) continue;
+        const std::optional<double> back = to_number(to_text(value));
+        REQUIRE(back.has_value());
+        REQUIRE(bits_of(*back) == bits_of(value));
+    }
+}
+
+TEST_CASE("text: a number's text is the shortest") {
+    CHECK(to_text(0.1) == "0.1");
+    CHECK(to_text(2) == "2");
+    CHECK(to_text(0.31415926535897931) == "0.3141592653589793");
+    CHECK(to_text(1e300) == "1e+300");
+    CHECK(to_text(-0.0) == "-0");
+    CHECK(to_text(std::numeric_limits<double>::infinity()) == "inf");
+}
+
+TEST_CASE("text: numbers are read whole or not at all") {
+    CHECK(to_number("1.5") == 1.5);
+    CHECK(to_number("+1.5") == 1.5);
+    CHECK(to_number("-1e-3") == -1e-3);
+    CHECK(to_number("inf") == std::numeric_limits<double>::infinity());
+    CHECK(to_number("-inf") == -std::numeric_limits<double>::infinity());
+    CHECK(std::isnan(to_number("nan").value()));
+    for (const char* text : {"", " ", "+", "-", "1.5 ", " 1.5", "1,5", "1.5x", "0x10", "1e", "e3", "--1", "++1", "1e999",
+                             "one", "1.2.3", "1 2"}) {
+        CAPTURE(text);
+        CHECK_FALSE(to_number(text).has_value());
+    }
+}
+
+TEST_CASE("text: whole numbers may be written as 1e6 and must fit") {
+    CHECK(to_integer("20") == 20);
+    CHECK(to_integer("-3") == -3);
+    CHECK(to_integer("1e6") == 1000000);
+    CHECK(to_integer("2.5e1") == 25);
+    CHECK(to_integer("9223372036854775807") == std::numeric_limits<std::int64_t>::max());
+    CHECK(to_integer("-9223372036854775808") == std::numeric_limits<std::int64_t>::min());
+    CHECK(to_integer("9007199254740992.0") == 9007199254740992);
+    for (const char* text : {"", "1.5", "1e-1", "9223372036854775808", "1e17", "inf", "nan", "-inf", "twelve", "1 000", "0x10",
+                             "12a", "1e400"}) {
+        CAPTURE(text);
+        CHECK_FALSE(to_integer(text).has_value());
+    }
+}
+
+TEST_CASE("text: white space is trimmed at both ends only") {
+    CHECK(trimmed("  a b\t\r") == "a b");
+    CHECK(trimmed("a") == "a");
+    CHECK(trimmed(" \t ") == "");
+    CHECK(trimmed("") == "");
+}
+
+TEST_CASE("text: lists are split at commas and trimmed") {
+    CHECK(split_list("a, b ,c") == Parts{"a", "b", "c"});
+    CHECK(split_list("a") == Parts{"a"});
+    CHECK(split_list("") == Parts{});
+    CHECK(split_list("   ") == Parts{});
+    CHECK(split_list("a,") == Parts{"a", ""});
+    CHECK(split_list(",a") == Parts{"", "a"});
+    CHECK(split_list("a,,b") == Parts{"a", "", "b"});
+    CHECK(split_list("0.5 0.5; 1 2", ';') == Parts{"0.5 0.5", "1 2"});
+}
+
+TEST_CASE("text: lists are joined by what they are split at") {
+    CHECK(joined({}) == "");
+    CHECK(joined({"a"}) == "a");
+    CHECK(joined({"a", "b", "c"}) == "a, b, c");
+    CHECK(joined({"a", "b"}, "-") == "a-b");
+    const Parts parts{"x y", "z"};
+    CHECK(split_list(joined(parts)) == parts);
+}
+
+TEST_CASE("text: the closest word is found if it is close") {
+    const Parts words{"noise.heading", "noise.odometry", "noise.walk", "sensor.noise", "scenario.poses"};
+    CHECK(closest("noise.headin", words) == "noise.heading");
+    CHECK(closest("noise.odometri", words) == "noise.odometry");
+    CHECK(closest("nosie.walk", words) == "noise.walk");
+    CHECK(closest("scenario.pose", words) == "scenario.poses");
+    CHECK(closest("noise.walk", words) == "noise.walk");
+    CHECK(closest("xyzzy", words) == "");
+    CHECK(closest("", words) == "");
+    CHECK(closest("noise.walk", {}) == "");
+}
