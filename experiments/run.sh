@@ -6,6 +6,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source experiments/setup.sh
 install_missing $build_packages
-build build credence
+tests=()
+[ -f build/CMakeCache.txt ] || tests=(-DCREDENCE_TESTS=OFF)  # the tests need more packages: tests/run.sh turns them on
+build build credence "${tests[@]}"
 mkdir -p results
 build/credence run experiments/seed/*.ini -o results/seed.h5 --resume "$@"

@@ -108,14 +108,11 @@ std::vector<std::string> attribute_names(const Handle& object) {
 bool has_link(const Handle& group, const std::string& name) {
     return H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) > 0;
 }
-
-bool has_attribute(const Handle& object, const std::string& name) {
-    return H5Aexists(object.id(), name.c_str()) > 0;
-}
+bool has_attribute(const Handle& object, const std::string& name) { return H5Aexists(object.id(), name.c_str()) > 0; }
 
 Handle open_group(const Handle& parent, const std::string& name) {
     return {H5Gopen2(parent.id(), hard(parent, name).c_str(), H5P_DEFAULT), H5Gclose, place_of(parent, name),
-            "is not a readable group"};
+            "is no readable group"};
 }
 
 std::string read_text(const Handle& object, const std::string& name) {
@@ -145,8 +142,7 @@ void read_attribute(const Handle& object, const std::string& name, Type type, vo
 
 Dataset::Dataset(const Handle& group, const std::string& name)
     : place_(place_of(group, name)),
-      dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_,
-               "is not a readable dataset"),
+      dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_, "is no readable dataset"),
       type_(H5Dget_type(dataset_.id()), H5Tclose, place_, "HDF5 cannot read its type") {
     const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, "HDF5 cannot read its extents");
     const int rank = H5Sget_simple_extent_ndims(space.id());
@@ -163,10 +159,9 @@ void Dataset::check_storage() const {
     const H5D_layout_t layout = H5Pget_layout(creation.id());
     if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
         throw Error(place_, "keeps its values in other files", "Copy them into this one");
+    if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
     hsize_t room = file_size(dataset_) * (layout == H5D_CHUNKED ? largest_compression : 1) /
                    std::max<hsize_t>(H5Tget_size(type_.id()), 1);
-    const bool empty = std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end();
-    if (empty) return;
     if (H5Dget_storage_size(dataset_.id()) == 0) throw Error(place_, "has no values");
     for (const hsize_t extent : extents_) room /= extent;
     if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into the file");

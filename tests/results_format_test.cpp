@@ -46,7 +46,7 @@ TEST_CASE("results format: the documentation names every variable and attribute"
                                              replay_trial(Problem(wide), Controller::fixed, 1, 0)}, {});
     std::set<std::string> names;
     for (const char* file : {"study.h5", "trace.h5"}) collect_names(hdf5::open_file(folder / file), names);
-    for (const char* hdf5_own : {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}) CHECK(names.erase(hdf5_own) == 1);
+    for (const char* of_hdf5 : {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}) CHECK(names.erase(of_hdf5) == 1);
     CHECK(names.count("candidate_cost") + names.count("innovation_omitted") + names.count("F_run_square_total") == 3);
 
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");

@@ -30,7 +30,7 @@ const std::vector<Damage> header_damages{
          hdf5::write_numbers<std::int8_t>(r, "complete", {1});
      }},
     {"/run: is missing", [](auto& r) { remove(r, "/run"); }},
-    {"/run: is not a readable group", [](auto& r) { replace<double>(r, "/run", {1}, {}); }},
+    {"/run: is no readable group", [](auto& r) { replace<double>(r, "/run", {1}, {}); }},
     {"/run@fact: is not text", [](auto& r) { set_number<double>(r, "/run", "fact", 1); }},
 };
 
@@ -49,7 +49,7 @@ const std::vector<Damage> scenario_damages{
      [](auto& r) { set_text(r, "/first", "scenario", text_of("first", "features.positions", "0 0")); }},
     {arm + ": is missing", [](auto& r) { remove(r, arm); }},
     {"/first/more: does not belong here", [](auto& r) { hdf5::new_group(r, "/first/more"); }},
-    {"/data: is not a readable group", [](auto& r) { replace<double>(r, "/data", {1}, {}); }},
+    {"/data: is no readable group", [](auto& r) { replace<double>(r, "/data", {1}, {}); }},
     {"/soft: is a link", [](auto& r) { H5Lcreate_soft("/first", r.id(), "/soft", H5P_DEFAULT, H5P_DEFAULT); }},
     {"/external: is a link",
      [](auto& r) { H5Lcreate_external("other.h5", "/", r.id(), "/external", H5P_DEFAULT, H5P_DEFAULT); }},
@@ -61,7 +61,7 @@ const std::vector<Damage> arm_damages{
     {arm + "@counted_trials: is 3, but 4", [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
     {arm + "/trace_P: is missing", [](auto& r) { remove(r, arm + "/trace_P"); }},
     {arm + "/extra: does not belong here", [](auto& r) { replace<double>(r, arm + "/extra", {1}, {}); }},
-    {arm + "/trace_P: is not a readable dataset", [](auto& r) {
+    {arm + "/trace_P: is no readable dataset", [](auto& r) {
          remove(r, arm + "/trace_P");
          hdf5::new_group(r, arm + "/trace_P");
      }},

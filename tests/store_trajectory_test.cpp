@@ -134,8 +134,9 @@ TEST_CASE("store: a trajectory has nothing but NaN and -1 where no step led to")
     const Trajectory trajectory = replay_trial(Problem(scenario("one")), Controller::greedy, 1, 0);
     write_trajectories(folder / "trace.h5", {trajectory}, {});
     const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "one", "greedy.ekf");
-    for (const char* name : {"predicted_mean", "predicted_covariance", "nees", "nis", "control_turn", "control_move",
-                             "measurement_sigma", "measurement", "innovation", "innovation_covariance", "candidate_cost"}) {
+    for (const char* name :
+         {"predicted_mean", "predicted_covariance", "nees", "nis", "control_turn", "control_move", "measurement_sigma",
+          "measurement", "innovation", "innovation_covariance", "candidate_cost"}) {
         INFO(name);
         const std::vector<double> all = hdf5::Dataset(group, name).read<double>();
         const auto second_pose = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 4);
@@ -161,7 +162,7 @@ TEST_CASE("store: trajectories lie in groups by scenario and arm, with the trial
     CHECK(hdf5::link_names(root) == std::vector<std::string>{"first", "second", "run"});
     const Handle greedy = group_of(root, "first", "greedy.ekf");
     CHECK(hdf5::read_number<double>(greedy, "trace_P") == trajectories[1].columns[column_trace_P]);
-    CHECK(hdf5::read_number<std::int32_t>(greedy, "unseen") == static_cast<int>(trajectories[1].columns[column_unseen]));
+    CHECK(hdf5::read_number<std::int32_t>(greedy, "unseen") == trajectories[1].columns[column_unseen]);
     CHECK(hdf5::read_number<std::int8_t>(greedy, "status") == 2);
     CHECK(hdf5::read_text(greedy, "status_text") == "covariance_not_positive_definite");
     CHECK(!hdf5::has_link(group_of(root, "second", "fixed.kf"), "candidate"));

@@ -3,11 +3,8 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-#include <credence/error.hpp>
-
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 #include <tuple>
 
