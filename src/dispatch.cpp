@@ -2,7 +2,7 @@
 
 namespace credence {
 
-namespace portable {
+inline namespace portable {  // CREDENCE_UNIT by default, hence inline here too
 void simulate(const ProblemView&, const Batch&);
 }
 #ifdef CREDENCE_HAS_V3

@@ -142,7 +142,8 @@ void read_attribute(const Handle& object, const std::string& name, Type type, vo
 
 Dataset::Dataset(const Handle& group, const std::string& name)
     : place_(place_of(group, name)),
-      dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_, "is no readable dataset"),
+      dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_,
+               "is no readable dataset"),
       type_(H5Dget_type(dataset_.id()), H5Tclose, place_, "HDF5 cannot read its type") {
     const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, "HDF5 cannot read its extents");
     const int rank = H5Sget_simple_extent_ndims(space.id());

@@ -33,7 +33,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
     if (bare.empty()) return {};
     if (bare.front() == '[') {
         if (bare.back() != ']' || bare.size() < 3)
-            throw InputError(place(origin, line) + "broken section `" + bare.substr(0, 60) + "`. Write [section].");
+            throw InputError(place(origin, line) + "broken section `" + printable(bare) + "`. Write [section].");
         section = trimmed(std::string_view(bare).substr(1, bare.size() - 2));
         return {};
     }
@@ -44,7 +44,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
         for (const auto& option : po::parse_config_file(stream, nothing_declared, true).options)
             read.push_back({option.string_key, trimmed(joined(option.value)), line});
     } catch (const po::error&) {
-        throw InputError(place(origin, line) + "broken line `" + bare.substr(0, 60) + "`. Write key = value.");
+        throw InputError(place(origin, line) + "broken line `" + printable(bare) + "`. Write key = value.");
     }
     return read;
 }
@@ -58,7 +58,7 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
         for (Assignment& one : read_line(line, origin, number, section)) {
             const auto [first, is_new] = lines.emplace(one.key, number);
             if (!is_new)
-                throw InputError(place(origin, number) + "repeated key " + one.key + " (it stands in line " +
+                throw InputError(place(origin, number) + "repeated key " + printable(one.key) + " (it stands in line " +
                                  std::to_string(first->second) + " already). Keep one of them.");
             all.push_back(std::move(one));
         }
@@ -84,7 +84,7 @@ Scenario read_scenario_text(const std::string& text, const std::string& origin, 
         try {
             set_key(scenario, key, value);
         } catch (const InputError& error) {
-            throw InputError("--set " + key + ": " + error.what(), error.key());
+            throw InputError("--set " + printable(key) + ": " + error.what(), error.key());
         }
         lines.erase(key);
     }

@@ -163,7 +163,7 @@ void set_key(Scenario& scenario, const std::string& name, const std::string& val
         names.push_back(key.name);
     }
     const std::string meant = closest(name, names);
-    throw InputError("unknown key " + name + ". " +
+    throw InputError("unknown key " + printable(name) + ". " +
                          (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
                      name);
 }

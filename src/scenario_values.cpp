@@ -83,7 +83,7 @@ std::vector<Point> parse_positions(const std::string& value) {
         positions.push_back({parse_real(name, x, anywhere), parse_real(name, y, anywhere)});
     }
     if (positions.empty() || positions.size() > largest_feature_count)
-        throw invalid_value(name, value.substr(0, 40), std::to_string(positions.size()) + " features",
+        throw invalid_value(name, value, std::to_string(positions.size()) + " features",
                             "Give 1 to " + std::to_string(largest_feature_count) + " as `x y, x y`");
     return positions;
 }
@@ -138,7 +138,7 @@ std::optional<std::vector<double>> parse_turns(const std::string& value) {
     std::vector<double> turns;
     for (const std::string& part : split_list(value)) turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
     if (turns.empty() || turns.size() > 100)
-        throw invalid_value("planner.turns", value.substr(0, 40), std::to_string(turns.size()) + " turns", "Give 1 to 100, in radians");
+        throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns", "Give 1 to 100, in radians");
     return turns;
 }
 

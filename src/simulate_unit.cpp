@@ -9,16 +9,24 @@ inline namespace CREDENCE_UNIT {
 
 namespace {
 
+/// Puts one trial's numbers into its place of the octets.
+void scatter(const double* from, int count, double* to) {
+    for (int i = 0; i < count; ++i) to[i * octet] = from[i];
+}
+
 template <Process process, int compiled_features>
 void simulate_layout(const ProblemView& problem, const Batch& batch) {
-    const int steps = problem.poses - 1;
+    const int cells = problem.figure_count * (problem.poses - 1);
     for (int i = 0; i < batch.trials; ++i) {
         const KeyedDraws<double> draws(batch.root_seed, static_cast<std::uint64_t>(batch.first_trial + i),
                                        problem.world.truncate);
         NoObserver nobody;
-        const std::int64_t figures = static_cast<std::int64_t>(i) * problem.figure_count * steps;
-        run_trial<Layout<process, compiled_features>>(problem, batch.controller, draws, nobody,
-                                                      batch.columns + i * column_count, batch.figures + figures);
+        double* columns = batch.scratch;
+        double* figures = columns + column_count;
+        run_trial<Layout<process, compiled_features>>(problem, batch.controller, draws, nobody, columns, figures);
+        const std::int64_t place = i / octet;
+        scatter(columns, column_count, batch.columns + place * column_count * octet + i % octet);
+        scatter(figures, cells, batch.figures + place * cells * octet + i % octet);
     }
 }
 

@@ -72,7 +72,7 @@ TEST_CASE("cli: report as CSV has a row per arm and figure, and -o writes a file
     CHECK(rows.out == "15\n");  // 2 arms and their pair, 5 figures each
 }
 
-TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives") {
+TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives", "[long]") {
     const Workplace here;
     const std::string scenarios = "run " + seed_scenario("ekf-circle-ranged") + " " + seed_scenario("kf-straight-constant") + " --quiet ";
     REQUIRE(here.credence(scenarios + "--trials 3000 --threads 1 -o one.h5").exit_code == 0);
@@ -192,7 +192,7 @@ TEST_CASE("cli: a replay that differs from what is stored fails with exit code 1
     CHECK_THAT(replay.err, Contains("differs") && Contains("trace_P"));
 }
 
-TEST_CASE("cli: report --require consistent fails for a pessimistic filter and passes for a matched one") {
+TEST_CASE("cli: report --require consistent fails for a pessimistic filter and passes for a matched one", "[long]") {
     const Workplace here;
     here.write("matched.ini",
                "[model]\nprocess = translation\n[truth]\ndeformation = walk\nedge_noise = independent\n"

@@ -48,7 +48,7 @@ bool has(const Consistency& consistency, const std::string& what, const std::str
 
 }  // namespace
 
-TEST_CASE("consistency: the matched linear filter is consistent") {
+TEST_CASE("consistency: the matched linear filter is consistent", "[long]") {
     const Consistency c = verdict_of(matched(), 20000);
     CHECK(verdict_name(c.verdict) == "consistent");
     CHECK(c.findings.empty());
@@ -76,7 +76,7 @@ TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic
     CHECK_FALSE(has(c, "optimistic", "pose"));
 }
 
-TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic") {
+TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic", "[long]") {
     Scenario s = matched();
     s.filter.covariance = 1.1;
     const Consistency c = verdict_of(s, 20000);
@@ -85,7 +85,7 @@ TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic
     CHECK(has(c, "pessimistic", "all"));
 }
 
-TEST_CASE("consistency: errors that cancel in one average are mixed") {
+TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") {
     // statistics.md: the seed's EKF with sigma_head = 0.042 gives 0.97 over all, 1.20 for the pose, 0.70 for the features.
     Scenario s;
     s.noise.heading = 0.042;
@@ -97,7 +97,7 @@ TEST_CASE("consistency: errors that cancel in one average are mixed") {
     CHECK(has(c, "pessimistic", "features"));
 }
 
-TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent") {
+TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent", "[long]") {
     ScenarioResults results = simulated(matched(), 20000);
     REQUIRE(judge(results, results.arms.front(), 0.05).verdict == Verdict::consistent);
     const auto bias = std::find_if(results.figures.begin(), results.figures.end(),
@@ -113,7 +113,7 @@ TEST_CASE("consistency: a bias of one component is found and named, and keeps a 
     CHECK(c.findings.front().when == "step 7");
 }
 
-TEST_CASE("consistency: trouble at some steps only is found there") {
+TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
     ScenarioResults results = simulated(matched(), 20000);
     FigureTotals& whole = results.arms.front().totals.front();
     for (const std::size_t k : {2u, 3u, 4u, 8u}) {  // 10 % more NEES at steps 3 to 5 and 9
@@ -128,7 +128,7 @@ TEST_CASE("consistency: trouble at some steps only is found there") {
     CHECK(sentence(c.findings.front()).find("optimistic: all, steps 3 to 5, 9, NEES/dim 1.1") == 0);
 }
 
-TEST_CASE("consistency: a wider margin forgives more") {
+TEST_CASE("consistency: a wider margin forgives more", "[long]") {
     Scenario s = matched();
     s.filter.covariance = 1.1;
     CHECK(verdict_name(verdict_of(s, 20000, 0.15).verdict) == "consistent");

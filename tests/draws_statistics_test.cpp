@@ -78,7 +78,7 @@ TEST_CASE("draws: moments of the normal draws are a normal's") {
     CHECK(std::abs(mean(x, [](double v) { return v * v * v * v; }) - 3) * std::sqrt(n / 96) < 5);
 }
 
-TEST_CASE("draws: normal draws are distributed as a normal, from every source") {
+TEST_CASE("draws: normal draws are distributed as a normal, from every source", "[long]") {
     // Seven looks, each a false alarm with 9e-7.
     for (std::uint32_t source = 0; source < 7; ++source)
         CHECK(kolmogorov(components(normal_pairs(2, never, Source{source})), normal_cdf) < kolmogorov_bound);
@@ -121,7 +121,7 @@ TEST_CASE("draws: uniforms fill 0 to 1 evenly and know nothing of the normals") 
     CHECK(std::abs(correlation_score(uniforms, normals)) < 5);  // 6e-7
 }
 
-TEST_CASE("draws: truncation keeps within its multiple of sigma and has a truncated normal's distribution") {
+TEST_CASE("draws: truncation keeps within its multiple of sigma and has a truncated normal's distribution", "[long]") {
     for (const double t : {0.1, 0.5, 2.0, 3.0}) {
         const std::vector<double> x = components(normal_pairs(5, t));
         CAPTURE(t);

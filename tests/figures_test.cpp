@@ -55,7 +55,7 @@ Scenario matched(Process process, double sigma_heading) {
 
 }  // namespace
 
-TEST_CASE("figures: translation, straight, constant noise, fixed path") {
+TEST_CASE("figures: translation, straight, constant noise, fixed path", "[long]") {
     const ScenarioResults r = run(cell(Process::translation, Path::straight, RangeNoise::constant), 10000);
     const Summary trace = column(r, 0, column_trace_P);
     check_mean(trace, 0.157, 0.003);
@@ -65,13 +65,13 @@ TEST_CASE("figures: translation, straight, constant noise, fixed path") {
     CHECK(column(r, 1, column_unseen).mean > column(r, 0, column_unseen).mean);  // planning sees fewer here
 }
 
-TEST_CASE("figures: translation, circle, constant noise, fixed path") {
+TEST_CASE("figures: translation, circle, constant noise, fixed path", "[long]") {
     const ScenarioResults r = run(cell(Process::translation, Path::circle, RangeNoise::constant), 10000);
     check_mean(column(r, 0, column_trace_P), 0.491, 0.018);
     CHECK(column(r, 0, column_unseen).mean == Approx(44.9).margin(0.3));
 }
 
-TEST_CASE("figures: heading, circle, constant noise, both paths") {
+TEST_CASE("figures: heading, circle, constant noise, both paths", "[long]") {
     const ScenarioResults r = run(cell(Process::heading, Path::circle, RangeNoise::constant), 10000);
     check_mean(column(r, 0, column_trace_P), 0.260, 0.009);
     CHECK(column(r, 0, column_unseen).mean == Approx(30.8).margin(0.4));
@@ -79,7 +79,7 @@ TEST_CASE("figures: heading, circle, constant noise, both paths") {
     CHECK(column(r, 1, column_unseen).mean == Approx(12.5).margin(1.2));  // theirs: 400 trials
 }
 
-TEST_CASE("figures: the filter is pessimistic about the features and right about the robot in all 16 cells") {
+TEST_CASE("figures: the filter is pessimistic about the features and right about the robot in all 16 cells", "[long]") {
     for (const Process process : {Process::heading, Process::translation})
         for (const Path path : {Path::straight, Path::circle})
             for (const RangeNoise noise : {RangeNoise::constant, RangeNoise::ranged}) {
@@ -96,19 +96,19 @@ TEST_CASE("figures: the filter is pessimistic about the features and right about
             }
 }
 
-TEST_CASE("figures: the matched linear filter is exact") {
+TEST_CASE("figures: the matched linear filter is exact", "[long]") {
     const ScenarioResults r = run(matched(Process::translation, 0.001), 20000);
     check_mean(column(r, 0, column_nees_ratio), 1, 0);
     check_mean(column(r, 0, column_nis_ratio), 1, 0);
 }
 
-TEST_CASE("figures: the matched heading filter shows its linearisation error") {
+TEST_CASE("figures: the matched heading filter shows its linearisation error", "[long]") {
     check_mean(column(run(matched(Process::heading, 0.001), 10000), 0, column_nees_ratio), 1.0006, 0.0040);
     check_mean(column(run(matched(Process::heading, 0.01), 10000), 0, column_nees_ratio), 1.019, 0.004);
     check_mean(column(run(matched(Process::heading, 0.05), 10000), 0, column_nees_ratio), 1.188, 0.005);
 }
 
-TEST_CASE("figures: gating on the true range biases even the linear filter a little") {
+TEST_CASE("figures: gating on the true range biases even the linear filter a little", "[long]") {
     Scenario s = matched(Process::translation, 0.001);
     s.sensor.range_min = 0.1;
     s.sensor.range_max = 2;
@@ -117,7 +117,7 @@ TEST_CASE("figures: gating on the true range biases even the linear filter a lit
     CHECK(gated.ci95.low > 1);
 }
 
-TEST_CASE("figures: misinformed filters are off where they were misinformed") {
+TEST_CASE("figures: misinformed filters are off where they were misinformed", "[long]") {
     Scenario s = matched(Process::translation, 0.001);
     s.filter.measurement = 0.8;
     ScenarioResults r = run(s, 10000);

@@ -80,8 +80,8 @@ std::string scattered(int count) {
     std::mt19937 random(static_cast<unsigned>(count));
     std::uniform_int_distribution<int> place(-100, 100);
     std::string text;
-    for (int j = 0; j < count; ++j)
-        text += (j ? ", " : "") + std::to_string(place(random) / 100.0) + " " + std::to_string(place(random) / 100.0);
+    for (int coordinate = 0; coordinate < 2 * count; ++coordinate)
+        text += (coordinate == 0 ? "" : coordinate % 2 ? " " : ", ") + std::to_string(place(random) / 100.0);
     return text;
 }
 

@@ -7,7 +7,6 @@
 
 #include <hdf5_hl.h>
 
-#include <regex>
 #include <set>
 
 using namespace credence;
@@ -27,8 +26,9 @@ void collect_names(const hdf5::Handle& object, std::set<std::string>& names) {
         if (H5Aexists(child.id(), "figure") > 0) {
             const std::string figure = hdf5::read_text(child, "figure");
             names.insert("F" + name.substr(figure.size()));
-            const std::string shown = std::regex_replace(figure, std::regex("feature_[0-9]+"), "feature_J");
-            names.insert(std::regex_replace(shown, std::regex("(standardised_error_).*"), "$1COMPONENT"));
+            const auto is = [&](const std::string& start) { return figure.starts_with(start); };
+            names.insert(is("nees_feature_") ? "nees_feature_J"
+                         : is("standardised_error_") ? "standardised_error_COMPONENT" : figure);
         } else {
             names.insert(name);
         }
@@ -53,7 +53,7 @@ TEST_CASE("results format: the documentation names every variable and attribute"
     CHECK(page.find("schema version " + std::to_string(schema_version) + " of the two files") != std::string::npos);
     for (const std::string& name : names) {
         INFO(name);
-        CHECK(std::regex_search(page, std::regex("`" + name + "[` ]")));
+        CHECK((page.find("`" + name + "`") != std::string::npos || page.find("`" + name + " ") != std::string::npos));
     }
     for (const std::string& status : status_names()) CHECK(page.find(status) != std::string::npos);
 }

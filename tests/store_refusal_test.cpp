@@ -2,6 +2,8 @@
 
 #include "store_damage.hpp"
 
+#include <sys/wait.h>
+
 using namespace credence;
 using namespace credence::test;
 
@@ -149,23 +151,31 @@ TEST_CASE("store: what is not a whole HDF5 file is refused") {
     CHECK(said(good).empty());
     CHECK(refusal<InputError>([&] { read_results(folder / "none.h5"); }).find("cannot be found") != std::string::npos);
     CHECK(refusal<InputError>([&] { read_results(folder / ""); }).find("is not a regular file") != std::string::npos);
-    CHECK(refusal<InputError>([] { read_results("/dev/null"); }).find("is not a regular file") != std::string::npos);
+    REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
+    CHECK(refusal<InputError>([&] { read_results(folder / "pipe"); }).find("is not a regular file") != std::string::npos);
 }
 
 TEST_CASE("store: a flipped byte is mostly refused, and never crashes the reader") {
     const TemporaryFolder folder;
     const std::string path = folder / "flipped.h5";
-    Study study = new_study({scenario("one", "translation")}, 1);
-    write_results(path, study, {{"fact", "x"}});
+    write_results(path, new_study({scenario("one", "translation")}, 1), {{"fact", "x"}});
     const std::string good = bytes_of(path);
-    std::size_t refused = 0;
-    // A prime step, so that all fields of HDF5's structures come up.
-    constexpr std::size_t step = 211;
-    for (std::size_t at = 0; at < good.size(); at += step) {
-        std::string bad = good;
-        bad[at] = static_cast<char>(bad[at] ^ 0x40);
-        put_bytes(path, bad);
-        refused += !refusal<InputError>([&] { read_results(path); }).empty();
+    // In a process of its own: a crash is a failure, not the tests' end, and HDF5 1.10 leaks what it could not parse.
+    const pid_t child = fork();
+    if (child == 0) {
+        constexpr std::size_t step = 211;  // a prime, so that all fields of HDF5's structures come up
+        std::size_t refused = 0, flipped = 0;
+        for (std::size_t at = 0; at < good.size(); at += step) {
+            std::string bad = good;
+            bad[at] = static_cast<char>(bad[at] ^ 0x40);
+            put_bytes(path, bad);
+            refused += !refusal<InputError>([&] { read_results(path); }).empty();
+            ++flipped;
+        }
+        _exit(refused > flipped / 2 ? 0 : 1);
     }
-    CHECK(refused > good.size() / step / 2);
+    int status = -1;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
 }

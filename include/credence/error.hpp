@@ -25,10 +25,19 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// What somebody gave, fit to stand in a message: control characters become `?`, and a long text is cut.
+inline std::string printable(const std::string& given) {
+    constexpr std::size_t longest = 100;
+    std::string text = given.size() > longest ? given.substr(0, longest) + "..." : given;
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return text;
+}
+
 /// `invalid NAME=VALUE (WHY). REMEDY`: the one grammar of every refused value.
 inline InputError invalid_value(const std::string& name, const std::string& value, const std::string& why,
                                 const std::string& remedy) {
-    return InputError("invalid " + name + "=" + value + " (" + why + "). " + remedy + ".", name);
+    return InputError("invalid " + printable(name) + "=" + printable(value) + " (" + printable(why) + "). " + remedy + ".", name);
 }
 
 }  // namespace credence

@@ -8,14 +8,18 @@
 
 namespace credence {
 
-/// Some consecutive trials of one arm. Results are row-major by trial, and the same bits from every unit.
+/// Trials are stored eight by eight, one next to the other: a pack of lanes writes its results where they belong.
+inline constexpr int octet = 8;
+
+/// Consecutive trials of one arm. Results are the same bits from every unit.
 struct Batch {
     Controller controller = Controller::fixed;
     std::uint64_t root_seed = 0;
     std::int64_t first_trial = 0;
     int trials = 0;
-    double* columns = nullptr;  ///< [trials, column_count], a failed trial's still unfilled
-    double* figures = nullptr;  ///< [trials, figure_count, K - 1]
+    double* columns = nullptr;  ///< [octets, column_count, 8], a failed trial's still unfilled
+    double* figures = nullptr;  ///< [octets, figure_count, K - 1, 8]
+    double* scratch = nullptr;  ///< [column_count + figure_count (K - 1)]
 };
 
 using SimulateFunction = void (*)(const ProblemView&, const Batch&);

@@ -61,11 +61,12 @@ Real squared_pose_error(const Real* error) {
     return sum;
 }
 
-/// Sorts out what went wrong at pose k, if anything did.
+/// Sorts out what went wrong at pose k, if anything did. `squared_errors` says nothing where a matrix was not positive
+/// definite.
 template <class Real, int capacity>
 void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_errors, Mask<Real> positive_definite,
                   int k, Outcome<Real>& outcome) {
-    Real largest = Real(0), zero_if_finite = squared_errors * Real(0);
+    Real largest = Real(0), zero_if_finite = select(positive_definite, squared_errors, Real(0)) * Real(0);
     for (int i = 0; i < n; ++i) {
         const Real x = absolute(belief.mean[i]);
         largest = select(x > largest, x, largest);

@@ -36,7 +36,7 @@ po::options_description described(const Command& command) {
     for (const Option& option : command.options) names.push_back(long_name(option));
     const std::size_t first = given.find_first_not_of('-');
     const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
-    throw InputError("unknown option " + given + ". " +
+    throw InputError("unknown option " + printable(given) + ". " +
                      (meant.empty() ? "`credence " + command.name + " --help` lists them." : "Did you mean --" + meant + "?"));
 }
 
@@ -104,7 +104,7 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     } catch (const po::unknown_option& error) {
         refuse_unknown(command, error.get_option_name());
     } catch (const po::error& error) {
-        throw InputError(std::string(error.what()) + ". `credence " + command.name + " --help` shows how.");
+        throw InputError(printable(error.what()) + ". `credence " + command.name + " --help` shows how.");
     }
     if (parsed.has("help")) {
         std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n" << command.summary << "\n\n"

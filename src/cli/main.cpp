@@ -42,7 +42,7 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
     if (name == "replay") { const auto p = parsed(cli::replay_command()); return p ? cli::replay(*p, line) : 0; }
     if (name == "show") { const auto p = parsed(cli::show_command()); return p ? cli::show(*p) : 0; }
     const std::string meant = closest(name, {"run", "report", "replay", "show", "--help", "--version"});
-    throw InputError("unknown command " + name + ". " + (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+    throw InputError("unknown command " + printable(name) + ". " + (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
 }
 
 }  // namespace

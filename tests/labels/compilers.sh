@@ -3,7 +3,7 @@
 set -euo pipefail
 cmake --preset clang >/dev/null
 cmake --build --preset clang -j "$(nproc)" | tail -n 3
-build-clang/tests/credence_tests '~[slow]' | tail -n 3
+build-clang/tests/credence_tests '~[long]' | tail -n 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for compiler in build build-clang; do

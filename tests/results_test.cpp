@@ -1,0 +1,139 @@
+// Room 10: what blocks add up to.
+
+#include "catch.hpp"
+#include "support.hpp"
+
+#include <credence/results.hpp>
+
+#include <algorithm>
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+constexpr std::uint64_t seed = 9;
+
+/// Some trials fail in it, so that the totals are not those of all.
+Scenario mixed_world() {
+    return scenario_with({{"noise.odometry", "1e5"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
+                          {"arms.controllers", "fixed"}, {"scenario.poses", "6"}});
+}
+
+void add_block(ScenarioResults& results, const Problem& problem, std::int64_t index, int trials) {
+    const Block block = run_block(problem, seed, index, trials);
+    store_columns(results, block);
+    add_totals(results, block);
+}
+
+/// The results of a study's first trials, its blocks added in a given order.
+ScenarioResults results_of(const Scenario& scenario, std::int64_t trials, bool backwards = false) {
+    const Problem problem(scenario);
+    ScenarioResults results = empty_results(scenario);
+    extend(results, trials);
+    for (std::int64_t b = 0; b < block_count(trials); ++b) {
+        const std::int64_t index = backwards ? block_count(trials) - 1 - b : b;
+        add_block(results, problem, index, trials_in_block(trials, index));
+    }
+    return results;
+}
+
+/// All totals as the exact parts they are stored in.
+std::vector<double> parts_of(const ScenarioResults& results) {
+    std::vector<double> all;
+    const auto append = [&](const ExactSum& sum) {
+        for (const double part : sum.parts()) all.push_back(part);
+        all.push_back(-1);
+    };
+    for (const ArmResults& arm : results.arms) {
+        for (const FigureTotals& totals : arm.totals) {
+            for (const ExactSum& sum : totals.sum) append(sum);
+            for (const ExactSum& sum : totals.square_sum) append(sum);
+            append(totals.run_square_sum);
+        }
+        all.push_back(static_cast<double>(arm.counted));
+    }
+    return all;
+}
+
+bool same(const ScenarioResults& a, const ScenarioResults& b) {
+    bool columns = a.trials == b.trials && a.arms.size() == b.arms.size();
+    for (std::size_t arm = 0; columns && arm < a.arms.size(); ++arm)
+        for (std::size_t c = 0; c < a.columns.size(); ++c)
+            columns = columns && same_bits(a.arms[arm].columns[c], b.arms[arm].columns[c]);
+    return columns && same_bits(parts_of(a), parts_of(b));
+}
+
+}  // namespace
+
+TEST_CASE("results: empty results have room for what the scenario declares, and nothing in it") {
+    const Scenario scenario = scenario_with({});
+    const ScenarioResults results = empty_results(scenario);
+    REQUIRE(results.arms.size() == 2);
+    CHECK(results.arms[0].name == "fixed.ekf");
+    CHECK(results.arms[1].name == "greedy.ekf");
+    CHECK(results.trials == 0);
+    CHECK(results.steps() == 19);
+    CHECK(results.columns.size() == column_count);
+    CHECK(results.figures.size() == static_cast<std::size_t>(Problem(scenario).view().figure_count));
+    for (std::size_t f = 0; f < results.figures.size(); ++f) {
+        const FigureTotals& totals = results.arms[0].totals[f];
+        CHECK(totals.sum.size() == 19);
+        CHECK(totals.square_sum.size() == (results.figures[f].integer ? 0u : 19u));
+        CHECK(totals.run_square_sum.rounded() == 0);
+    }
+}
+
+TEST_CASE("results: the order of the blocks does not matter") {
+    const Scenario scenario = mixed_world();
+    const ScenarioResults forwards = results_of(scenario, 700), backwards = results_of(scenario, 700, true);
+    CHECK(same(forwards, backwards));
+    CHECK(forwards.arms[0].counted > 0);
+    CHECK(forwards.arms[0].counted < 700);
+}
+
+TEST_CASE("results: totals are those of the trials that did not fail") {
+    const Scenario scenario = mixed_world();
+    const ScenarioResults results = results_of(scenario, 300);
+    double sum = 0;
+    std::int64_t counted = 0;
+    const std::size_t trace = static_cast<std::size_t>(
+        std::find_if(results.figures.begin(), results.figures.end(), [](const Figure& f) { return f.name == "trace_P_step"; }) -
+        results.figures.begin());
+    for (const double value : results.arms[0].columns[column_trace_P]) {
+        if (value != value) continue;
+        sum += value;
+        ++counted;
+    }
+    CHECK(results.arms[0].counted == counted);
+    // trace_P is the last step's figure; 300 roundings of a sum of positive numbers.
+    CHECK(relative(results.arms[0].totals[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
+}
+
+TEST_CASE("results: a partial block that is taken back and computed again gives the same bits as a fresh run") {
+    const Scenario scenario = mixed_world();
+    const Problem problem(scenario);
+    ScenarioResults grown = results_of(scenario, 300);
+    remove_totals(grown, run_block(problem, seed, 1, 44));
+    CHECK(same_bits(parts_of(grown), parts_of(results_of(scenario, 256))));
+    extend(grown, 400);
+    add_block(grown, problem, 1, 144);
+    CHECK(same(grown, results_of(scenario, 400)));
+}
+
+TEST_CASE("results: taking everything back leaves nothing") {
+    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}});
+    const Problem problem(scenario);
+    ScenarioResults results = results_of(scenario, 300);
+    for (const std::int64_t index : {0, 1}) remove_totals(results, run_block(problem, seed, index, trials_in_block(300, index)));
+    CHECK(same_bits(parts_of(results), parts_of(empty_results(scenario))));
+}
+
+TEST_CASE("results: columns are stored at their trials") {
+    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}});
+    const ScenarioResults results = results_of(scenario, 300);
+    const Block second = run_block(Problem(scenario), seed, 1, 44);
+    for (std::size_t c = 0; c < column_count; ++c)
+        for (std::size_t trial = 0; trial < 44; ++trial)
+            CHECK(same_bits(results.arms[0].columns[c][256 + trial], second.arms[0].columns[c * 44 + trial]));
+}
