@@ -2,6 +2,7 @@
 
 #include "store_damage.hpp"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 using namespace credence;
