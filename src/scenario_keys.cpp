@@ -159,7 +159,7 @@ const std::vector<ScenarioKey>& scenario_keys() {
 void set_key(Scenario& scenario, const std::string& name, const std::string& value) {
     std::vector<std::string> names;
     for (const ScenarioKey& key : scenario_keys()) {
-        if (key.name == name) return key.set(scenario, value);
+        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
         names.push_back(key.name);
     }
     const std::string meant = closest(name, names);

@@ -186,17 +186,20 @@ std::optional<std::vector<Estimator>> parse_estimators(const std::string& value)
 }
 
 std::string is_name(const std::string& value) {
+    if (value == "run") return "the results file has a group of that name";
     if (value.empty() || value.size() > 100) return "must have 1 to 100 characters";
     return characters_not_in(value, is_word_character).empty() ? "" : "only letters, digits, _ and - are allowed";
 }
 
 std::string is_title(const std::string& value) {
     if (value.size() > 300) return "must have at most 300 characters";
+    if (!is_utf8(value)) return "it is not UTF-8";
     return characters_not_in(value, [](unsigned char c) { return c >= 0x20 && c != 0x7f && c != '#'; });
 }
 
 std::string is_unit(const std::string& value) {
     if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
+    if (!is_utf8(value)) return "it is not UTF-8";
     return characters_not_in(value, [](unsigned char c) { return is_word_character(c) || c >= 0x80; });
 }
 

@@ -12,8 +12,9 @@ using hdf5::Dimension;
 using hdf5::Handle;
 using Step = TrajectoryStep;
 
-/// The trial's columns, as attributes of the group.
+/// The trial's columns, as attributes of the group, and where its noise came from.
 void write_columns(const TrajectoryGroup& to) {
+    hdf5::write_text(to.group, "source", to.trajectory.source);
     const std::vector<Column> columns = trial_columns(to.trajectory.scenario);
     for (std::size_t c = 0; c < columns.size(); ++c) {
         const std::string& name = columns[c].name;

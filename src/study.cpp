@@ -125,7 +125,7 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
         const auto in_memory = static_cast<std::int64_t>(results.columns.size() * sizeof(double));
         total.memory += arms * (trials * in_memory + cells * 2 * 64);
     }
-    total.memory += total.file + static_cast<std::int64_t>(threads) * (8 << 20);  // the file's image, and the threads' stacks
+    total.memory += 2 * total.file + static_cast<std::int64_t>(threads) * (8 << 20);  // the file's image and the library's, the threads' stacks
     return total;
 }
 

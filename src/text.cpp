@@ -36,6 +36,24 @@ std::string trimmed(std::string_view text) {
     return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
+bool is_utf8(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    for (std::size_t i = 0; i < text.size();) {
+        const unsigned lead = byte(i);
+        const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+        if (length == 0 || i + length > text.size()) return false;
+        unsigned long code = length == 1 ? lead : lead & (0x7fu >> length);
+        for (std::size_t k = 1; k < length; ++k) {
+            if (byte(i + k) >> 6 != 2) return false;
+            code = code << 6 | (byte(i + k) & 0x3fu);
+        }
+        constexpr unsigned long shortest[] = {0, 0, 0x80, 0x800, 0x10000};
+        if (code < shortest[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return false;
+        i += length;
+    }
+    return true;
+}
+
 std::vector<std::string> split_list(std::string_view text, char separator) {
     std::vector<std::string> parts;
     if (trimmed(text).empty()) return parts;

@@ -142,11 +142,12 @@ private:
 };
 
 template <class Noise>
-Trajectory replay(const Problem& problem, Controller controller, const Noise& noise) {
+Trajectory replay(const Problem& problem, Controller controller, const Noise& noise, const std::string& source) {
     const ProblemView& view = problem.view();
     const Scenario& scenario = problem.scenario();
     Trajectory trajectory;
     trajectory.scenario = scenario;
+    trajectory.source = source;
     for (const Arm& arm : arms_of(scenario))
         if (arm.controller == controller) trajectory.arm = arm;
     trajectory.columns.resize(column_count);
@@ -183,11 +184,12 @@ void check_covers(const NoiseRecord& record, const Scenario& scenario, const std
 
 Trajectory replay_trial(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t trial) {
     return replay(problem, controller,
-                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate));
+                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate),
+                  "root seed " + std::to_string(root_seed) + ", trial " + std::to_string(trial));
 }
 
 Trajectory replay_record(const Problem& problem, Controller controller, const NoiseRecord& record) {
-    return replay(problem, controller, RecordedDraws(record));
+    return replay(problem, controller, RecordedDraws(record), "noise record");
 }
 
 }  // namespace credence

@@ -80,6 +80,15 @@ TEST_CASE("ini: a refused override names itself, and keys that contradict each o
     CHECK(starts(refusal("[sensor]\nrange_max = 3\n", {{"sensor.range_min", "4"}}), "x.ini:2: invalid sensor.range_max=3"));
 }
 
+TEST_CASE("ini: names, titles and units that a file could not hold are refused") {
+    CHECK(starts(refusal("[scenario]\nname = run\n"), "x.ini:2: invalid scenario.name=run"));
+    CHECK(starts(refusal("[scenario]\nname = a b\n"), "x.ini:2: invalid scenario.name=a b"));
+    CHECK(starts(refusal("[scenario]\ntitle = \xff\n"), "x.ini:2: invalid scenario.title="));
+    CHECK(starts(refusal("[scenario]\nlength_unit = \xc3\n"), "x.ini:2: invalid scenario.length_unit="));
+    CHECK(starts(refusal("", {{"scenario.title", "a # b"}}), "--set scenario.title: invalid scenario.title=a # b"));
+    CHECK(read_scenario_text("", "x.ini", "x", {{"scenario.title", " a "}}).title == "a");
+}
+
 TEST_CASE("ini: every refusal is one line") {
     for (const char* text : {"[noise]\nwalk = x\ty\n", "[a]\nb = c\n", "[\n", "= 3\n", "[scenario]\ntitle = a\x01" "b\n"}) {
         const std::string message = refusal(text);

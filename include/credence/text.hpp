@@ -19,6 +19,9 @@ std::optional<std::int64_t> to_integer(std::string_view text);
 
 std::string trimmed(std::string_view text);
 
+/// Whether every sequence of bytes is one of UTF-8 (RFC 3629), as files and JSON need it.
+bool is_utf8(std::string_view text);
+
 /// The parts between commas, trimmed; an empty text has none.
 std::vector<std::string> split_list(std::string_view text, char separator = ',');
 

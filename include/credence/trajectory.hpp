@@ -36,6 +36,7 @@ struct TrajectoryStep {
 struct Trajectory {
     Scenario scenario;                      ///< resolved
     Arm arm;
+    std::string source;                     ///< where its noise came from: `root seed 1, trial 17`, `noise record`
     std::vector<double> columns;            ///< [column_count], as in the results file
     std::vector<TrajectoryStep> steps;      ///< [K]
     std::vector<Control> candidates;        ///< [C]; greedy only
