@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <numeric>
 
 namespace credence {
@@ -9,6 +11,21 @@ namespace credence {
 namespace {
 
 using Octet = std::array<double, octet>;
+
+/// Room for a pack of lanes: doubles from a 64-byte boundary on.
+class AlignedBuffer {
+public:
+    explicit AlignedBuffer(std::size_t size) : bytes_(size * sizeof(double) + alignment) {}
+    double* data() {
+        void* at = bytes_.data();
+        std::size_t space = bytes_.size();
+        return static_cast<double*>(std::align(alignment, space - alignment, at, space));
+    }
+
+private:
+    static constexpr std::size_t alignment = 64;
+    std::vector<std::byte> bytes_;
+};
 
 /// Eight running sums for each cell, and for each figure's sum over the steps.
 struct OctetSums {
@@ -64,7 +81,8 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
     const std::size_t cells = figures * steps, all = static_cast<std::size_t>(trials);
     const int batch_trials = batch_size(view);
     const std::size_t octets = static_cast<std::size_t>(batch_trials) / octet;
-    std::vector<double> columns(octets * column_count * octet), batch_figures(octets * cells * octet), scratch(column_count + cells);
+    std::vector<double> columns(octets * column_count * octet), batch_figures(octets * cells * octet);
+    AlignedBuffer scratch((column_count + cells) * octet);
     ArmBlock arm{std::vector<double>(column_count * all), {}, {}, {}, 0};
     OctetSums folded(figures, cells);
     for (int done = 0; done < trials; done += batch_trials) {

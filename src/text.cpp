@@ -14,7 +14,7 @@ std::string to_text(double value) {
 }
 
 std::optional<double> to_number(std::string_view text) {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -94,10 +94,12 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string closest(const std::string& word, const std::vector<std::string>& candidates) {
+    constexpr std::size_t longest_word = 64;
+    if (word.size() > longest_word) return {};
     std::string best;
     std::size_t least = word.size() / 3 + 2;
     for (const std::string& candidate : candidates) {
-        const std::size_t distance = edit_distance(word.substr(0, 64), candidate);
+        const std::size_t distance = edit_distance(word, candidate);
         if (distance < least) least = distance, best = candidate;
     }
     return best;

@@ -35,8 +35,8 @@ template <class Word>
 PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, std::uint32_t key0, std::uint32_t key1) {
     constexpr std::uint64_t low_half = 0xffffffffu;
     for (int round = 0; round < 10; ++round) {
-        const Word product0 = counter.word[0] * std::uint64_t{0xD2511F53};
-        const Word product1 = counter.word[2] * std::uint64_t{0xCD9E8D57};
+        const Word product0 = widening_product(counter.word[0], 0xD2511F53u);
+        const Word product1 = widening_product(counter.word[2], 0xCD9E8D57u);
         counter = {{(product1 >> 32) ^ counter.word[1] ^ std::uint64_t{key0}, product1 & low_half,
                     (product0 >> 32) ^ counter.word[3] ^ std::uint64_t{key1}, product0 & low_half}};
         key0 += 0x9E3779B9u;
@@ -89,7 +89,7 @@ private:
                                    static_cast<std::uint64_t>(index);
         const Bits<Real> zero{};
         return philox<Bits<Real>>(
-            {{trial_ & 0xffffffffu, trial_ >> 32, zero + static_cast<std::uint64_t>(pose), zero + what}}, key0_, key1_);
+            {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, zero + static_cast<std::uint64_t>(pose), zero + what}}, key0_, key1_);
     }
 
     /// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).

@@ -43,6 +43,8 @@ template <class Real>
 Mask<Real> all_lanes() {
     return Real(0) == Real(0);
 }
+/// a b for a, b below 2^32: all 64 bits of the product.
+inline std::uint64_t widening_product(std::uint64_t a, std::uint32_t b) { return a * b; }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
 inline bool any(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }

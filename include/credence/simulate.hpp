@@ -19,22 +19,20 @@ struct Batch {
     int trials = 0;
     double* columns = nullptr;  ///< [octets, column_count, 8], a failed trial's still unfilled
     double* figures = nullptr;  ///< [octets, figure_count, K - 1, 8]
-    double* scratch = nullptr;  ///< [column_count + figure_count (K - 1)]
+    double* scratch = nullptr;  ///< [column_count + figure_count (K - 1), 8], aligned to 64 bytes
 };
 
 using SimulateFunction = void (*)(const ProblemView&, const Batch&);
 
-/// The unit for this processor.
-SimulateFunction simulate_function();
-
-/// Name of that unit: v3 (AVX2 and FMA) or portable.
-std::string instruction_set();
-
-/// Every unit that was built and that this processor can run, by name.
+/// A unit by name: v4 (AVX-512), v3 (AVX2 and FMA) or portable; with the number of trials it runs at once.
 struct Unit {
     std::string name;
-    SimulateFunction simulate;
+    int lanes = 1;
+    SimulateFunction simulate = nullptr;
 };
+
+/// Every unit that was built and that this processor can run, the best one first.
 std::vector<Unit> runnable_units();
+Unit best_unit();
 
 }  // namespace credence

@@ -35,7 +35,7 @@ RunFacts build_facts() {
     return {{"credence_version", build_info::version}, {"git_revision", build_info::git_revision},
             {"compiler", build_info::compiler},        {"flags", build_info::flags},
             {"libraries", libraries()},                {"processor", processor()},
-            {"instruction_set", instruction_set()},    {"lane_width", "1"}};
+            {"instruction_set", best_unit().name},     {"lane_width", std::to_string(best_unit().lanes)}};
 }
 
 std::string version_text() {
