@@ -62,7 +62,7 @@ TEST_CASE("controller: the seed's candidates are those of the table") {
     CHECK(list("heading", "circle").size() == 126);
     CHECK(apart(list("translation", "straight").front(), {0, {-2, 0}}) == 0);
     CHECK(apart(list("translation", "straight").back(), {0, {2, 0}}) == 0);
-    CHECK(apart(list("translation", "circle")[1], {0, {-2, -1.6}}) < 1e-15);  // a outer, b inner
+    CHECK(apart(list("translation", "circle")[1], {0, {-2, -1.6}}) < 1e-15);  // a outer, b inner; 0.8 d rounds
     CHECK(apart(list("translation", "circle")[11], {0, {-1.6, -2}}) < 1e-15);
     CHECK(apart(list("heading", "straight").front(), {0, {-4, 0}}) == 0);
     CHECK(apart(list("heading", "straight")[15], {0, {2, 0}}) == 0);
@@ -87,8 +87,8 @@ TEST_CASE("controller: both processes lead the robot of the circle along the sam
     // features in each step but by half a turn's phase; without noise, in the world frame.
     const Scenario heading = scenario_with({{"features.path", "circle"}});
     const Scenario translation = scenario_with({{"features.path", "circle"}, {"model.process", "translation"}});
-    const Run turning = run_arm(Problem(heading), Controller::fixed, silent_noise());
-    const Run sliding = run_arm(Problem(translation), Controller::fixed, silent_noise());
+    const Run turning = run_arm(heading, Controller::fixed, silent_noise());
+    const Run sliding = run_arm(translation, Controller::fixed, silent_noise());
     const double delta = heading.features.turn;
     for (int k = 1; k < 20; ++k) {
         const auto step = [&](const Run& run, int at) {
@@ -117,6 +117,7 @@ TEST_CASE("controller: the cost of a candidate is the oracle's brute force") {
                 const Control& control = view.control.candidates[i];
                 const double cost =
                     candidate_cost(base, command_from<double>(control), view.filter, view.sensor, layout);
+                // cond(S) is below 1e4: 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before, at most some times the cost.
                 CHECK(relative(cost, oracle::candidate_cost(problem.scenario(), {sample.x, sample.P}, control, 2)) < 1e-10);
             }
         });
@@ -124,16 +125,15 @@ TEST_CASE("controller: the cost of a candidate is the oracle's brute force") {
 
 TEST_CASE("controller: the planner believes that what is in range will be detected") {
     const Scenario all = scenario_with({}), some = scenario_with({{"sensor.detection", "0.2"}});
-    const Run sure = run_arm(Problem(all), Controller::greedy, keyed_noise(all, 1, 1));
-    const Run unsure = run_arm(Problem(some), Controller::greedy, keyed_noise(some, 1, 1));
+    const Run sure = run_arm(all, Controller::greedy, keyed_noise(all, 1, 1));
+    const Run unsure = run_arm(some, Controller::greedy, keyed_noise(some, 1, 1));
     CHECK(sure.steps[1].candidate_cost == unsure.steps[1].candidate_cost);
     CHECK(sure.columns[column_unseen] < unsure.columns[column_unseen]);
 }
 
 TEST_CASE("controller: every candidate's cost is told, in order, and the choice is made from them") {
     const Scenario scenario = scenario_with({{"features.path", "circle"}});
-    const Problem problem(scenario);
-    const Run run = run_arm(problem, Controller::greedy, keyed_noise(scenario, 4, 1));
+    const Run run = run_arm(scenario, Controller::greedy, keyed_noise(scenario, 4, 1));
     const std::vector<Control> candidates = planner_candidates(scenario);
     for (std::size_t k = 1; k < run.steps.size(); ++k) {
         REQUIRE(run.steps[k].candidate_cost.size() == candidates.size());
@@ -146,11 +146,11 @@ TEST_CASE("controller: chosen controls are the oracle's in all cells") {
         for (std::uint64_t trial = 100; trial < 115; ++trial) {
             const Scenario scenario = scenario_with(cell);
             const AnyNoise noise = keyed_noise(scenario, 5, trial);
-            const Run ours = run_arm(Problem(scenario), Controller::greedy, noise);
+            const Run ours = run_arm(scenario, Controller::greedy, noise);
             const Difference worst = difference(ours, oracle::run(scenario, Controller::greedy, for_oracle(noise)));
             CAPTURE(described(cell), trial);
             CHECK(worst.same_control);
-            CHECK(worst.cost < 1e-10);
+            CHECK(worst.cost < 1e-10);  // as above
         }
 }
 
@@ -181,8 +181,8 @@ TEST_CASE("controller: standing still ties on all rays, and the last ray wins") 
     // Features that surround a robot at rest; every s = 0 is the same move, and the turn has no cost.
     const Scenario scenario = scenario_with({{"features.path", "static"}, {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
                                              {"sensor.noise", "ranged"}, {"features.step", "1"}});
-    const Run run = run_arm(Problem(scenario), Controller::greedy, silent_noise());
+    const Run run = run_arm(scenario, Controller::greedy, silent_noise());
     CHECK(run.steps[1].control == Control{*scenario.planner.turns->rbegin(), {0, 0}});
-    for (int ray = 0; ray < 6; ++ray)
+    for (int ray = 0; ray < 6; ++ray)  // equal but for the rounding of a trace
         CHECK(relative(run.steps[1].candidate_cost[static_cast<std::size_t>(21 * ray + 10)], run.steps[1].candidate_cost[10]) < 1e-13);
 }

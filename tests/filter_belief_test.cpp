@@ -3,6 +3,8 @@
 #include "catch.hpp"
 #include "support.hpp"
 
+#include <credence/update.hpp>
+
 #include <random>
 
 using namespace credence;
@@ -33,9 +35,8 @@ MatrixXd random_covariance(int n, unsigned seed) {
 TEST_CASE("filter: update keeps the covariance symmetric and positive definite, and never adds to it") {
     for (const Settings& cell : seed_cells()) {
         const Scenario scenario = scenario_with(cell);
-        const Problem problem(scenario);
         for (std::uint64_t trial = 0; trial < 5; ++trial) {
-            const Run run = run_arm(problem, Controller::fixed, keyed_noise(scenario, 1, trial));
+            const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, trial));
             CAPTURE(described(cell), trial);
             for (std::size_t k = 1; k < run.steps.size(); ++k) {
                 const RunStep& step = run.steps[k];
@@ -51,7 +52,7 @@ TEST_CASE("filter: update keeps the covariance symmetric and positive definite, 
 TEST_CASE("filter: starts at 0 with features where they were first seen") {
     const Scenario scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"},
                                              {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
-    const Run run = run_arm(Problem(scenario), Controller::fixed, keyed_noise(scenario, 1, 4));
+    const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 4));
     const RunStep& start = run.steps.front();
     CHECK(start.mean.head(3).norm() == 0);
     MatrixXd expected = MatrixXd::Zero(9, 9);
@@ -70,14 +71,14 @@ TEST_CASE("filter: starts at 0 with features where they were first seen") {
 TEST_CASE("filter: without noise the translation model's estimate is the truth") {
     const Scenario scenario = scenario_with({{"model.process", "translation"}, {"features.path", "circle"},
                                              {"features.sway_amplitude", "0.4"}});
-    const Run run = run_arm(Problem(scenario), Controller::fixed, silent_noise());
+    const Run run = run_arm(scenario, Controller::fixed, silent_noise());
     for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // rounding of positions below 40
     CHECK(run.columns[column_pose_error] < 1e-25);
 }
 
 TEST_CASE("filter: without noise the heading model's estimate is the truth") {
     const Scenario scenario = scenario_with({{"features.path", "circle"}, {"features.sway_amplitude", "0.4"}});
-    const Run run = run_arm(Problem(scenario), Controller::fixed, silent_noise());
+    const Run run = run_arm(scenario, Controller::fixed, silent_noise());
     for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // as above
     CHECK(run.steps.back().truth[0] == Approx(19 * 0.31415926535897931).epsilon(1e-14));
 }
@@ -129,11 +130,10 @@ TEST_CASE("filter: three features known to the compiler give the same bits as an
     for (const Settings& cell : seed_cells())
         for (const Controller controller : {Controller::fixed, Controller::greedy}) {
             const Scenario scenario = scenario_with(cell);
-            const Problem problem(scenario);
-            CAPTURE(described(cell), static_cast<int>(controller));
+                CAPTURE(described(cell), static_cast<int>(controller));
             for (std::uint64_t trial = 0; trial < 3; ++trial) {
                 const AnyNoise noise = keyed_noise(scenario, 2, trial);
-                const Run three = run_arm(problem, controller, noise), any = run_arm(problem, controller, noise, Form::any_number);
+                const Run three = run_arm(scenario, controller, noise), any = run_arm(scenario, controller, noise, Form::any_number);
                 CHECK(same_bits(three.columns, any.columns));
                 CHECK(same_bits(three.figures, any.figures));
                 CHECK(same_bits(three.steps.back().covariance, any.steps.back().covariance));
@@ -145,8 +145,8 @@ TEST_CASE("filter: the covariance factor scales what is reported and touches not
     for (const Controller controller : {Controller::fixed, Controller::greedy}) {
         const Settings cell{{"features.path", "circle"}, {"sensor.noise", "ranged"}};
         const Scenario plain = scenario_with(cell), scaled = scenario_with(plain, {{"filter.covariance", "4"}});
-        const Run one = run_arm(Problem(plain), controller, keyed_noise(plain, 2, 1));
-        const Run four = run_arm(Problem(scaled), controller, keyed_noise(plain, 2, 1));
+        const Run one = run_arm(plain, controller, keyed_noise(plain, 2, 1));
+        const Run four = run_arm(scaled, controller, keyed_noise(plain, 2, 1));
         // Powers of two, so to the bit.
         CHECK(four.columns[column_trace_P] == 4 * one.columns[column_trace_P]);
         CHECK(four.columns[column_nees_ratio] == Approx(one.columns[column_nees_ratio] / 4).epsilon(1e-14));  // one more rounding a step

@@ -64,7 +64,7 @@ void check_step(const Run& ours, const oracle::Step& theirs, int k, const Budget
 void check_trial(const Settings& settings, Controller controller, std::uint64_t trial) {
     const Scenario scenario = scenario_with(settings);
     const AnyNoise noise = keyed_noise(scenario, 30, trial);
-    const Run ours = run_arm(Problem(scenario), controller, noise);
+    const Run ours = run_arm(scenario, controller, noise);
     const oracle::Trial theirs = oracle::run(scenario, controller, for_oracle(noise));
     Budget budget;
     for (int k = 1; k < scenario.poses; ++k) {
@@ -124,7 +124,7 @@ TEST_CASE("filter: 64 features with all 2016 edges agree with the update in info
     Settings settings = with_features("heading", 64);
     settings.emplace_back("scenario.poses", "2");
     const Scenario scenario = scenario_with(settings);
-    const Run run = run_arm(Problem(scenario), Controller::fixed, keyed_noise(scenario, 30, 1));
+    const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 30, 1));
     const RunStep& step = run.steps.back();
     MatrixXd information = step.prior_covariance.inverse();
     VectorXd pull = VectorXd::Zero(step.mean.size());

@@ -14,7 +14,7 @@ namespace {
 void check_trial(const Settings& settings, Controller controller, std::uint64_t trial) {
     const Scenario scenario = scenario_with(settings);
     const AnyNoise noise = keyed_noise(scenario, 20, trial);
-    const Run ours = run_arm(Problem(scenario), controller, noise);
+    const Run ours = run_arm(scenario, controller, noise);
     const Difference worst = difference(ours, oracle::run(scenario, controller, for_oracle(noise)));
     CAPTURE(described(settings), static_cast<int>(controller), trial);
     CHECK(worst.condition < 200);

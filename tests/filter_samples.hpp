@@ -3,6 +3,8 @@
 
 #include "support.hpp"
 
+#include <credence/problem.hpp>
+
 #include <random>
 
 namespace credence::test {

@@ -89,10 +89,9 @@ const std::set<std::string> silent_keys{"scenario.name",      "scenario.title", 
 constexpr std::uint64_t trials = 20;
 
 std::vector<std::vector<double>> columns_of(const Scenario& scenario, Controller controller) {
-    const Problem problem(scenario);
     std::vector<std::vector<double>> columns;
     for (std::uint64_t trial = 0; trial < trials; ++trial)
-        columns.push_back(run_arm(problem, controller, keyed_noise(scenario, 77, trial)).columns);
+        columns.push_back(run_arm(scenario, controller, keyed_noise(scenario, 77, trial)).columns);
     return columns;
 }
 
@@ -139,7 +138,7 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
             for (std::uint64_t trial = 0; trial < 2; ++trial) {
                 const Scenario scenario = scenario_with(with_change(influence));
                 const AnyNoise noise = keyed_noise(scenario, 78, trial);
-                const Run ours = run_arm(Problem(scenario), controller, noise);
+                const Run ours = run_arm(scenario, controller, noise);
                 const Difference worst = difference(ours, oracle::run(scenario, controller, for_oracle(noise)));
                 CAPTURE(described(with_change(influence)), static_cast<int>(controller), trial);
                 CHECK(worst.same_sight);

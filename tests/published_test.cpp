@@ -26,7 +26,7 @@ Run replay(const Settings& settings, Controller controller, const NoiseRecord& r
     const Scenario scenario = scenario_with(settings);
     check_covers(record, scenario, "the record");
     const RecordedDraws draws(record);
-    return run_arm(Problem(scenario), controller,
+    return run_arm(scenario, controller,
                    {[draws](Source source, int pose, int index) { return draws.normal(source, pose, index); },
                     [draws](Source source, int pose, int index) { return draws.uniform(source, pose, index); }});
 }

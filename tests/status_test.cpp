@@ -15,7 +15,7 @@ namespace {
 
 constexpr double completed = 0, diverged = 1, not_positive_definite = 2, non_finite = 3;
 
-Run run_with(const Scenario& scenario, const AnyNoise& noise) { return run_arm(Problem(scenario), Controller::fixed, noise); }
+Run run_with(const Scenario& scenario, const AnyNoise& noise) { return run_arm(scenario, Controller::fixed, noise); }
 
 void check_status(const Run& run, double status, double pose) {
     CHECK(run.columns[column_status] == status);

@@ -142,12 +142,13 @@ void run_process(const ProblemView& view, Controller controller, const AnyNoise&
 
 }  // namespace
 
-Run run_arm(const Problem& problem, Controller controller, const AnyNoise& noise, Form form) {
+Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form) {
+    const Problem problem(scenario);
     const ProblemView& view = problem.view();
     Run run;
     run.columns.resize(column_count);
     run.steps.resize(static_cast<std::size_t>(view.poses));
-    for (const Figure& figure : step_figures(problem.scenario())) run.names.push_back(figure.name);
+    for (const Figure& figure : step_figures(scenario)) run.names.push_back(figure.name);
     Eigen::MatrixXd by_step(view.poses - 1, view.figure_count);  // Eigen's columns are the engine's rows
     Scribe scribe(run, view.filter.edge_count);
     if (view.process == Process::heading)

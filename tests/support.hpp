@@ -4,13 +4,14 @@
 
 #include "oracle/oracle.hpp"
 
-#include <credence/problem.hpp>
-#include <credence/recorded_noise.hpp>
+#include <credence/draws.hpp>
+#include <credence/record.hpp>
 
 #include <Eigen/Dense>
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,7 +81,7 @@ struct Run {
 /// Which compiled form of the equations: the one that the engine picks, or always that for any number of features.
 enum class Form { engine, any_number };
 
-Run run_arm(const Problem& problem, Controller controller, const AnyNoise& noise, Form form = Form::engine);
+Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form = Form::engine);
 
 /// Greatest differences of a production trial from the oracle's, over its poses.
 struct Difference {

@@ -32,7 +32,7 @@ AnyNoise listened(const AnyNoise& noise, Asked& asked) {
 
 Asked asked_by(const Scenario& scenario, Controller controller, std::uint64_t trial) {
     Asked asked;
-    run_arm(Problem(scenario), controller, listened(keyed_noise(scenario, 50, trial), asked));
+    run_arm(scenario, controller, listened(keyed_noise(scenario, 50, trial), asked));
     return asked;
 }
 
@@ -90,8 +90,8 @@ TEST_CASE("trial: the two arms of a trial are given the same draws, though they 
         bool different_sight = false;
         for (std::uint64_t trial = 0; trial < 5; ++trial) {
             CHECK(asked_by(scenario, Controller::fixed, trial) == asked_by(scenario, Controller::greedy, trial));
-            const Run fixed = run_arm(Problem(scenario), Controller::fixed, keyed_noise(scenario, 50, trial));
-            const Run greedy = run_arm(Problem(scenario), Controller::greedy, keyed_noise(scenario, 50, trial));
+            const Run fixed = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 50, trial));
+            const Run greedy = run_arm(scenario, Controller::greedy, keyed_noise(scenario, 50, trial));
             for (std::size_t k = 1; k < fixed.steps.size(); ++k) {
                 different_sight = different_sight || fixed.steps[k].seen != greedy.steps[k].seen;
                 // The features' truth is the same for both arms.
@@ -109,7 +109,7 @@ TEST_CASE("trial: columns are what the page of the model says, from the steps") 
         Settings drawn = settings;
         drawn.emplace_back("noise.initial_position", "0.3");  // so that pose 0 has an error
         const Scenario scenario = scenario_with(drawn);
-        const Run run = run_arm(Problem(scenario), Controller::fixed, keyed_noise(scenario, 51, 2));
+        const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 51, 2));
         double pose_error = 0, unseen = 0, nees = 0, nis = 0, rows = 0;
         for (std::size_t k = 0; k < run.steps.size(); ++k) {
             const RunStep& step = run.steps[k];
@@ -136,7 +136,7 @@ TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     const Scenario scenario = scenario_with({{"features.positions", "100 0, 0 100"}, {"noise.initial_position", "0.3"},
                                              {"edges.graph", "none"}, {"scenario.poses", "2"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_position, 0, 0, {1, 2});
-    const Run run = run_arm(Problem(scenario), Controller::fixed, noise);
+    const Run run = run_arm(scenario, Controller::fixed, noise);
     CHECK(run.columns[column_unseen] == 2);
     CHECK(run.columns[column_pose_error] == Approx(2 * 0.09 * 5).epsilon(1e-14));
     CHECK(run.figures.cols() == 1);
@@ -148,9 +148,10 @@ TEST_CASE("trial: figures of a step are what their names say") {
     for (const char* process : {"heading", "translation"}) {
         const Scenario scenario = scenario_with({{"model.process", process}, {"features.path", "circle"},
                                                  {"filter.covariance", "2.25"}, {"noise.heading", "0.01"}});
-        const Run run = run_arm(Problem(scenario), Controller::fixed, keyed_noise(scenario, 52, 3));
+        const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 52, 3));
         for (int k = 1; k < scenario.poses; ++k) {
             const RunStep& step = run.steps[static_cast<std::size_t>(k)];
+            // Tolerances: a few roundings, and for the squared errors another factorisation, cond(P) below 1e4.
             for (const StateBlock& block : state_blocks(scenario)) {
                 const std::string name = block.name == "all" ? "nees" : "nees_" + block.name;
                 CHECK(run.figure(name, k) == Approx(squared_error(step, block.first, block.count, 2.25)).epsilon(1e-11));
@@ -175,8 +176,9 @@ TEST_CASE("trial: a heading error is judged the short way round") {
     const Scenario scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
                                              {"sensor.range_max", "0.11"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_heading, 1, 0, {2 * M_PI + 0.5, 0});
-    const Run run = run_arm(Problem(scenario), Controller::fixed, noise);
+    const Run run = run_arm(scenario, Controller::fixed, noise);
     CHECK(run.steps[1].mean[0] - run.steps[1].truth[0] < -6);
+    // The difference of two headings near 9 has lost a digit.
     CHECK(run.figure("standardised_error_theta", 1) == Approx(-0.5 / std::sqrt(run.steps[1].covariance(0, 0))).epsilon(1e-12));
     CHECK(run.figure("nees_heading", 1) == Approx(0.25 / run.steps[1].covariance(0, 0)).epsilon(1e-12));
 }
