@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The engine's units share no symbol: everything one defines for others to link is in its own namespace, and it calls
+# nothing but the C library. Else the linker could hand an old processor a new one's instructions.
+#   tests/unit_symbols.sh UNIT OBJECT
+set -euo pipefail
+unit=$1 object=$2
+defined=$(nm -C --defined-only --extern-only "$object")
+called=$(nm -C --undefined-only "$object")
+strangers=$(grep -v " credence::$unit::" <<<"$defined" || true
+            grep -vE ' U (memcpy|memset|memmove|fma|__stack_chk_fail|_GLOBAL_OFFSET_TABLE_)$' <<<"$called" || true)
+grep -q " T credence::$unit::simulate(" <<<"$defined" || { echo "unit $unit has no door"; exit 1; }
+[ -z "$strangers" ] || { printf 'unit %s defines or calls\n%s\n' "$unit" "$strangers"; exit 1; }
+echo "unit $unit: its own symbols only"
