@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace credence {
 
@@ -63,7 +64,8 @@ public:
         }
         const double steps = results.steps();
         plain_ = t_quantile(0.05, degrees_);
-        corrected_ = t_quantile(0.05 / (blocks * (steps + 1)), degrees_);
+        corrected_alpha_ = 0.05 / (blocks * (steps + 1));
+        corrected_ = t_quantile(corrected_alpha_, degrees_);
         corrected_bias_ = t_quantile(0.05 / std::max(1.0, components * steps), degrees_);
     }
 
@@ -96,7 +98,7 @@ private:
         for (std::size_t k = 0; k < totals.sum.size(); ++k) {
             const Estimate step = estimate(at_step(arm_, totals, k), scale, corrected_);
             const Side side = side_of(step, 1 - margin, 1 + margin);
-            if (side == Side::inside) continue;
+            if (side == Side::inside || !beyond_chi_square(step, side, figure.dimension)) continue;
             const std::size_t which = side == Side::above ? 0 : 1;
             if (steps[which].empty() || std::abs(step.value - 1) > std::abs(worst[which].value - 1)) worst[which] = step;
             steps[which].push_back(static_cast<int>(k) + 1);
@@ -104,6 +106,15 @@ private:
         for (const std::size_t which : {0u, 1u})
             if (!steps[which].empty())
                 add_finding(which == 0 ? Side::above : Side::below, name, steps_text(steps[which]), worst[which]);
+    }
+
+    /// Student's interval alone is too narrow for few trials, because chi-square is skewed: a step must also lie beyond
+    /// the exact bound that NEES (1 -+ margin) chi-square(dimension) has, which needs no estimated deviation.
+    bool beyond_chi_square(const Estimate& step, Side side, int dimension) const {
+        const double degrees = static_cast<double>(arm_.counted) * dimension;
+        const double scaled = step.value * degrees / (1 + (side == Side::above ? verdict_.margin : -verdict_.margin));
+        return side == Side::above ? scaled > chi_square_upper_quantile(corrected_alpha_ / 2, degrees)
+                                   : scaled < chi_square_quantile(corrected_alpha_ / 2, degrees);
     }
 
     void look_at_bias(const Figure& figure, const FigureTotals& totals) {
@@ -126,12 +137,16 @@ private:
                                      block, when, estimate.value, estimate.interval()});
     }
 
-    /// Trials that bring the time-averaged interval wholly inside or wholly outside the margin, if the mean stays.
+    /// Trials that bring the time-averaged interval off the margin's edge, if the mean stays: every block must get inside,
+    /// but one outside is enough.
     void note_needed_trials(const Estimate& time) {
         const double off = std::abs(time.value - 1), slack = std::abs(off - verdict_.margin);
-        const double quantile = off < verdict_.margin ? plain_ : corrected_;
-        const double needed = std::pow(quantile * time.standard_deviation / slack, 2);
-        needed_ = std::max(needed_, needed);
+        const bool inside = off < verdict_.margin;
+        const double quantile = normal_quantile(inside ? 0.05 : corrected_alpha_);
+        const double needed = std::ceil(std::pow(quantile * time.standard_deviation / slack, 2));
+        if (!std::isfinite(needed)) return;
+        if (inside) needed_inside_ = std::max(needed_inside_, needed);
+        else needed_outside_ = std::min(needed_outside_, needed);
     }
 
     void decide() {
@@ -139,12 +154,14 @@ private:
         else if (optimistic_) verdict_.verdict = Verdict::optimistic;
         else if (pessimistic_) verdict_.verdict = Verdict::pessimistic;
         else if (all_inside_ && verdict_.findings.empty()) verdict_.verdict = Verdict::consistent;
-        if (verdict_.verdict == Verdict::undecided && !all_inside_) verdict_.trials_to_decide = std::ceil(needed_);
+        if (verdict_.verdict == Verdict::undecided && !all_inside_)
+            verdict_.trials_to_decide = std::isfinite(needed_outside_) ? needed_outside_ : needed_inside_;
     }
 
     const ScenarioResults& results_;
     const ArmResults& arm_;
-    double degrees_, plain_ = 0, corrected_ = 0, corrected_bias_ = 0, needed_ = 0;
+    double degrees_, plain_ = 0, corrected_alpha_ = 0, corrected_ = 0, corrected_bias_ = 0;
+    double needed_inside_ = 0, needed_outside_ = std::numeric_limits<double>::infinity();
     bool all_inside_ = true, optimistic_ = false, pessimistic_ = false;
     Consistency verdict_;
 };

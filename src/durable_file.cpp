@@ -153,7 +153,9 @@ void write_durably(const std::string& path, const void* bytes, std::size_t size)
     sync_folder(folder_of(target), path);
 }
 
-void check_output(const std::string& path, bool overwrite) {
+void write_text_file(const std::string& path, const std::string& text) { write_durably(path, text.data(), text.size()); }
+
+void check_output(const std::string& path, bool overwrite, const std::string& way_out) {
     namespace fs = std::filesystem;
     const fs::path target(path), folder = folder_of(target);
     std::error_code trouble;
@@ -164,10 +166,15 @@ void check_output(const std::string& path, bool overwrite) {
     if (!fs::is_directory(folder, trouble)) refuse(path, folder.string() + " is not a folder", "Give another place");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
         refuse(path, "its folder: " + words_for(errno), "Give a folder that you may write to");
+    const fs::path aside = target.string() + suffix;
+    if (const fs::file_status own = fs::symlink_status(aside, trouble); fs::exists(own) && !fs::is_regular_file(own))
+        refuse(path, aside.filename().string() + " is in the way of writing it", "Remove that, or give another name");
     const fs::file_status status = fs::status(target, trouble);
+    if (fs::is_symlink(target, trouble) && !fs::exists(status) && fs::weakly_canonical(target, trouble).empty())
+        refuse(path, "it is a link that leads nowhere", "Give another name");
     if (!fs::exists(status)) return;
     if (!fs::is_regular_file(status)) refuse(path, "there is something that is not a file", "Give another name");
-    if (!overwrite) refuse(path, "it is there already", "Give another name, or --overwrite");
+    if (!overwrite) refuse(path, "it is there already", way_out);
 }
 
 }  // namespace credence

@@ -1,5 +1,7 @@
 #include "hdf5_handle.hpp"
 
+#include <credence/error.hpp>
+
 #include <exception>
 
 namespace credence::hdf5 {
@@ -29,14 +31,6 @@ void Handle::close() {
 
 void check(herr_t returned, const std::string& place, const std::string& problem) {
     if (returned < 0) throw Error(place, problem);
-}
-
-std::string printable(const std::string& text) {
-    constexpr std::size_t longest = 200;
-    std::string shown = text.substr(0, longest);
-    for (char& c : shown)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return text.size() > longest ? shown + "..." : shown;
 }
 
 std::string place_of(const Handle& object) {

@@ -84,6 +84,5 @@ using Extents = std::vector<hsize_t>;
 std::string place_of(const Handle& object);
 std::string place_of(const Handle& object, const std::string& name);
 std::string attribute_place(const Handle& object, const std::string& name);
-std::string printable(const std::string& text);
 
 }  // namespace credence::hdf5

@@ -19,6 +19,7 @@ double squared(double x) { return x * x; }
 double circle_direction(const Scenario& s, int k) { return s.features.turn / 2 + k * s.features.turn; }
 
 Point sway_offset(const Scenario& s, int k, int j) {
+    if (s.features.sway_amplitude == 0) return {};
     const double M = static_cast<double>(s.features.positions.size());
     const double start = 2 * pi * j / M;
     const Point now = polar(s.features.sway_amplitude, 2 * pi * k / s.features.sway_period + start);

@@ -14,27 +14,28 @@ namespace {
 std::string padded(const std::string& text, int width, bool right = true) {
     int characters = 0;
     for (const char c : text) characters += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-    const std::string space(static_cast<std::size_t>(std::max(0, width - characters)), ' ');
+    const std::string space(static_cast<std::size_t>(std::max(1, width - characters)), ' ');  // never glued together
     return right ? space + text : text + space;
 }
 
 std::string number(double value, int digits) {
     if (std::isnan(value)) return "-";
     char buffer[64];
-    std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+    if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+    else std::snprintf(buffer, sizeof buffer, "%.4g", value);
     return buffer;
 }
 
 /// Decimals that show two digits of the uncertainty, at most 6.
 int decimals_for(double uncertainty) {
-    if (!(uncertainty > 0)) return 4;
+    if (!(uncertainty > 0) || std::isinf(uncertainty)) return 4;
     return std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty))), 0, 6);
 }
 
 std::string with_interval(const Summary& summary) {
     const double half = (summary.ci95.high - summary.ci95.low) / 2;
     const int digits = decimals_for(half);
-    return number(summary.mean, digits) + " ± " + number(half, digits);
+    return std::isnan(half) ? number(summary.mean, digits) : number(summary.mean, digits) + " ± " + number(half, digits);
 }
 
 std::string title_of(const std::string& figure, const std::string& unit) {

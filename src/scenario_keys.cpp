@@ -35,7 +35,7 @@ void add_feature_keys(Keys& keys) {
                             [](auto& s) -> auto& { return s.features.turn; }));
     keys.push_back(real_key("features.sway_amplitude", "A, radius of the known local deformation (length)", from(0),
                             [](auto& s) -> auto& { return s.features.sway_amplitude; }));
-    keys.push_back(real_key("features.sway_period", "T (poses)", above(0),
+    keys.push_back(real_key("features.sway_period", "T (poses)", from(1e-3),
                             [](auto& s) -> auto& { return s.features.sway_period; }));
 }
 

@@ -2,6 +2,7 @@
 
 #include <credence/exact_sum.hpp>
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -30,6 +31,14 @@ double t_quantile(double alpha, double degrees) {
 
 double normal_quantile(double alpha) {
     return boost::math::quantile(boost::math::complement(boost::math::normal(), alpha / 2));
+}
+
+double chi_square_quantile(double p, double degrees) {
+    return boost::math::quantile(boost::math::chi_squared(degrees), p);
+}
+
+double chi_square_upper_quantile(double p, double degrees) {
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(degrees), p));
 }
 
 Summary summarise(std::vector<double> values) {

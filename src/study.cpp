@@ -5,9 +5,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <set>
 
 namespace credence {
@@ -53,14 +55,18 @@ private:
     void run_tasks(const std::vector<Task>& tasks) {
         const int threads = options_.threads > 0 ? options_.threads : omp_get_max_threads();
         std::exception_ptr trouble;
+        std::atomic<bool> stopped = false;
         report();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
         for (std::size_t t = 0; t < tasks.size(); ++t) {
+            // An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after it.
+            if (stopped) continue;
             try {
                 run_task(tasks[t]);
             } catch (...) {
-#pragma omp critical(credence_trouble)
+                const std::lock_guard lock(mutex_);
                 trouble = std::current_exception();
+                stopped = true;
             }
         }
         if (trouble) std::rethrow_exception(trouble);
@@ -70,12 +76,10 @@ private:
         const int trials = trials_in_block(options_.trials, task.block);
         const Block block = run_block(*problems_[task.scenario], study_.root_seed, task.block, trials);
         store_columns(study_.scenarios[task.scenario], block);
-#pragma omp critical(credence_totals)
-        {
-            add_totals(study_.scenarios[task.scenario], block);
-            progress_.done += trials;
-            report();
-        }
+        const std::lock_guard lock(mutex_);
+        add_totals(study_.scenarios[task.scenario], block);
+        progress_.done += trials;
+        report();
     }
 
     void report() {
@@ -86,6 +90,7 @@ private:
     Study& study_;
     const RunOptions& options_;
     std::vector<std::unique_ptr<Problem>> problems_;
+    std::mutex mutex_;  ///< of totals and progress
     Progress progress_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -68,6 +68,10 @@ TEST_CASE("cli: report as CSV has a row per arm and figure, and -o writes a file
     const Outcome csv = here.credence("report credence.h5 --format csv -o t.csv");
     CHECK(csv.exit_code == 0);
     CHECK(csv.out.empty());
+    CHECK(here.credence("report credence.h5 -o credence.h5").exit_code == 2);  // never over its own input
+    CHECK(here.credence("report credence.h5").exit_code == 0);
+    CHECK(here.credence("report credence.h5 >/dev/full").exit_code == 1);
+    CHECK(here.credence("show >/dev/full").exit_code == 1);
     const Outcome rows = here.shell("grep -c '^ekf-straight-constant,' t.csv");
     CHECK(rows.out == "15\n");  // 2 arms and their pair, 5 figures each
 }
@@ -95,6 +99,9 @@ TEST_CASE("cli: resume starts where there is nothing, ends at once where all is 
     REQUIRE(here.credence(run).exit_code == 0);
     const Outcome again = here.credence(run);
     CHECK(again.exit_code == 0);
+    CHECK(again.out.empty());
+    const Outcome shown = here.credence("run " + seed_scenario("ekf-straight-constant") + " --trials 300 --resume");
+    CHECK_THAT(shown.out, Contains("greedy - fixed") && Contains("has these trials already"));
     check_refused(here.credence(run + "--seed 2"), "its root seed is 1, not 2");
     check_refused(here.credence(run + "--set noise.walk=0.31"), "noise.walk is 0.3 there and 0.31 here");
 }
@@ -141,6 +148,11 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     check_refused(here.credence("run good.ini -o ."), ".");
     check_refused(here.credence("run good.ini good.ini"), "two scenarios of the run have it");
     check_refused(here.credence("run good.ini --resume --overwrite"), "contradict");
+    check_refused(here.credence("run good.ini --resume -o " + std::string(300, 'x') + ".h5"), "the name is too long");
+    check_refused(here.credence("report good.ini -o good.ini"), "good.ini (it is there already)");
+    check_refused(here.credence("replay good.ini --noise foreign.h5 --arm fixed.ekf"), "--arm does not go with --noise");
+    check_refused(here.credence("run \"$(printf 'missing\\nline.ini')\""), "missing?line.ini");
+    check_refused(here.credence("''"), "unknown command");
     check_refused(here.credence("run"), "no scenario given");
     check_refused(here.credence("rum good.ini"), "unknown command rum. Did you mean run?");
     check_refused(here.credence("report foreign.h5"), "foreign.h5");
@@ -222,7 +234,7 @@ TEST_CASE("cli: a dry run says what to expect and writes nothing") {
     const Workplace here;
     const Outcome dry = here.credence("run " + seed_scenario("ekf-straight-constant") + " --trials 1e6 --dry-run");
     CHECK(dry.exit_code == 0);
-    CHECK_THAT(dry.out, Contains("1000000 trials") && Contains("of memory") && Contains("in credence.h5"));
+    CHECK_THAT(dry.out, Contains("trials of each: 1000000") && Contains("of memory") && Contains("in credence.h5"));
     CHECK(here.names().empty());
 }
 

@@ -63,6 +63,31 @@ TEST_CASE("consistency: the same filter is undecided with few trials, and the tr
     CHECK(c.trials_to_decide < 20000);
 }
 
+TEST_CASE("consistency: few trials do not make a consistent filter look inconsistent") {
+    // 100 studies of N trials of the matched filter. The corrected level is 5 %: more than 12 of 100 has probability 4e-4.
+    for (const std::int64_t trials : {20, 50, 100}) {
+        int wrong = 0;
+        for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+            Study study = new_study({resolved(matched())}, seed);
+            run_study(study, {trials, 1, {}});
+            const Verdict verdict = judge(study.scenarios.front(), study.scenarios.front().arms.front(), 0.05).verdict;
+            wrong += verdict != Verdict::undecided && verdict != Verdict::consistent;
+        }
+        CAPTURE(trials);
+        CHECK(wrong <= 12);
+    }
+}
+
+TEST_CASE("consistency: one block outside is enough to decide, so the trials that decide are its own") {
+    ScenarioResults results = simulated(matched(), 60);
+    FigureTotals& pose = results.arms.front().totals[1];
+    for (ExactSum& step : pose.sum) step.add(0.12 * step.rounded());  // the pose outside the margin, the others inside
+    const Consistency c = judge(results, results.arms.front(), 0.05);
+    REQUIRE(verdict_name(c.verdict) == "undecided");
+    CHECK(c.trials_to_decide > 60);
+    CHECK(c.trials_to_decide < 3000);  // (3.7 sd / 0.07)^2 for an sd of 0.5 to 1; to bring the others inside takes more
+}
+
 TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
     Scenario s = matched();
     s.filter.measurement = 0.8;

@@ -32,9 +32,10 @@ nearest() {
     *belief.hpp | *update.hpp) echo filter_test filter_belief_test status_test "$whole" ;;
     *controller.hpp) echo controller_test "$whole" ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *Makefile) echo block_test ;;
+    *lane.hpp | *Makefile) echo block_test ;;
   esac
 }
+
 # Names of the tests that fail, one a line; a crash or a hang counts as one.
 failures() {
   local status=0 names

@@ -49,7 +49,8 @@ Outcome Workplace::credence(const std::string& arguments) const { return shell(C
 Outcome Workplace::shell(const std::string& command) const {
     // What the command prints goes beside the folder, so that the folder holds what the program wrote and nothing else.
     const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
-    const int status = std::system(("cd " + folder_.string() + " && " + command + " >" + out + " 2>" + err).c_str());
+    const std::string quoted = "cd " + folder_.string() + " && { " + command + "\n} >" + out + " 2>" + err;
+    const int status = std::system(quoted.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
     std::filesystem::remove(out);
     std::filesystem::remove(err);

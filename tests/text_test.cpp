@@ -110,11 +110,9 @@ TEST_CASE("text: UTF-8 is told from what only looks like it") {
 }
 
 TEST_CASE("text: what is far from every word is close to none, however long") {
-    // Known: closest() allows a third of the whole word's length, but measures its first 64 characters only.
     CHECK(closest(std::string(300, 'z'), {"noise.heading", "scenario.poses"}) == "");
 }
 
 TEST_CASE("text: a number has one sign") {
-    // Known: to_number() takes a plus away before the minus.
     CHECK_FALSE(to_number("+-5").has_value());
 }

@@ -26,8 +26,7 @@ public:
 };
 
 /// What somebody gave, fit to stand in a message: control characters become `?`, and a long text is cut.
-inline std::string printable(const std::string& given) {
-    constexpr std::size_t longest = 100;
+inline std::string printable(const std::string& given, std::size_t longest = 100) {
     std::string text = given.size() > longest ? given.substr(0, longest) + "..." : given;
     for (char& c : text)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';

@@ -15,6 +15,10 @@ struct Interval {
 double t_quantile(double alpha, double degrees);
 double normal_quantile(double alpha);
 
+/// Quantile of chi-square with `degrees` of freedom below which `p` of it lies, and the one above which `p` lies.
+double chi_square_quantile(double p, double degrees);
+double chi_square_upper_quantile(double p, double degrees);
+
 /// Mean, standard error and t interval of independent values; NaN where there are too few.
 struct Summary {
     std::int64_t count = 0;

@@ -20,8 +20,11 @@ struct StoredStudy {
 };
 
 /// Throws InputError where a results file could not be put at `path`: folder missing or not writable, or something is
-/// there already and `overwrite` is false. Writes nothing.
-void check_output(const std::string& path, bool overwrite);
+/// there already and `overwrite` is false; `way_out` is the remedy for that. Writes nothing.
+void check_output(const std::string& path, bool overwrite, const std::string& way_out = "Give another name");
+
+/// Writes a text to `path` in the same way as results: whole, or not at all. Throws Failure where the system refuses.
+void write_text_file(const std::string& path, const std::string& text);
 
 /// Writes the study to `path`: built in memory, written aside, synced and renamed, so that the name never stands for half
 /// a file. Replaces what is there. Throws Failure where the system refuses (no space ...), leaving what was there.

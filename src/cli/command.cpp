@@ -1,12 +1,11 @@
 #include "command.hpp"
 
 #include <credence/error.hpp>
+#include <credence/store.hpp>
 #include <credence/text.hpp>
 
 #include <boost/program_options.hpp>
 
-#include <cstdio>
-#include <fstream>
 #include <iostream>
 
 namespace credence::cli {
@@ -125,17 +124,13 @@ double parse_margin(const Parsed& parsed) {
     return margin;
 }
 
+void check_output_option(const Parsed& parsed) {
+    if (const std::optional<std::string> path = parsed.text("output")) check_output(*path, false);
+}
+
 void write_output(const Parsed& parsed, const std::string& text) {
-    const std::optional<std::string> path = parsed.text("output");
-    if (!path) {
-        std::cout << text << std::flush;
-        if (!std::cout) throw Failure("cannot write to the standard output.");
-        return;
-    }
-    std::ofstream stream(*path, std::ios::binary);
-    if (!stream) throw InputError("cannot write " + *path + ". Give a path in a folder that exists and can be written to.");
-    stream << text << std::flush;
-    if (!stream) throw Failure("cannot write " + *path + " (no space left?).");
+    if (const std::optional<std::string> path = parsed.text("output")) write_text_file(*path, text);
+    else std::cout << text;
 }
 
 Option set_option() {

@@ -48,10 +48,13 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
 /// `5%` or `0.05` as a number in (0, 1); throws InputError.
 double parse_margin(const Parsed& parsed);
 
+/// Refuses an `-o` that exists or cannot be written, before any work.
+void check_output_option(const Parsed& parsed);
+
 /// Writes a text to `-o`'s file, or to the standard output.
 void write_output(const Parsed& parsed, const std::string& text);
 
-/// `--margin`, `--format` and `-o` as report and judge share them.
+// Options that several commands share.
 Option set_option();
 Option margin_option();
 Option output_option(const std::string& help);

@@ -35,6 +35,12 @@ std::string command_line(int argc, char** argv) {
     return joined(words, " ");
 }
 
+/// One line on the error stream, whatever was given to the program.
+int complain(const std::string& message, int exit_code) {
+    std::cerr << printable(message, 1000) << "\n";
+    return exit_code;
+}
+
 int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
     const auto parsed = [&](const cli::Command& command) { return cli::parse(command, arguments); };
     if (name == "run") { const auto p = parsed(cli::run_command()); return p ? cli::run(*p, line) : 0; }
@@ -49,20 +55,19 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
 
 int main(int argc, char** argv) {
     const std::string name = argc > 1 ? argv[1] : "--help";
-    const bool known = name != "--help" && name != "-h" && name != "--version" && name.front() != '-';
+    const bool known = name != "--help" && name != "-h" && name != "--version" && !name.empty() && name.front() != '-';
     const std::string prefix = known ? "credence " + name + ": " : "credence: ";
     try {
         if (name == "--help" || name == "-h" || name == "help") return help();
         if (name == "--version") { std::cout << version_text(); return 0; }
-        return dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
+        const int code = dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
+        if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
+        return code;
     } catch (const InputError& error) {
-        std::cerr << prefix << error.what() << "\n";
-        return 2;
+        return complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
-        std::cerr << prefix << "out of memory. Ask for fewer trials; --dry-run says what they take.\n";
-        return 1;
+        return complain(prefix + "out of memory. Ask for fewer trials; --dry-run says what they take.", 1);
     } catch (const std::exception& error) {
-        std::cerr << prefix << error.what() << "\n";
-        return 1;
+        return complain(prefix + error.what(), 1);
     }
 }

@@ -33,6 +33,9 @@ const Command& replay_command() {
 namespace {
 
 std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& record_path) {
+    for (const char* option : {"scenario", "arm", "trial"})
+        if (parsed.has(option))
+            throw InputError(std::string("--") + option + " does not go with --noise (a record is one trial, for all arms). Leave it out.");
     const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
     const NoiseRecord record = read_noise_record(record_path);
     check_covers(record, scenario, record_path);
@@ -120,7 +123,7 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
     std::string text;
     for (const Trajectory& t : trajectories) {
         char line[400];
-        std::snprintf(line, sizeof line, "%s/%s: %s, trace(P) %.4f %s, unseen %.0f, pose error %.4f, NEES/n %.3f, NIS/m %.3f\n",
+        std::snprintf(line, sizeof line, "%s/%s: %s, trace(P) %.5g %s, unseen %.0f, pose error %.5g, NEES/n %.4g, NIS/m %.4g\n",
                       t.scenario.name.c_str(), arm_name(t.arm).c_str(), status_text(t).c_str(), t.columns[column_trace_P],
                       trace_unit(t.scenario).c_str(), t.columns[column_unseen], t.columns[column_pose_error],
                       t.columns[column_nees_ratio], t.columns[column_nis_ratio]);
@@ -135,7 +138,7 @@ int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1) throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
     const std::string format = parsed.choice("format", {"text", "json", "csv"});
     const std::optional<std::string> output = parsed.text("output"), noise = parsed.text("noise");
-    if (output) check_output(*output, false);
+    check_output_option(parsed);
     const std::vector<Trajectory> trajectories = noise ? replay_noise(parsed, *noise) : replay_stored(parsed);
     if (output) {
         RunFacts facts = build_facts();

@@ -18,6 +18,7 @@ int report(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
     const std::string format = parsed.choice("format", {"text", "json", "csv"});
     const double margin = parse_margin(parsed);
+    check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require", {"consistent"});
     const Report report = make_report(read_results(parsed.arguments.front()).study, margin);
     write_output(parsed, format == "json" ? report_json(report) : format == "csv" ? report_csv(report) : report_text(report));

@@ -9,6 +9,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -87,12 +88,13 @@ void check_same_study(const Study& stored, const Study& asked, const std::string
 /// The study to go on with: new, or what the results file holds.
 Study starting_study(const RunRequest& request) {
     Study study = new_study(request.scenarios, request.root_seed);
-    if (request.resume && std::filesystem::exists(request.output)) {
+    check_output(request.output, request.overwrite || request.resume, "Give another name, --resume or --overwrite");
+    std::error_code none;
+    if (request.resume && std::filesystem::exists(request.output, none)) {
         Study stored = read_results(request.output).study;
         check_same_study(stored, study, request.output);
         study = std::move(stored);
     }
-    check_output(request.output, request.overwrite || request.resume);
     return study;
 }
 
@@ -109,22 +111,30 @@ std::string now_text() {
     return text;
 }
 
-int dry_run(const RunRequest& request, const Study& study) {
-    // One small block of each scenario tells the speed of this machine; a second one, warm, is what counts.
-    constexpr int sample = 64;
-    double seconds = 0;
-    for (const Scenario& scenario : request.scenarios) {
-        const Problem problem(scenario);
-        run_block(problem, request.root_seed, 0, sample / 4);
+/// Seconds that one trial of a scenario takes on one thread: tried with more and more of them, for a fifth of a second.
+double seconds_of_a_trial(const Scenario& scenario, const RunRequest& request) {
+    const Problem problem(scenario);
+    for (int trials = 1;; trials *= 2) {
         const auto start = std::chrono::steady_clock::now();
-        run_block(problem, request.root_seed, 0, sample);
-        seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / sample;
+        run_block(problem, request.root_seed, 0, trials);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (seconds > 0.1 || trials == block_size || trials >= request.options.trials) return seconds / trials;
     }
+}
+
+int dry_run(const RunRequest& request, const Study& study) {
+    double seconds = 0;
+    std::int64_t blocks = 0;
+    for (const ScenarioResults& results : study.scenarios) {
+        const std::int64_t missing = std::max<std::int64_t>(0, request.options.trials - results.trials);
+        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(missing);
+        blocks += block_count(missing);
+    }
+    const std::int64_t at_once = std::min<std::int64_t>({request.options.threads, omp_get_num_procs(), std::max<std::int64_t>(1, blocks)});
     const Footprint size = footprint(study, request.options.trials, request.options.threads);
-    const double expected = seconds * static_cast<double>(request.options.trials) / request.options.threads;
-    std::cout << request.scenarios.size() << " scenarios, " << request.options.trials << " trials each, "
-              << request.options.threads << " threads: about " << duration_text(expected) << ", "
-              << bytes_text(size.memory) << " of memory, " << bytes_text(size.file) << " in " << request.output << "\n";
+    std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
+              << ", threads: " << request.options.threads << ". About " << duration_text(seconds / static_cast<double>(at_once))
+              << ", " << bytes_text(size.memory) << " of memory, " << bytes_text(size.file) << " in " << request.output << "\n";
     return 0;
 }
 
@@ -135,7 +145,7 @@ int run(const Parsed& parsed, const std::string& command_line) {
     Study study = starting_study(request);
     if (parsed.has("dry-run")) return dry_run(request, study);
     if (nothing_missing(study, request.options.trials)) {
-        std::cerr << request.output << " has these trials already.\n";
+        if (!request.quiet) std::cout << report_text(make_report(study, 0.05)) << "\n" << request.output << " has these trials already\n";
         return 0;
     }
 
