@@ -41,8 +41,8 @@ int batch_size(const ProblemView& view) {
 }
 
 /// Adds one octet's figures, [figure_count, K - 1, 8], those of trials that do not count as zeros.
-void fold_figures(const double* figures, std::size_t figure_count, std::size_t steps, const std::array<bool, octet>& counts,
-                  OctetSums& folded) {
+void fold_figures(const double* figures, std::size_t figure_count, std::size_t steps,
+                  const std::array<bool, octet>& counts, OctetSums& folded) {
     for (std::size_t f = 0; f < figure_count; ++f) {
         Octet run_sum{};
         for (std::size_t cell = f * steps; cell < (f + 1) * steps; ++cell)
@@ -77,7 +77,8 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
                  int trials, SimulateFunction simulate) {
     const ProblemView& view = problem.view();
     const std::vector<Column> declared = trial_columns(problem.scenario());
-    const std::size_t figures = static_cast<std::size_t>(view.figure_count), steps = static_cast<std::size_t>(view.poses - 1);
+    const std::size_t figures = static_cast<std::size_t>(view.figure_count),
+                      steps = static_cast<std::size_t>(view.poses - 1);
     const std::size_t cells = figures * steps, all = static_cast<std::size_t>(trials);
     const int batch_trials = batch_size(view);
     const std::size_t octets = static_cast<std::size_t>(batch_trials) / octet;
@@ -87,13 +88,15 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
     OctetSums folded(figures, cells);
     for (int done = 0; done < trials; done += batch_trials) {
         const int count = std::min(batch_trials, trials - done);
-        simulate(view, {controller, root_seed, first_trial + done, count, columns.data(), batch_figures.data(), scratch.data()});
+        simulate(view, {controller, root_seed, first_trial + done, count, columns.data(), batch_figures.data(),
+                        scratch.data()});
         for (int first = 0; first < count; first += octet) {
             const std::size_t place = static_cast<std::size_t>(first) / octet;
             std::array<bool, octet> counts{};
             for (int i = 0; i < std::min(octet, count - first); ++i)
-                counts[static_cast<std::size_t>(i)] = store_trial(declared, columns.data() + place * column_count * octet + i,
-                                                                  static_cast<std::size_t>(done + first + i), all, arm);
+                counts[static_cast<std::size_t>(i)] =
+                    store_trial(declared, columns.data() + place * column_count * octet + i,
+                                static_cast<std::size_t>(done + first + i), all, arm);
             fold_figures(batch_figures.data() + place * cells * octet, figures, steps, counts, folded);
         }
     }

@@ -86,7 +86,8 @@ private:
         const Moments run = over_steps(arm_, totals);
         const double run_scale = scale / results_.steps();
         const Estimate time = estimate(run, run_scale, plain_);
-        verdict_.blocks.push_back({name, figure.dimension, time.value, run.standard_error * run_scale, time.interval()});
+        verdict_.blocks.push_back(
+            {name, figure.dimension, time.value, run.standard_error * run_scale, time.interval()});
         all_inside_ = all_inside_ && time.interval().low >= 1 - margin && time.interval().high <= 1 + margin;
         note_needed_trials(time);
 
@@ -100,7 +101,8 @@ private:
             const Side side = side_of(step, 1 - margin, 1 + margin);
             if (side == Side::inside || !beyond_chi_square(step, side, figure.dimension)) continue;
             const std::size_t which = side == Side::above ? 0 : 1;
-            if (steps[which].empty() || std::abs(step.value - 1) > std::abs(worst[which].value - 1)) worst[which] = step;
+            if (steps[which].empty() || std::abs(step.value - 1) > std::abs(worst[which].value - 1))
+                worst[which] = step;
             steps[which].push_back(static_cast<int>(k) + 1);
         }
         for (const std::size_t which : {0u, 1u})
@@ -137,8 +139,8 @@ private:
                                      block, when, estimate.value, estimate.interval()});
     }
 
-    /// Trials that bring the time-averaged interval off the margin's edge, if the mean stays: every block must get inside,
-    /// but one outside is enough.
+    /// Trials that bring the time-averaged interval off the margin's edge, if the mean stays: every block must get
+    /// inside, but one outside is enough.
     void note_needed_trials(const Estimate& time) {
         const double off = std::abs(time.value - 1), slack = std::abs(off - verdict_.margin);
         const bool inside = off < verdict_.margin;

@@ -153,7 +153,9 @@ void write_durably(const std::string& path, const void* bytes, std::size_t size)
     sync_folder(folder_of(target), path);
 }
 
-void write_text_file(const std::string& path, const std::string& text) { write_durably(path, text.data(), text.size()); }
+void write_text_file(const std::string& path, const std::string& text) {
+    write_durably(path, text.data(), text.size());
+}
 
 void check_output(const std::string& path, bool overwrite, const std::string& way_out) {
     namespace fs = std::filesystem;

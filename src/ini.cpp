@@ -93,7 +93,8 @@ Scenario read_scenario_text(const std::string& text, const std::string& origin, 
         validate(scenario);
     } catch (const InputError& error) {
         const auto line = lines.find(error.key());
-        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(), error.key());
+        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
+                         error.key());
     }
     return resolved(scenario);
 }

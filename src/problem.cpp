@@ -32,7 +32,8 @@ Control fixed_control(const Scenario& s, int k) {
     const bool heading = s.process == Process::heading;
     switch (robot_path(s)) {
         case Path::straight: return {0, {d, 0}};
-        case Path::circle: return heading ? Control{delta, polar(d, delta)} : Control{0, polar(d, circle_direction(s, k) + delta)};
+        case Path::circle:
+            return heading ? Control{delta, polar(d, delta)} : Control{0, polar(d, circle_direction(s, k) + delta)};
         case Path::still: break;
     }
     return {};

@@ -73,8 +73,10 @@ std::vector<Figure> step_figures(const Scenario& scenario) {
     figures.push_back({"nis", "normalised innovation squared over all rows", "1", FigureRole::nis, 0, false});
     figures.push_back({"nis_rows", "measurement rows", "1", FigureRole::rows, 0, true});
     figures.push_back({"unseen_features", "features not seen", "1", FigureRole::other, 0, true});
-    figures.push_back({"trace_P_step", "trace of the covariance after the update", trace_unit(scenario), FigureRole::other, 0, false});
-    figures.push_back({"squared_pose_error", "squared error of the estimated pose", trace_unit(scenario), FigureRole::other, 0, false});
+    figures.push_back({"trace_P_step", "trace of the covariance after the update", trace_unit(scenario),
+                       FigureRole::other, 0, false});
+    figures.push_back({"squared_pose_error", "squared error of the estimated pose", trace_unit(scenario),
+                       FigureRole::other, 0, false});
     for (const std::string& name : component_names(scenario))
         figures.push_back({"standardised_error_" + name, "error of " + name + " over its predicted standard deviation",
                            "1", FigureRole::standardised_error, 1, false});

@@ -82,7 +82,8 @@ std::string report_json(const Report& report) {
 }
 
 std::string report_csv(const Report& report) {
-    std::string text = "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,median,sd,published,percentile,verdict\n";
+    std::string text =
+        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,median,sd,published,percentile,verdict\n";
     for (const ArmReport& arm : report.arms)
         for (const FigureReport& figure : arm.figures)
             text += csv_row(arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure,

@@ -35,7 +35,8 @@ int decimals_for(double uncertainty) {
 std::string with_interval(const Summary& summary) {
     const double half = (summary.ci95.high - summary.ci95.low) / 2;
     const int digits = decimals_for(half);
-    return std::isnan(half) ? number(summary.mean, digits) : number(summary.mean, digits) + " ± " + number(half, digits);
+    return std::isnan(half) ? number(summary.mean, digits)
+                            : number(summary.mean, digits) + " ± " + number(half, digits);
 }
 
 std::string title_of(const std::string& figure, const std::string& unit) {
@@ -76,10 +77,12 @@ std::string figure_part(const Report& report, const std::string& scenario, const
 }
 
 std::string consistency_part(const Report& report, const std::string& scenario) {
-    std::string text = "  consistency" + padded("NEES/n", 31) + padded("NIS/m", 22) + padded("failed", 10) + "   verdict\n";
+    std::string text =
+        "  consistency" + padded("NEES/n", 31) + padded("NIS/m", 22) + padded("failed", 10) + "   verdict\n";
     for (const ArmReport& arm : report.arms) {
         if (arm.scenario != scenario) continue;
-        text += "    " + padded(arm.arm, 18, false) + padded(with_interval(figure_of(arm.figures, "nees_ratio").summary), 22) +
+        text += "    " + padded(arm.arm, 18, false) +
+                padded(with_interval(figure_of(arm.figures, "nees_ratio").summary), 22) +
                 padded(with_interval(figure_of(arm.figures, "nis_ratio").summary), 22) +
                 padded(std::to_string(arm.failed), 10) + "   " + verdict_name(arm.consistency.verdict) + "\n";
     }
@@ -97,11 +100,13 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
         if (finding.what != what) continue;
-        const auto same = std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
+        const auto same =
+            std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
         if (same == worst.end()) worst.push_back(finding);
         else if (distance_off(finding) > distance_off(*same)) *same = finding;
     }
-    std::sort(worst.begin(), worst.end(), [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
+    std::sort(worst.begin(), worst.end(),
+              [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
         parts.push_back(worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
@@ -128,17 +133,21 @@ std::string wrapped_list(const std::string& head, const std::vector<std::string>
 /// Why an arm has its verdict; JSON has every finding with its interval.
 std::string findings_part(const ArmReport& arm) {
     std::string text;
-    const auto add = [&](const std::string& line) { text += "    " + padded(text.empty() ? arm.arm : "", 12, false) + line + "\n"; };
+    const auto add = [&](const std::string& line) {
+        text += "    " + padded(text.empty() ? arm.arm : "", 12, false) + line + "\n";
+    };
     for (const char* what : {"optimistic", "pessimistic", "biased"})
         if (const auto parts = findings_parts(arm.consistency.findings, what); !parts.empty())
-            add(wrapped_list(std::string(what) + (std::string(what) == "biased" ? " (error/sigma):" : " (NEES/dim):"), parts));
+            add(wrapped_list(std::string(what) + (std::string(what) == "biased" ? " (error/sigma):" : " (NEES/dim):"),
+                             parts));
     if (arm.consistency.verdict == Verdict::undecided && arm.consistency.trials_to_decide > 0)
         add("undecided: about " + number(arm.consistency.trials_to_decide, 0) + " trials would decide");
     return text;
 }
 
 bool has_published(const Scenario& scenario) {
-    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() && scenario.published.pose_error.empty());
+    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() &&
+             scenario.published.pose_error.empty());
 }
 
 std::string scenario_part(const Report& report, const Scenario& scenario) {
@@ -158,10 +167,11 @@ std::string warnings_part(const Report& report) {
     for (const ArmReport& arm : report.arms) {
         const std::string name = arm.scenario + "/" + arm.arm;
         if (static_cast<double>(arm.failed) > 0.01 * static_cast<double>(arm.trials))
-            text += "WARNING: " + std::to_string(arm.failed) + " of " + std::to_string(arm.trials) + " trials of " + name +
-                    " failed and are left out of its figures.\n";
+            text += "WARNING: " + std::to_string(arm.failed) + " of " + std::to_string(arm.trials) + " trials of " +
+                    name + " failed and are left out of its figures.\n";
         if (arm.diverged > 0)
-            text += "note: " + std::to_string(arm.diverged) + " trials of " + name + " diverged; they are in the figures.\n";
+            text += "note: " + std::to_string(arm.diverged) + " trials of " + name +
+                    " diverged; they are in the figures.\n";
     }
     if (!report.complete) text += "note: the study is not complete.\n";
     return text;

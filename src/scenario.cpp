@@ -28,26 +28,32 @@ bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
 void check_sensor(const SensorSettings& sensor) {
     if (!(sensor.range_min < sensor.range_max))
         throw invalid_value("sensor.range_max", to_text(sensor.range_max),
-                            "must be above sensor.range_min=" + to_text(sensor.range_min), "Give a range that is not empty");
+                            "must be above sensor.range_min=" + to_text(sensor.range_min),
+                            "Give a range that is not empty");
     if (sensor.noise == RangeNoise::constant) {
         if (!has_variance(sensor.sigma))
-            throw invalid_value("sensor.sigma", to_text(sensor.sigma), "it makes S singular", "Give a standard deviation above 0");
+            throw invalid_value("sensor.sigma", to_text(sensor.sigma), "it makes S singular",
+                                "Give a standard deviation above 0");
         return;
     }
     if (std::isinf(sensor.range_max))
-        throw invalid_value("sensor.range_max", "inf", "ranged noise grows up to range_max", "Give a finite range or sensor.noise=constant");
+        throw invalid_value("sensor.range_max", "inf", "ranged noise grows up to range_max",
+                            "Give a finite range or sensor.noise=constant");
     if (!has_variance(sensor.sigma_near))
-        throw invalid_value("sensor.sigma_near", to_text(sensor.sigma_near), "it makes S singular", "Give a standard deviation above 0");
+        throw invalid_value("sensor.sigma_near", to_text(sensor.sigma_near), "it makes S singular",
+                            "Give a standard deviation above 0");
     if (sensor.sigma_far < sensor.sigma_near)
-        throw invalid_value("sensor.sigma_far", to_text(sensor.sigma_far),
-                            "below sensor.sigma_near=" + to_text(sensor.sigma_near) + " it would turn negative far away",
-                            "Give at least sigma_near");
+        throw invalid_value(
+            "sensor.sigma_far", to_text(sensor.sigma_far),
+            "below sensor.sigma_near=" + to_text(sensor.sigma_near) + " it would turn negative far away",
+            "Give at least sigma_near");
 }
 
 /// A believed sigma of 0 is refused where it makes P or S singular [model.md, Conventions].
 void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why) {
     if (!harmful || has_variance(sigma * factor)) return;
-    if (!has_variance(sigma)) throw invalid_value(std::string("noise.") + key, to_text(sigma), why, "Give a standard deviation above 0");
+    if (!has_variance(sigma))
+        throw invalid_value(std::string("noise.") + key, to_text(sigma), why, "Give a standard deviation above 0");
     const std::string name = std::string("filter.") + (std::string(key) == "deformation" ? "edges" : key);
     throw invalid_value(name, to_text(factor), why, "Give a factor above 0");
 }
@@ -62,7 +68,8 @@ void check_noise(const Scenario& s) {
                    "edges believed exact make S or P singular");
     for (const auto& [name, factor] : {std::pair{"filter.measurement", s.filter.measurement},
                                        std::pair{"filter.covariance", s.filter.covariance}})
-        if (!has_variance(factor)) throw invalid_value(name, to_text(factor), "it makes S or P singular", "Give a factor above 0");
+        if (!has_variance(factor))
+            throw invalid_value(name, to_text(factor), "it makes S or P singular", "Give a factor above 0");
     if (!heading && s.noise.initial_heading > 0)
         throw invalid_value("noise.initial_heading", to_text(s.noise.initial_heading),
                             "the translation model has no heading", "Set it to 0 or use model.process=heading");
@@ -72,7 +79,8 @@ void check_edges(const Scenario& s) {
     const int features = static_cast<int>(s.features.positions.size());
     for (const Edge& edge : s.edges.list)
         if (edge.to >= features)
-            throw invalid_value("edges.graph", graph_text(s.edges), "there are " + std::to_string(features) + " features",
+            throw invalid_value("edges.graph", graph_text(s.edges),
+                                "there are " + std::to_string(features) + " features",
                                 "Name features 0 to " + std::to_string(features - 1));
 }
 
@@ -81,7 +89,8 @@ void check_planner(const Scenario& s) {
     if (s.planner.turns && s.planner.turns->empty() && heading)
         throw invalid_value("planner.turns", "none", "the heading model needs at least one", "Give turns in radians");
     if (s.planner.turns && !s.planner.turns->empty() && !heading)
-        throw invalid_value("planner.turns", turns_text(s.planner.turns), "the translation model does not turn", "Set it to none");
+        throw invalid_value("planner.turns", turns_text(s.planner.turns), "the translation model does not turn",
+                            "Set it to none");
 }
 
 void check_arms(const Scenario& s) {
@@ -89,14 +98,17 @@ void check_arms(const Scenario& s) {
     if (s.arms.estimators)
         for (const Estimator estimator : *s.arms.estimators)
             if (estimator != own)
-                throw invalid_value("arms.estimators", names_text(*s.arms.estimators, estimator_names()),
-                                    s.process == Process::heading ? "kf is for model.process=translation" : "ekf is for model.process=heading",
-                                    "Use " + estimator_names()[static_cast<std::size_t>(own)] + " or change the process");
+                throw invalid_value(
+                    "arms.estimators", names_text(*s.arms.estimators, estimator_names()),
+                    s.process == Process::heading ? "kf is for model.process=translation"
+                                                  : "ekf is for model.process=heading",
+                    "Use " + estimator_names()[static_cast<std::size_t>(own)] + " or change the process");
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);
-    for (const auto& [key, figures] : {std::pair{"published.trace_P", &s.published.trace_P}, std::pair{"published.unseen", &s.published.unseen},
-                                       std::pair{"published.pose_error", &s.published.pose_error}})
+    for (const auto& [key, figures] :
+         {std::pair{"published.trace_P", &s.published.trace_P}, std::pair{"published.unseen", &s.published.unseen},
+          std::pair{"published.pose_error", &s.published.pose_error}})
         for (const PublishedFigure& figure : *figures)
             if (std::find(names.begin(), names.end(), figure.arm) == names.end())
                 throw invalid_value(key, published_text(*figures), "'" + figure.arm + "' is not an arm",

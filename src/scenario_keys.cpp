@@ -103,14 +103,15 @@ void add_filter_keys(Keys& keys) {
 void add_control_keys(Keys& keys) {
     keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
                                          [](auto& s) -> auto& { return s.fixed_path; }));
-    keys.push_back({"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
-                    [](Scenario& s, const std::string& v) {
-                        s.planner.speeds.reset();
-                        if (v != "default")
-                            s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
-                    },
-                    [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; }});
-    keys.push_back({"planner.turns", "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
+    keys.push_back(
+        {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
+         [](Scenario& s, const std::string& v) {
+             s.planner.speeds.reset();
+             if (v != "default") s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
+         },
+         [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; }});
+    keys.push_back({"planner.turns",
+                    "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
                     [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
                     [](const Scenario& s) { return turns_text(s.planner.turns); }});
     keys.push_back(integer_key("planner.horizon", "steps planned ahead: 1", 1, 1,

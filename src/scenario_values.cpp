@@ -19,7 +19,8 @@ bool inside(double value, const Range& range) {
 }
 
 std::string characters_not_in(const std::string& value, bool (*allowed)(unsigned char)) {
-    const auto bad = std::find_if_not(value.begin(), value.end(), [=](char c) { return allowed(static_cast<unsigned char>(c)); });
+    const auto bad =
+        std::find_if_not(value.begin(), value.end(), [=](char c) { return allowed(static_cast<unsigned char>(c)); });
     return bad == value.end() ? "" : "it holds a character that is not allowed there";
 }
 
@@ -36,7 +37,8 @@ int parse_feature_index(const std::string& value, const std::string& text) {
 
 /// A list of names of an enumeration, without repeats.
 template <class Enum>
-std::vector<Enum> parse_names(const std::string& name, const std::string& value, const std::vector<std::string>& names) {
+std::vector<Enum> parse_names(const std::string& name, const std::string& value,
+                              const std::vector<std::string>& names) {
     std::vector<Enum> values;
     for (const std::string& part : split_list(value)) {
         const Enum one = static_cast<Enum>(parse_choice(name, part, names));
@@ -59,8 +61,9 @@ double parse_real(const std::string& name, const std::string& value, const Range
 
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high) {
     const std::optional<std::int64_t> number = to_integer(value);
-    const std::string bounds = low == high ? "must be " + std::to_string(low)
-                                           : "must be at least " + std::to_string(low) + " and at most " + std::to_string(high);
+    const std::string bounds = low == high
+                                   ? "must be " + std::to_string(low)
+                                   : "must be at least " + std::to_string(low) + " and at most " + std::to_string(high);
     if (!number) throw invalid_value(name, value, "not a whole number", "It " + bounds);
     if (*number < low || *number > high) throw invalid_value(name, value, bounds, "Give a number in that range");
     return *number;
@@ -102,11 +105,13 @@ EdgeSettings parse_graph(const std::string& value) {
     for (const std::string& pair : split_list(value)) {
         const std::size_t dash = pair.find('-');
         if (dash == std::string::npos)
-            throw invalid_value("edges.graph", value, "'" + pair + "' is not a pair", "Give all, chain, none or pairs such as `0-1, 1-2`");
+            throw invalid_value("edges.graph", value, "'" + pair + "' is not a pair",
+                                "Give all, chain, none or pairs such as `0-1, 1-2`");
         const Edge edge{parse_feature_index(value, trimmed(pair.substr(0, dash))),
                         parse_feature_index(value, trimmed(pair.substr(dash + 1)))};
         if (edge.from >= edge.to)
-            throw invalid_value("edges.graph", value, "'" + pair + "' does not go from a lower to a higher feature", "Write pairs as `0-1`");
+            throw invalid_value("edges.graph", value, "'" + pair + "' does not go from a lower to a higher feature",
+                                "Write pairs as `0-1`");
         if (std::find(edges.list.begin(), edges.list.end(), edge) != edges.list.end())
             throw invalid_value("edges.graph", value, "'" + pair + "' stands there twice", "Name each edge once");
         edges.list.push_back(edge);
@@ -136,9 +141,11 @@ std::optional<std::vector<double>> parse_turns(const std::string& value) {
     if (value == "default") return std::nullopt;
     if (value == "none") return std::vector<double>{};
     std::vector<double> turns;
-    for (const std::string& part : split_list(value)) turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
+    for (const std::string& part : split_list(value))
+        turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
     if (turns.empty() || turns.size() > 100)
-        throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns", "Give 1 to 100, in radians");
+        throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns",
+                            "Give 1 to 100, in radians");
     return turns;
 }
 

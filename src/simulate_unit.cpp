@@ -1,5 +1,6 @@
 // One unit of the engine. CMake compiles this file once for each instruction set, with CREDENCE_UNIT naming it and
-// CREDENCE_LANES saying how many trials run at once. Nothing here may emit a symbol outside that namespace: no containers, no library calls.
+// CREDENCE_LANES saying how many trials run at once. Nothing here may emit a symbol outside that namespace: no
+// containers, no library calls.
 
 #include <credence/lane.hpp>
 #include <credence/simulate.hpp>
@@ -46,8 +47,8 @@ void simulate_layout(const ProblemView& problem, const Batch& batch) {
 
 template <Process process>
 void simulate_process(const ProblemView& problem, const Batch& batch) {
-    // The seed's three features are known to the compiler and run in lanes; any other number runs the same source, rolled
-    // and one trial at a time (a pack of 64-feature beliefs would not fit a thread's stack).
+    // The seed's three features are known to the compiler and run in lanes; any other number runs the same source,
+    // rolled and one trial at a time (a pack of 64-feature beliefs would not fit a thread's stack).
     if (problem.features == 3)
         simulate_layout<Pack<CREDENCE_LANES>, process, 3>(problem, batch);
     else

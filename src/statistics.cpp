@@ -77,7 +77,9 @@ double percentile_of(const std::vector<double>& values, double x) {
         below += value < x;
         equal += value == x;
     }
-    return count == 0 ? nan : 100 * (static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / static_cast<double>(count);
+    return count == 0
+               ? nan
+               : 100 * (static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / static_cast<double>(count);
 }
 
 std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b) {

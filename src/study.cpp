@@ -59,7 +59,8 @@ private:
         report();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
         for (std::size_t t = 0; t < tasks.size(); ++t) {
-            // An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after it.
+            // An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after
+            // it.
             if (stopped) continue;
             try {
                 run_task(tasks[t]);
@@ -112,9 +113,10 @@ Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed)
 void run_study(Study& study, const RunOptions& options) {
     for (const ScenarioResults& results : study.scenarios)
         if (results.trials > options.trials)
-            throw invalid_value("--trials", std::to_string(options.trials),
-                                "scenario " + results.scenario.name + " has " + std::to_string(results.trials) + " already",
-                                "Ask for at least as many");
+            throw invalid_value(
+                "--trials", std::to_string(options.trials),
+                "scenario " + results.scenario.name + " has " + std::to_string(results.trials) + " already",
+                "Ask for at least as many");
     Runner(study, options).run();
 }
 
@@ -130,7 +132,8 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
         const auto in_memory = static_cast<std::int64_t>(results.columns.size() * sizeof(double));
         total.memory += arms * (trials * in_memory + cells * 2 * 64);
     }
-    total.memory += 2 * total.file + static_cast<std::int64_t>(threads) * (8 << 20);  // the file's image and the library's, the threads' stacks
+    total.memory += 2 * total.file + static_cast<std::int64_t>(threads) *
+                                         (8 << 20);  // the file's image and the library's, the threads' stacks
     return total;
 }
 

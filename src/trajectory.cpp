@@ -155,9 +155,11 @@ Trajectory replay(const Problem& problem, Controller controller, const Noise& no
     std::vector<double> figures(static_cast<std::size_t>(view.figure_count) * static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, trajectory);
     if (view.process == Process::heading)
-        run_trial<Layout<Process::heading, any_count>>(view, controller, noise, recorder, trajectory.columns.data(), figures.data());
+        run_trial<Layout<Process::heading, any_count>>(view, controller, noise, recorder, trajectory.columns.data(),
+                                                       figures.data());
     else
-        run_trial<Layout<Process::translation, any_count>>(view, controller, noise, recorder, trajectory.columns.data(), figures.data());
+        run_trial<Layout<Process::translation, any_count>>(view, controller, noise, recorder, trajectory.columns.data(),
+                                                           figures.data());
     fill_failed(trial_columns(scenario), trajectory.columns.data());
     return trajectory;
 }
@@ -166,7 +168,8 @@ Trajectory replay(const Problem& problem, Controller controller, const Noise& no
 
 void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file) {
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
-        throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " + remedy + ".");
+        throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " +
+                         remedy + ".");
     };
     const int features = static_cast<int>(scenario.features.positions.size());
     const int edges = static_cast<int>(edge_list(scenario).size());
@@ -177,7 +180,8 @@ void check_covers(const NoiseRecord& record, const Scenario& scenario, const std
         refuse("it has " + std::to_string(record.features) + " features, the scenario " + std::to_string(features),
                "Give fewer features.positions or record more");
     if (scenario.truth.edge_noise == EdgeNoise::independent && record.edges != edges)
-        refuse("truth.edge_noise=independent needs `edge` [poses, " + std::to_string(edges) + ", 2]", "Record it, in graph order");
+        refuse("truth.edge_noise=independent needs `edge` [poses, " + std::to_string(edges) + ", 2]",
+               "Record it, in graph order");
     if (scenario.sensor.detection < 1)
         refuse("a record has no detection draws", "Set sensor.detection=1");
 }

@@ -12,8 +12,8 @@ namespace credence {
 
 inline constexpr int block_size = 256;
 
-/// One arm's part of a block. Sums run over the trials that did not fail: eight running sums, trial i going to the one of
-/// i mod 8 in trial order, then added up in order. That is the same for every lane width up to 8.
+/// One arm's part of a block. Sums run over the trials that did not fail: eight running sums, trial i going to the one
+/// of i mod 8 in trial order, then added up in order. That is the same for every lane width up to 8.
 struct ArmBlock {
     std::vector<double> columns;            ///< [column_count, trials], failed trials filled
     std::vector<double> sums;               ///< [figure_count, K - 1]

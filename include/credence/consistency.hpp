@@ -23,7 +23,8 @@ struct BlockConsistency {
     Interval ci95;
 };
 
-/// One thing that speaks against consistency: what (optimistic, pessimistic, biased), where (a block or component), when.
+/// One thing that speaks against consistency: what (optimistic, pessimistic, biased), where (a block or component),
+/// when.
 struct Finding {
     std::string what, where, when;
     double value = 0;       ///< NEES / dimension, or mean standardised error, where it is farthest off
@@ -35,7 +36,8 @@ struct Consistency {
     double margin = 0;
     std::vector<BlockConsistency> blocks;
     std::vector<Finding> findings;
-    double trials_to_decide = 0;  ///< undecided only: trials that would bring every block's interval off the margin's edge
+    /// Undecided only: trials that would bring the intervals off the margin's edge; 0 where that is not known.
+    double trials_to_decide = 0;
 };
 
 /// Judges one arm from its totals. `margin` delta: NEES / dimension within [1 - delta, 1 + delta] counts as consistent.

@@ -72,7 +72,8 @@ struct Choice {
     }
 };
 
-/// Greedy control from pose k - 1 to k, given the belief at pose k - 1. `costs(i, cost)` is told every candidate's cost.
+/// Greedy control from pose k - 1 to k, given the belief at pose k - 1. `costs(i, cost)` is told every candidate's
+/// cost.
 template <class Layout, class Real, int capacity, class Costs>
 Command<Real> greedy_command(const Belief<Real, capacity>& belief, const ControlParameters& control,
                              const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,

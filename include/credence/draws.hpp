@@ -89,7 +89,8 @@ private:
                                    static_cast<std::uint64_t>(index);
         const Bits<Real> zero{};
         return philox<Bits<Real>>(
-            {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, zero + static_cast<std::uint64_t>(pose), zero + what}}, key0_, key1_);
+            {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, zero + static_cast<std::uint64_t>(pose), zero + what}},
+            key0_, key1_);
     }
 
     /// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).

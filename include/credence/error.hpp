@@ -1,5 +1,6 @@
 #pragma once
-// The two ways in which credence refuses or fails. Numerical trouble inside a trial is neither: it is data (record.hpp).
+// The two ways in which credence refuses or fails. Numerical trouble inside a trial is neither: it is data
+// (record.hpp).
 
 #include <stdexcept>
 #include <string>
@@ -36,7 +37,8 @@ inline std::string printable(const std::string& given, std::size_t longest = 100
 /// `invalid NAME=VALUE (WHY). REMEDY`: the one grammar of every refused value.
 inline InputError invalid_value(const std::string& name, const std::string& value, const std::string& why,
                                 const std::string& remedy) {
-    return InputError("invalid " + printable(name) + "=" + printable(value) + " (" + printable(why) + "). " + remedy + ".", name);
+    return InputError(
+        "invalid " + printable(name) + "=" + printable(value) + " (" + printable(why) + "). " + remedy + ".", name);
 }
 
 }  // namespace credence

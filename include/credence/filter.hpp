@@ -10,7 +10,8 @@
 
 namespace credence {
 
-/// What the filter believes of the noises (sigma times the scenario's factors, squared), and what it knows of the world.
+/// What the filter believes of the noises (sigma times the scenario's factors, squared), and what it knows of the
+/// world.
 struct FilterParameters {
     int features = 0;
     const Point* translation = nullptr;      ///< [K - 1] t_k
@@ -82,7 +83,8 @@ void turn_position(Symmetric<Real, capacity>& P, int n, const Vector2<Real>& a) 
     }
 }
 
-/// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = R J v = J R v.
+/// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = R J
+/// v = J R v.
 template <class Layout, class Real, int capacity>
 void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                    const Command<Real>& command) {

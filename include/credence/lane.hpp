@@ -1,6 +1,7 @@
 #pragma once
-// Room 1: W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving the
-// bits that a plain double would. The only place with intrinsics; everything else is the compiler's vector extension.
+// Room 1: W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving
+// the bits that a plain double would. The only place with intrinsics; everything else is the compiler's vector
+// extension.
 
 #include <credence/real.hpp>
 
@@ -94,7 +95,8 @@ Lane<W> from_bits(LaneBits<W> x) { return __builtin_bit_cast(typename LaneTypes<
 template <int W>
 LaneBits<W> widening_product(LaneBits<W> a, std::uint32_t b) {
 #if defined(__AVX512F__)
-    if constexpr (W == 8) return (typename LaneBits<W>::V)_mm512_maskz_mul_epu32(0xff, (__m512i)a.v, _mm512_set1_epi64(b));
+    if constexpr (W == 8)
+        return (typename LaneBits<W>::V)_mm512_maskz_mul_epu32(0xff, (__m512i)a.v, _mm512_set1_epi64(b));
 #endif
 #if defined(__AVX2__)
     if constexpr (W == 4) return (typename LaneBits<W>::V)_mm256_mul_epu32((__m256i)a.v, _mm256_set1_epi64x(b));

@@ -34,10 +34,10 @@ struct Column {
 
 /// What a figure means to the statistics.
 enum class FigureRole {
-    nees,                                  ///< normalised squared error of one block of the state, chi-square(dimension)
-    standardised_error,                    ///< e_j / sqrt(P_jj), mean 0 and variance 1
-    nis,                                   ///< normalised innovation squared
-    rows,                                  ///< number of measurement rows of that step's NIS
+    nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
+    standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
+    nis,                 ///< normalised innovation squared
+    rows,                ///< number of measurement rows of that step's NIS
     other,
 };
 
@@ -71,8 +71,8 @@ enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees
 /// The per-trial columns, in the order of ColumnIndex.
 std::vector<Column> trial_columns(const Scenario& scenario);
 
-/// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they are.
-/// `values` [column_count]. Returns whether the trial failed.
+/// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they
+/// are. `values` [column_count]. Returns whether the trial failed.
 bool fill_failed(const std::vector<Column>& columns, double* values);
 
 /// The per-step figures, in the order in which trial.hpp writes them.

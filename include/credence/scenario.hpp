@@ -39,7 +39,8 @@ enum class Process { heading, translation };
 enum class Path { straight, circle, still };
 enum class FixedPath { as_features, straight, circle };
 enum class RangeNoise { constant, ranged };
-/// jitter: deformation is white about the feature's centre (the document's); walk: it accumulates, as the filter assumes.
+/// jitter: deformation is white about the feature's centre (the document's); walk: it accumulates, as the filter
+/// assumes.
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };

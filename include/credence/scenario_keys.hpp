@@ -21,7 +21,8 @@ struct ScenarioKey {
 /// All keys, grouped by section, in the order in which they are shown.
 const std::vector<ScenarioKey>& scenario_keys();
 
-/// Sets `section.key` to a value without its outer blanks; throws InputError for an unknown key (with the closest known one) or a value out of range.
+/// Sets `section.key` to a value without its outer blanks; throws InputError for an unknown key (with the closest known
+/// one) or a value out of range.
 void set_key(Scenario& scenario, const std::string& name, const std::string& value);
 
 /// A resolved scenario as an INI text that names every key. Reading it back gives the same scenario.

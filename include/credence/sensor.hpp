@@ -1,5 +1,6 @@
 #pragma once
-// Room 5: the sensor: which features are in sight, how noisy they are, and what is measured [model.md, Filter: See, Edges].
+// Room 5: the sensor: which features are in sight, how noisy they are, and what is measured [model.md, Filter: See,
+// Edges].
 //
 //   q  range to a feature, length units; z  measurement, relative position of a feature in the body frame
 
@@ -64,7 +65,8 @@ Sighting<Real> look_at(const Truth<Real, capacity>& truth, const Rotation<Real>&
     return sighting;
 }
 
-/// The first estimate of feature j, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j}) eps^meas_{0,j}.
+/// The first estimate of feature j, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j})
+/// eps^meas_{0,j}.
 template <class Real, int capacity, class Noise>
 Sighting<Real> first_sight(const Truth<Real, capacity>& truth, const SensorParameters& sensor, int j,
                            const Noise& noise) {

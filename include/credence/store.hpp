@@ -26,16 +26,16 @@ void check_output(const std::string& path, bool overwrite, const std::string& wa
 /// Writes a text to `path` in the same way as results: whole, or not at all. Throws Failure where the system refuses.
 void write_text_file(const std::string& path, const std::string& text);
 
-/// Writes the study to `path`: built in memory, written aside, synced and renamed, so that the name never stands for half
-/// a file. Replaces what is there. Throws Failure where the system refuses (no space ...), leaving what was there.
+/// Writes the study to `path`: built in memory, written aside, synced and renamed, so that the name never stands for
+/// half a file. Replaces what is there. Throws Failure where the system refuses (no space ...), leaving what was there.
 void write_results(const std::string& path, const Study& study, const RunFacts& run);
 
-/// Reads a results file back. Throws InputError, naming the file and the place, where it is not one, was made by another
-/// schema version, is damaged, or does not agree with itself. Scenarios are read back from their text.
+/// Reads a results file back. Throws InputError, naming the file and the place, where it is not one, was made by
+/// another schema version, is damaged, or does not agree with itself. Scenarios are read back from their text.
 StoredStudy read_results(const std::string& path);
 
-/// Reads a noise record: `odometry` [K, 3], `walk`, `deformation`, `measurement` [K, M, 2], optionally `edge` [K, E, 2].
-/// Throws InputError where something is missing, has another shape or type, or is not finite.
+/// Reads a noise record: `odometry` [K, 3], `walk`, `deformation`, `measurement` [K, M, 2], optionally `edge` [K, E,
+/// 2]. Throws InputError where something is missing, has another shape or type, or is not finite.
 NoiseRecord read_noise_record(const std::string& path);
 
 /// Writes trajectories of single trials, a group per scenario and within it a group per arm.

@@ -1,5 +1,6 @@
 #pragma once
-// Room 3: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same bits.
+// Room 3: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same
+// bits.
 
 #include <cstdint>
 #include <optional>

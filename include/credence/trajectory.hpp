@@ -1,5 +1,6 @@
 #pragma once
-// Room 8: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare it.
+// Room 8: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare
+// it.
 
 #include <credence/recorded_noise.hpp>
 #include <credence/scenario.hpp>

@@ -1,7 +1,8 @@
 #pragma once
 // Room 8: one trial of one arm, poses in order. The page to open first.
 //
-// Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at once.
+// Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at
+// once.
 
 #include <credence/problem.hpp>
 

@@ -85,7 +85,8 @@ struct Command {
     Vector2<Real> move;
 };
 
-/// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v + sigma_odom eps.
+/// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
+/// sigma_odom eps.
 template <class Layout, class Real, int capacity, class Noise>
 void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
                 const Noise& noise) {

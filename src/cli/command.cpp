@@ -35,8 +35,9 @@ po::options_description described(const Command& command) {
     for (const Option& option : command.options) names.push_back(long_name(option));
     const std::size_t first = given.find_first_not_of('-');
     const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
-    throw InputError("unknown option " + printable(given) + ". " +
-                     (meant.empty() ? "`credence " + command.name + " --help` lists them." : "Did you mean --" + meant + "?"));
+    throw InputError(
+        "unknown option " + printable(given) + ". " +
+        (meant.empty() ? "`credence " + command.name + " --help` lists them." : "Did you mean --" + meant + "?"));
 }
 
 void check_repeats(const Command& command, const Parsed& parsed) {
@@ -55,7 +56,8 @@ std::optional<std::string> Parsed::text(const std::string& option) const {
     return found->second.back();
 }
 
-std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const {
+std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, std::int64_t low,
+                             std::int64_t high) const {
     const std::optional<std::string> given = text(option);
     if (!given) return otherwise;
     const std::optional<std::int64_t> number = to_integer(*given);
@@ -106,7 +108,8 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
         throw InputError(printable(error.what()) + ". `credence " + command.name + " --help` shows how.");
     }
     if (parsed.has("help")) {
-        std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n" << command.summary << "\n\n"
+        std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n"
+                  << command.summary << "\n\n"
                   << description << command.details;
         return std::nullopt;
     }

@@ -17,7 +17,8 @@ using namespace credence;
 int help() {
     std::cout << "credence: can a filter's covariance be believed, and does planning a path pay?\n\n"
                  "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
-    for (const cli::Command* command : {&cli::run_command(), &cli::report_command(), &cli::replay_command(), &cli::show_command()})
+    for (const cli::Command* command :
+         {&cli::run_command(), &cli::report_command(), &cli::replay_command(), &cli::show_command()})
         std::cout << "  " << command->name << std::string(9 - command->name.size(), ' ') << command->summary << "\n";
     std::cout << "\n  --help   this\n  --version  the version and how it was built\n\n"
                  "Exit codes: 0 done, 1 failed, 2 bad input.\n";
@@ -48,7 +49,8 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
     if (name == "replay") { const auto p = parsed(cli::replay_command()); return p ? cli::replay(*p, line) : 0; }
     if (name == "show") { const auto p = parsed(cli::show_command()); return p ? cli::show(*p) : 0; }
     const std::string meant = closest(name, {"run", "report", "replay", "show", "--help", "--version"});
-    throw InputError("unknown command " + printable(name) + ". " + (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+    throw InputError("unknown command " + printable(name) + ". " +
+                     (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
 }
 
 }  // namespace
@@ -60,7 +62,8 @@ int main(int argc, char** argv) {
     try {
         if (name == "--help" || name == "-h" || name == "help") return help();
         if (name == "--version") { std::cout << version_text(); return 0; }
-        const int code = dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
+        const int code =
+            dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {

@@ -42,8 +42,8 @@ void ProgressLine::operator()(const Progress& progress) {
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = 100 * static_cast<double>(progress.done) / static_cast<double>(progress.total);
     std::cerr << (terminal_ ? "\r\033[K" : "") << progress.done << " of " << progress.total << " trials ("
-              << formatted("%.0f", share, " %") << "), " << formatted("%.0f", rate, " trials/s, ") << duration_text(left)
-              << " left" << (terminal_ ? "" : "\n") << std::flush;
+              << formatted("%.0f", share, " %") << "), " << formatted("%.0f", rate, " trials/s, ")
+              << duration_text(left) << " left" << (terminal_ ? "" : "\n") << std::flush;
     drawn_ = terminal_;
 }
 

@@ -16,10 +16,12 @@ namespace credence::cli {
 
 const Command& replay_command() {
     static const Command command{
-        "replay", "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
+        "replay",
+        "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
         "run one trial again, pose by pose: from a results file, or on recorded noise",
         "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs).\n"
-        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2], standardised.\n",
+        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2], "
+        "standardised.\n",
         {{"scenario", "NAME", "scenario of the results file"},
          {"arm", "ARM", "arm of the results file, such as greedy.ekf"},
          {"trial", "I", "trial of the results file, from 0"},
@@ -35,7 +37,8 @@ namespace {
 std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& record_path) {
     for (const char* option : {"scenario", "arm", "trial"})
         if (parsed.has(option))
-            throw InputError(std::string("--") + option + " does not go with --noise (a record is one trial, for all arms). Leave it out.");
+            throw InputError(std::string("--") + option +
+                             " does not go with --noise (a record is one trial, for all arms). Leave it out.");
     const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
     const NoiseRecord record = read_noise_record(record_path);
     check_covers(record, scenario, record_path);
@@ -47,7 +50,9 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
 
 std::string needed(const Parsed& parsed, const std::string& option) {
     const std::optional<std::string> value = parsed.text(option);
-    if (!value) throw InputError("missing --" + option + ". Give FILE.h5 --scenario NAME --arm ARM --trial I, or SCENARIO.ini --noise RECORD.h5.");
+    if (!value)
+        throw InputError("missing --" + option +
+                         ". Give FILE.h5 --scenario NAME --arm ARM --trial I, or SCENARIO.ini --noise RECORD.h5.");
     return *value;
 }
 
@@ -73,7 +78,8 @@ std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
-    if (parsed.has("set")) throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
+    if (parsed.has("set"))
+        throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
     const std::string scenario_name = needed(parsed, "scenario"), arm = needed(parsed, "arm");
     needed(parsed, "trial");
     const Study study = read_results(parsed.arguments.front()).study;
@@ -85,8 +91,9 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     for (std::size_t c = 0; c < results.columns.size(); ++c) {
         const double stored = results.arms[a].columns[c][static_cast<std::size_t>(trial)];
         if (!same(stored, trajectory.columns[c]))
-            throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " + results.columns[c].name + " is " +
-                          to_text(trajectory.columns[c]) + ", stored is " + to_text(stored) + ".");
+            throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
+                          results.columns[c].name + " is " + to_text(trajectory.columns[c]) + ", stored is " +
+                          to_text(stored) + ".");
     }
     return {std::move(trajectory)};
 }
@@ -99,10 +106,15 @@ std::string as_json(const std::vector<Trajectory>& trajectories) {
     nlohmann::ordered_json array = nlohmann::ordered_json::array();
     for (const Trajectory& t : trajectories) {
         const bool missing = failed(static_cast<Status>(static_cast<int>(t.columns[column_status])));
-        nlohmann::ordered_json one{{"scenario", t.scenario.name}, {"arm", arm_name(t.arm)}, {"status", status_text(t)},
-                                   {"trace_P", t.columns[column_trace_P]}, {"unseen", nullptr},
-                                   {"pose_error", t.columns[column_pose_error]}, {"nees_ratio", t.columns[column_nees_ratio]},
-                                   {"nis_ratio", t.columns[column_nis_ratio]}, {"status_pose", static_cast<int>(t.columns[column_status_pose])}};
+        nlohmann::ordered_json one{{"scenario", t.scenario.name},
+                                   {"arm", arm_name(t.arm)},
+                                   {"status", status_text(t)},
+                                   {"trace_P", t.columns[column_trace_P]},
+                                   {"unseen", nullptr},
+                                   {"pose_error", t.columns[column_pose_error]},
+                                   {"nees_ratio", t.columns[column_nees_ratio]},
+                                   {"nis_ratio", t.columns[column_nis_ratio]},
+                                   {"status_pose", static_cast<int>(t.columns[column_status_pose])}};
         if (!missing) one["unseen"] = static_cast<int>(t.columns[column_unseen]);
         array.push_back(one);
     }
@@ -113,7 +125,8 @@ std::string as_csv(const std::vector<Trajectory>& trajectories) {
     std::string text = "scenario,arm,status,trace_P,unseen,pose_error,nees_ratio,nis_ratio\n";
     for (const Trajectory& t : trajectories) {
         text += t.scenario.name + "," + arm_name(t.arm) + "," + status_text(t);
-        for (int c = column_trace_P; c <= column_nis_ratio; ++c) text += "," + to_text(t.columns[static_cast<std::size_t>(c)]);
+        for (int c = column_trace_P; c <= column_nis_ratio; ++c)
+            text += "," + to_text(t.columns[static_cast<std::size_t>(c)]);
         text += "\n";
     }
     return text;
@@ -123,10 +136,11 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
     std::string text;
     for (const Trajectory& t : trajectories) {
         char line[400];
-        std::snprintf(line, sizeof line, "%s/%s: %s, trace(P) %.5g %s, unseen %.0f, pose error %.5g, NEES/n %.4g, NIS/m %.4g\n",
-                      t.scenario.name.c_str(), arm_name(t.arm).c_str(), status_text(t).c_str(), t.columns[column_trace_P],
-                      trace_unit(t.scenario).c_str(), t.columns[column_unseen], t.columns[column_pose_error],
-                      t.columns[column_nees_ratio], t.columns[column_nis_ratio]);
+        std::snprintf(line, sizeof line,
+                      "%s/%s: %s, trace(P) %.5g %s, unseen %.0f, pose error %.5g, NEES/n %.4g, NIS/m %.4g\n",
+                      t.scenario.name.c_str(), arm_name(t.arm).c_str(), status_text(t).c_str(),
+                      t.columns[column_trace_P], trace_unit(t.scenario).c_str(), t.columns[column_unseen],
+                      t.columns[column_pose_error], t.columns[column_nees_ratio], t.columns[column_nis_ratio]);
         text += line;
     }
     return text;
@@ -135,7 +149,8 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
 }  // namespace
 
 int replay(const Parsed& parsed, const std::string& command_line) {
-    if (parsed.arguments.size() != 1) throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
+    if (parsed.arguments.size() != 1)
+        throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
     const std::string format = parsed.choice("format", {"text", "json", "csv"});
     const std::optional<std::string> output = parsed.text("output"), noise = parsed.text("noise");
     check_output_option(parsed);
@@ -145,7 +160,9 @@ int replay(const Parsed& parsed, const std::string& command_line) {
         facts.emplace_back("command_line", command_line);
         write_trajectories(*output, trajectories, facts);
     }
-    std::cout << (format == "json" ? as_json(trajectories) : format == "csv" ? as_csv(trajectories) : as_text(trajectories));
+    std::cout << (format == "json"  ? as_json(trajectories)
+                  : format == "csv" ? as_csv(trajectories)
+                                    : as_text(trajectories));
     return 0;
 }
 

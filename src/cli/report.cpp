@@ -7,10 +7,14 @@ namespace credence::cli {
 
 const Command& report_command() {
     static const Command command{
-        "report", "FILE.h5 [options]", "say what a results file proves, with confidence",
+        "report",
+        "FILE.h5 [options]",
+        "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
-        {margin_option(), {"format", "FORMAT", "text (default), json or csv"},
-         {"require", "VERDICT", "consistent: exit with 1 unless every arm is"}, output_option("write there, not to the standard output")}};
+        {margin_option(),
+         {"format", "FORMAT", "text (default), json or csv"},
+         {"require", "VERDICT", "consistent: exit with 1 unless every arm is"},
+         output_option("write there, not to the standard output")}};
     return command;
 }
 
@@ -21,7 +25,9 @@ int report(const Parsed& parsed) {
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require", {"consistent"});
     const Report report = make_report(read_results(parsed.arguments.front()).study, margin);
-    write_output(parsed, format == "json" ? report_json(report) : format == "csv" ? report_csv(report) : report_text(report));
+    write_output(parsed, format == "json"  ? report_json(report)
+                         : format == "csv" ? report_csv(report)
+                                           : report_text(report));
     if (parsed.has("require")) require_consistent(report);
     return 0;
 }

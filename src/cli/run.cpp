@@ -20,14 +20,17 @@ namespace credence::cli {
 
 const Command& run_command() {
     static const Command command{
-        "run", "SCENARIO.ini... [options]", "run a study: every scenario under all its arms",
+        "run",
+        "SCENARIO.ini... [options]",
+        "run a study: every scenario under all its arms",
         "\nThe same scenarios and seed give the same results for any number of threads.\n",
         {output_option("results file (default credence.h5)"),
          {"trials", "N", "trials of each scenario (default 10000)"},
          {"seed", "N", "root seed, from 0 up (default 1)"},
          {"threads", "N", "threads (default: all processors)"},
          set_option(),
-         {"resume", "", "run what is missing in the results file, also to a larger --trials; start where there is none"},
+         {"resume", "",
+          "run what is missing in the results file, also to a larger --trials; start where there is none"},
          {"overwrite", "", "replace a results file that exists"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},
          {"quiet", "", "no progress and no table"}}};
@@ -49,7 +52,8 @@ RunRequest read_request(const Parsed& parsed) {
     RunRequest request;
     request.output = parsed.text("output").value_or("credence.h5");
     request.options.trials = parsed.integer("trials", 10000, 1, 1'000'000'000'000);
-    request.root_seed = static_cast<std::uint64_t>(parsed.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+    request.root_seed =
+        static_cast<std::uint64_t>(parsed.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
     request.options.threads = static_cast<int>(parsed.integer("threads", omp_get_max_threads(), 1, 4096));
     request.resume = parsed.has("resume");
     request.overwrite = parsed.has("overwrite");
@@ -76,11 +80,15 @@ void check_same_study(const Study& stored, const Study& asked, const std::string
     if (stored.root_seed != asked.root_seed)
         why = "its root seed is " + std::to_string(stored.root_seed) + ", not " + std::to_string(asked.root_seed);
     else if (stored.scenarios.size() != asked.scenarios.size())
-        why = "it has " + std::to_string(stored.scenarios.size()) + " scenarios, not " + std::to_string(asked.scenarios.size());
+        why = "it has " + std::to_string(stored.scenarios.size()) + " scenarios, not " +
+              std::to_string(asked.scenarios.size());
     else
         for (std::size_t s = 0; s < stored.scenarios.size(); ++s) {
             const std::string difference = first_difference(stored.scenarios[s].scenario, asked.scenarios[s].scenario);
-            if (!difference.empty()) { why = "scenario " + stored.scenarios[s].scenario.name + ": " + difference; break; }
+            if (!difference.empty()) {
+                why = "scenario " + stored.scenarios[s].scenario.name + ": " + difference;
+                break;
+            }
         }
     throw InputError("cannot resume " + path + " (it holds another study: " + why + "). Name another output.");
 }
@@ -130,11 +138,13 @@ int dry_run(const RunRequest& request, const Study& study) {
         seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(missing);
         blocks += block_count(missing);
     }
-    const std::int64_t at_once = std::min<std::int64_t>({request.options.threads, omp_get_num_procs(), std::max<std::int64_t>(1, blocks)});
+    const std::int64_t at_once =
+        std::min<std::int64_t>({request.options.threads, omp_get_num_procs(), std::max<std::int64_t>(1, blocks)});
     const Footprint size = footprint(study, request.options.trials, request.options.threads);
     std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
-              << ", threads: " << request.options.threads << ". About " << duration_text(seconds / static_cast<double>(at_once))
-              << ", " << bytes_text(size.memory) << " of memory, " << bytes_text(size.file) << " in " << request.output << "\n";
+              << ", threads: " << request.options.threads << ". About "
+              << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
+              << " of memory, " << bytes_text(size.file) << " in " << request.output << "\n";
     return 0;
 }
 
@@ -145,7 +155,9 @@ int run(const Parsed& parsed, const std::string& command_line) {
     Study study = starting_study(request);
     if (parsed.has("dry-run")) return dry_run(request, study);
     if (nothing_missing(study, request.options.trials)) {
-        if (!request.quiet) std::cout << report_text(make_report(study, 0.05)) << "\n" << request.output << " has these trials already\n";
+        if (!request.quiet)
+            std::cout << report_text(make_report(study, 0.05)) << "\n"
+                      << request.output << " has these trials already\n";
         return 0;
     }
 
@@ -165,7 +177,8 @@ int run(const Parsed& parsed, const std::string& command_line) {
 
     if (!request.quiet) {
         std::cout << report_text(make_report(study, 0.05)) << "\n"
-                  << request.output << ": " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
+                  << request.output << ": "
+                  << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
                   << ", computed in " << duration_text(seconds) << " on " << options.threads << " threads\n";
     }
     return 0;
