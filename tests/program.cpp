@@ -37,6 +37,8 @@ void Workplace::write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
 }
 
+std::string Workplace::read(const std::string& name) const { return read_file(folder_ / name); }
+
 std::vector<std::string> Workplace::names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) names.push_back(entry.path().filename().string());

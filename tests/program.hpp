@@ -23,6 +23,7 @@ public:
     /// Path of a file in the folder.
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     void write(const std::string& name, const std::string& text) const;
+    std::string read(const std::string& name) const;
     /// Names of everything in the folder, sorted.
     std::vector<std::string> names() const;
     /// Runs `credence ARGUMENTS` in the folder through the shell.
