@@ -1,25 +1,44 @@
+#include <credence/error.hpp>
 #include <credence/simulate.hpp>
+#include <credence/text.hpp>
+
+#include <cstdlib>
+
+#ifdef CREDENCE_X86_UNITS
+#include <cpuid.h>
+#endif
 
 namespace credence {
 
 inline namespace portable {  // CREDENCE_UNIT by default, hence inline here too
 void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
 }
 #ifdef CREDENCE_X86_UNITS
 namespace v3 {
 void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
 }
 namespace v4 {
 void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
 }
 #endif
 
 namespace {
 
 #ifdef CREDENCE_X86_UNITS
+/// The instructions of x86-64-v3 that a compiler may use and that clang 14 cannot ask for by name.
+bool has_lzcnt_movbe_f16c() {
+    constexpr unsigned movbe = 1u << 22, f16c = 1u << 29, lzcnt = 1u << 5;
+    unsigned eax = 0, ebx = 0, basic = 0, extended = 0, edx = 0;
+    return __get_cpuid(1, &eax, &ebx, &basic, &edx) && __get_cpuid(0x80000001, &eax, &ebx, &extended, &edx) &&
+           (basic & movbe) && (basic & f16c) && (extended & lzcnt);
+}
+
 bool runs_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2");
+           __builtin_cpu_supports("bmi2") && has_lzcnt_movbe_f16c();
 }
 
 bool runs_v4() {
@@ -29,18 +48,48 @@ bool runs_v4() {
 }
 #endif
 
+/// A unit of this build, and whether this processor runs it.
+struct BuiltUnit {
+    Unit unit;
+    bool runs = false;
+};
+
+/// The best one first.
+std::vector<BuiltUnit> built_units() {
+    return {
+#ifdef CREDENCE_X86_UNITS
+        {{"v4", 8, v4::simulate, v4::workspace_size}, runs_v4()},
+        {{"v3", 4, v3::simulate, v3::workspace_size}, runs_v3()},
+#endif
+        {{"portable", 1, portable::simulate, portable::workspace_size}, true}};
+}
+
+/// The unit of this name; throws InputError where there is none that runs.
+Unit forced_unit(const std::string& name) {
+    std::vector<std::string> runnable;
+    std::string why = "not a unit of this build";
+    for (const auto& [unit, runs] : built_units()) {
+        if (runs && unit.name == name) return unit;
+        if (runs)
+            runnable.push_back(unit.name);
+        else if (unit.name == name)
+            why = "this processor cannot run it";
+    }
+    throw invalid_value(force_unit_variable, name, why, "Unset it, or give one of " + joined(runnable));
+}
+
 }  // namespace
 
 std::vector<Unit> runnable_units() {
     std::vector<Unit> units;
-#ifdef CREDENCE_X86_UNITS
-    if (runs_v4()) units.push_back({"v4", 8, v4::simulate});
-    if (runs_v3()) units.push_back({"v3", 4, v3::simulate});
-#endif
-    units.push_back({"portable", 1, portable::simulate});
+    for (const auto& [unit, runs] : built_units())
+        if (runs) units.push_back(unit);
     return units;
 }
 
-Unit best_unit() { return runnable_units().front(); }
+Unit best_unit() {
+    const char* forced = std::getenv(force_unit_variable);
+    return forced ? forced_unit(forced) : runnable_units().front();
+}
 
 }  // namespace credence

@@ -1,11 +1,30 @@
 #include <credence/problem.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace credence {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The least s >= 0 with sqrt(s) >= range, in floating point; sqrt rounds correctly and never decreases.
+double least_square(double range) {
+    double s = range * range;
+    while (s > 0 && std::sqrt(std::nextafter(s, 0)) >= range) s = std::nextafter(s, 0);
+    while (std::sqrt(s) < range) s = std::nextafter(s, infinity);
+    return s;
+}
+
+/// The greatest s with sqrt(s) <= range.
+double greatest_square(double range) {
+    double s = range * range;
+    while (std::sqrt(s) > range) s = std::nextafter(s, 0);
+    while (s < infinity && std::sqrt(std::nextafter(s, infinity)) <= range) s = std::nextafter(s, infinity);
+    return s;
+}
 
 /// s (cos angle, sin angle)
 Point polar(double s, double angle) {
@@ -92,17 +111,46 @@ Problem::Problem(const Scenario& resolved_scenario)
     const std::size_t features = scenario_.features.positions.size();
     for (std::size_t i = features; i < sway_.size(); ++i)
         sway_increment_[i] = {sway_[i].x - sway_[i - features].x, sway_[i].y - sway_[i - features].y};
-    for (const StateBlock& block : state_blocks(scenario_)) blocks_.push_back({block.first, block.count});
+    factor_edges();
     view_.process = scenario_.process;
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
-    view_.blocks = blocks_.data();
-    view_.block_count = static_cast<int>(blocks_.size());
+    view_.block_count = static_cast<int>(state_blocks(scenario_).size());
     view_.figure_count = static_cast<int>(step_figures(scenario_).size());
     fill_world();
     fill_filter();
     fill_control();
+}
+
+/// C D C' = B'B by outer products, B the edges' incidence matrix. Its pivots are 0 at the last feature of each part of
+/// the graph; the smallest other one is 1/largest_feature_count or more.
+void Problem::factor_edges() {
+    const std::size_t M = scenario_.features.positions.size();
+    std::vector<double> laplacian(M * M);
+    for (const Edge& edge : edges_) {
+        const std::size_t a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
+        laplacian[a * M + a] += 1;
+        laplacian[b * M + b] += 1;
+        laplacian[a * M + b] -= 1;
+        laplacian[b * M + a] -= 1;
+    }
+    // No eigenvalue of a simple graph's Laplacian exceeds M, nor twice its greatest degree.
+    double greatest_degree = 0;
+    for (std::size_t j = 0; j < M; ++j) greatest_degree = std::max(greatest_degree, laplacian[j * M + j]);
+    view_.filter.laplacian_bound = std::min(static_cast<double>(M), 2 * greatest_degree);
+    contrast_coefficients_.assign(M * M, 0);
+    for (std::size_t c = 0; c + 1 < M; ++c) {
+        const double pivot = laplacian[c * M + c];
+        const bool says_something = pivot > 1e-9;
+        if (says_something) {
+            for (std::size_t j = c; j < M; ++j) contrast_coefficients_[c * M + j] = laplacian[c * M + j] / pivot;
+            for (std::size_t i = c + 1; i < M; ++i)
+                for (std::size_t j = c + 1; j < M; ++j)
+                    laplacian[i * M + j] -= contrast_coefficients_[c * M + i] * laplacian[c * M + j];
+        }
+        contrasts_.push_back({contrast_coefficients_.data() + c * M, says_something ? 1 / pivot : 0});
+    }
 }
 
 void Problem::fill_world() {
@@ -127,6 +175,8 @@ void Problem::fill_world() {
     SensorParameters& sensor = view_.sensor;
     sensor.range_min = settings.range_min;
     sensor.range_max = settings.range_max;
+    sensor.squared_range_min = least_square(settings.range_min);
+    sensor.squared_range_max = greatest_square(settings.range_max);
     sensor.noise = settings.noise;
     sensor.sigma = settings.sigma;
     sensor.sigma_near = settings.sigma_near;
@@ -143,6 +193,7 @@ void Problem::fill_filter() {
     filter.translation = translation_.data();
     filter.sway_increment = sway_increment_.data();
     filter.edges = edges_.data();
+    filter.contrasts = contrasts_.data();
     filter.edge_count = static_cast<int>(edges_.size());
     filter.variance_heading = squared(factors.heading * noise.heading);
     filter.variance_odometry = squared(factors.odometry * noise.odometry);

@@ -4,6 +4,7 @@
 #include <credence/trial.hpp>
 
 #include <limits>
+#include <memory>
 
 namespace credence {
 
@@ -33,7 +34,13 @@ public:
         note_state(layout, truth, belief, trajectory_.steps.front());
     }
 
-    void cost(int k, int, double value) { at(k).candidate_cost.push_back(value); }
+    /// Every candidate's cost by the plain form: the trial's own planner prices few of them.
+    template <class Layout, class Belief>
+    void planned(int k, const Layout& layout, const Belief& belief) {
+        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
+        plan_plainly(belief, problem_.control, problem_.filter, problem_.sensor, layout, k, *base, *next,
+                     [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
+    }
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement>
     void predicted(int k, const Layout& layout, const Truth& truth, const Command<double>& command,
@@ -64,7 +71,7 @@ private:
 
     template <class Layout, class Truth>
     static Eigen::VectorXd true_state(const Layout& layout, const Truth& truth) {
-        Eigen::VectorXd state(layout.size());
+        Eigen::VectorXd state(static_cast<Eigen::Index>(layout.size()));
         if constexpr (Layout::has_heading) state[Layout::heading] = truth.heading;
         state.segment<2>(Layout::position) = eigen(truth.position);
         for (int j = 0; j < layout.features(); ++j)
@@ -154,12 +161,14 @@ Trajectory replay(const Problem& problem, Controller controller, const Noise& no
     if (controller == Controller::greedy) trajectory.candidates = planner_candidates(scenario);
     std::vector<double> figures(static_cast<std::size_t>(view.figure_count) * static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, trajectory);
+    const auto run = [&](auto layout) {
+        const auto work = std::make_unique<Workspace<decltype(layout), double>>();
+        run_trial(view, controller, noise, recorder, *work, trajectory.columns.data(), figures.data());
+    };
     if (view.process == Process::heading)
-        run_trial<Layout<Process::heading, any_count>>(view, controller, noise, recorder, trajectory.columns.data(),
-                                                       figures.data());
+        run(Layout<Process::heading, any_count>(view.features));
     else
-        run_trial<Layout<Process::translation, any_count>>(view, controller, noise, recorder, trajectory.columns.data(),
-                                                           figures.data());
+        run(Layout<Process::translation, any_count>(view.features));
     fill_failed(trial_columns(scenario), trajectory.columns.data());
     return trajectory;
 }

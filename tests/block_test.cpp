@@ -84,18 +84,18 @@ TEST_CASE("block: every unit gives the same bits") {
     for (const Settings& world : worlds()) {
         CAPTURE(described(world));
         const Problem problem(scenario_with(world));
-        const Block portable = run_block(problem, 3, 1, 40, units.back().simulate);
+        const Block portable = run_block(problem, 3, 1, 40, units.back());
         for (const Unit& unit : units) {
             CAPTURE(unit.name);
-            CHECK(same_bits(portable, run_block(problem, 3, 1, 40, unit.simulate)));
+            CHECK(same_bits(portable, run_block(problem, 3, 1, 40, unit)));
         }
     }
 }
 
 TEST_CASE("block: every unit agrees on which trials fail") {
     const Problem problem(scenario_with(fragile));
-    const Block first = run_block(problem, 3, 0, 256, runnable_units().front().simulate);
-    CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_units().back().simulate)));
+    const Block first = run_block(problem, 3, 0, 256, runnable_units().front());
+    CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_units().back())));
 }
 
 TEST_CASE("block: 100 trials are the beginning of 256") {
@@ -167,10 +167,10 @@ TEST_CASE("block: sums are folded in eight, in trial order, over the trials that
                 for (int k = 0; k < steps; ++k) {
                     const double value = run.figures(f, k);
                     sums[eighth](k, f) += value;
-                    squares[eighth](k, f) += value * value;
+                    squares[eighth](k, f) = std::fma(value, value, squares[eighth](k, f));
                     run_sum += value;
                 }
-                run_squares[eighth][f] += run_sum * run_sum;
+                run_squares[eighth][f] = std::fma(run_sum, run_sum, run_squares[eighth][f]);
             }
         }
         CHECK(block.arms[0].counted == counted);

@@ -35,6 +35,14 @@ VectorXd mean_of(const Belief& belief, Eigen::Index n) {
     return Eigen::Map<const VectorXd>(belief.mean, n);
 }
 
+/// The sighting of one feature of three.
+template <class Layout, class Truth, class Noise>
+Sighting<double> look_at(const Truth& truth, const SensorParameters& sensor, int k, int j, const Noise& noise) {
+    Sighting<double> sightings[3];
+    look(truth, sensor, Layout(3), k, noise, sightings);
+    return sightings[j];
+}
+
 /// A random state near the seed's and a random covariance with everything correlated, eigenvalues from 0.1 to about 10.
 struct Sample {
     VectorXd x;

@@ -15,11 +15,12 @@ VectorXd measured(const Problem& problem, const VectorXd& x, double made_for) {
     const ProblemView& view = problem.view();
     Truth<double, 3> truth;
     if constexpr (Layout::has_heading) truth.heading = x[0];
+    truth.rotation = rotation(truth.heading);
     truth.position = {x[Layout::position], x[Layout::position + 1]};
     for (int j = 0; j < 3; ++j) truth.feature[j] = {x[Layout::feature(j)], x[Layout::feature(j) + 1]};
     VectorXd z(6 + 2 * view.filter.edge_count);
     for (int j = 0; j < 3; ++j) {
-        Vector2<double> seen = look_at<Layout>(truth, rotation(truth.heading), view.sensor, 1, j, silent_noise()).z;
+        Vector2<double> seen = look_at<Layout>(truth, view.sensor, 1, j, silent_noise()).z;
         if constexpr (Layout::has_heading) seen = rotate(rotation(made_for), seen);
         z.segment<2>(2 * j) << seen.x, seen.y;
     }
@@ -107,17 +108,43 @@ TEST_CASE("filter: rows of H are the Jacobian of what the sensor measures") {
         using Layout = decltype(layout);
         const double heading = Layout::has_heading ? sample.x[0] : 0;
         const MatrixXd H = jacobian([&](const VectorXd& x) { return measured<Layout>(problem, x, heading); }, sample.x);
-        for (int i = 0; i < 6 + 2 * problem.view().filter.edge_count; i += 2) {
-            const Rows<double> rows = i < 6 ? sighting_rows<Layout>(sample.x.data(), i / 2)
-                                            : edge_rows<Layout, double>(problem.view().filter.edges[i / 2 - 3]);
+        for (int i = 0; i < 6; i += 2) {
+            const auto rows = sighting_rows<Layout>(sample.x.data(), i / 2);
             for (Eigen::Index column = 0; column < sample.x.size(); ++column) {
                 const VectorXd unit = VectorXd::Unit(sample.x.size(), column);
-                const Vector2<double> entry = apply_rows<Layout>(rows, unit.data());
+                const Vector2<double> entry = rows([&](int s) { return unit[s]; });
                 CHECK(std::abs(entry.x - H(i, column)) < difference_quotient);
                 CHECK(std::abs(entry.y - H(i + 1, column)) < difference_quotient);
             }
         }
     });
+}
+
+TEST_CASE("filter: contrasts carry the information of all edges together") {
+    for (const char* graph : {"all", "chain", "none", "0-2", "0-1, 0-3, 1-3, 2-4", "3-4, 0-1", "0-2, 0-4, 2-4, 1-3"})
+        for (const char* process : {"heading", "translation"}) {
+            CAPTURE(graph, process);
+            const Problem problem(scenario_with({{"model.process", process}, {"edges.graph", graph},
+                                                 {"features.positions", "0 0, 1 0, 0 1, 1 1, 2 2"}}));
+            const FilterParameters& filter = problem.view().filter;
+            const int n = problem.view().state_size;
+            MatrixXd theirs = MatrixXd::Zero(n, n), ours = theirs;
+            for (int e = 0; e < filter.edge_count; ++e) {
+                const MatrixXd H = oracle::edge_rows(problem.scenario(), filter.edges[e]);
+                theirs += H.transpose() * H;
+            }
+            for (int c = 0; c < 4; ++c) {
+                const Contrast& contrast = filter.contrasts[c];
+                if (contrast.scale == 0) continue;
+                MatrixXd H = MatrixXd::Zero(2, n);
+                for (int j = 0; j < 5; ++j)
+                    H.block<2, 2>(0, n - 10 + 2 * j) = contrast.coefficient[j] * Eigen::Matrix2d::Identity();
+                CHECK(contrast.coefficient[c] == 1);
+                ours += H.transpose() * H / contrast.scale;
+            }
+            CHECK((ours - theirs).norm() < 1e-14);  // small integers and their quotients
+            CHECK(filter.laplacian_bound >= Eigen::SelfAdjointEigenSolver<MatrixXd>(theirs).eigenvalues().maxCoeff() - 1e-12);
+        }
 }
 
 TEST_CASE("filter: updating with two rows after two is the joint update") {
@@ -126,8 +153,8 @@ TEST_CASE("filter: updating with two rows after two is the joint update") {
             const FilterParameters& filter = problem.view().filter;
             const Look look(filter.edge_count, sample);
             auto belief = belief_of<decltype(layout)>(sample.x, sample.P);
-            const UpdateResult<double> result =
-                update(belief, filter, layout, look.sightings, [&](int e) { return look.edge(e); });
+            Update<double, decltype(layout)::capacity> result;
+            update_belief(belief, filter, layout, look.sightings, [&](int e) { return look.edge(e); }, result);
             CHECK(result.rows == static_cast<double>(look.z.size()));
             CHECK(result.unseen == 3 - static_cast<double>(look.sighting_rows) / 2);
             CHECK(result.positive_definite);

@@ -5,6 +5,7 @@
 #include <credence/trial.hpp>
 
 #include <cmath>
+#include <memory>
 
 namespace credence::test {
 
@@ -77,7 +78,7 @@ Eigen::MatrixXd dense(const Belief& belief, int n) {
 
 template <class Layout, class Truth>
 Eigen::VectorXd true_state(const Layout& layout, const Truth& truth) {
-    Eigen::VectorXd x(layout.size());
+    Eigen::VectorXd x(static_cast<Eigen::Index>(layout.size()));
     if constexpr (Layout::has_heading) x[Layout::heading] = truth.heading;
     x.segment<2>(Layout::position) = eigen(truth.position);
     for (int j = 0; j < layout.features(); ++j) x.segment<2>(Layout::feature(j)) = eigen(truth.feature[j]);
@@ -87,7 +88,7 @@ Eigen::VectorXd true_state(const Layout& layout, const Truth& truth) {
 /// Writes down what run_trial passes by.
 class Scribe {
 public:
-    Scribe(Run& run, int edges) : run_(run), edges_(edges) {}
+    Scribe(Run& run, const ProblemView& view) : run_(run), view_(view), edges_(view.filter.edge_count) {}
 
     template <class Layout, class Truth, class Belief>
     void started(const Layout& layout, const Truth& truth, const Belief& belief) {
@@ -97,7 +98,12 @@ public:
         step.covariance = dense(belief, layout.size());
     }
 
-    void cost(int k, int, double value) { at(k).candidate_cost.push_back(value); }
+    template <class Layout, class Belief>
+    void planned(int k, const Layout& layout, const Belief& belief) {
+        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
+        plan_plainly(belief, view_.control, view_.filter, view_.sensor, layout, k, *base, *next,
+                     [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
+    }
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement>
     void predicted(int k, const Layout& layout, const Truth& truth, const Command<double>& command,
@@ -128,16 +134,21 @@ private:
     RunStep& at(int k) { return run_.steps[static_cast<std::size_t>(k)]; }
 
     Run& run_;
+    const ProblemView& view_;
     int edges_;
 };
 
 template <Process process>
 void run_process(const ProblemView& view, Controller controller, const AnyNoise& noise, Form form, Scribe& scribe,
                  double* columns, double* figures) {
+    const auto run = [&](auto layout) {
+        const auto work = std::make_unique<Workspace<decltype(layout), double>>();
+        run_trial(view, controller, noise, scribe, *work, columns, figures);
+    };
     if (view.features == 3 && form == Form::engine)
-        run_trial<Layout<process, 3>>(view, controller, noise, scribe, columns, figures);
+        run(Layout<process, 3>(3));
     else
-        run_trial<Layout<process, any_count>>(view, controller, noise, scribe, columns, figures);
+        run(Layout<process, any_count>(view.features));
 }
 
 }  // namespace
@@ -150,7 +161,7 @@ Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noi
     run.steps.resize(static_cast<std::size_t>(view.poses));
     for (const Figure& figure : step_figures(scenario)) run.names.push_back(figure.name);
     Eigen::MatrixXd by_step(view.poses - 1, view.figure_count);  // Eigen's columns are the engine's rows
-    Scribe scribe(run, view.filter.edge_count);
+    Scribe scribe(run, view);
     if (view.process == Process::heading)
         run_process<Process::heading>(view, controller, noise, form, scribe, run.columns.data(), by_step.data());
     else

@@ -1,7 +1,7 @@
 #pragma once
 // Room 6: the belief, and what can be asked of it.
 
-#include <credence/real.hpp>
+#include <credence/each.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
@@ -22,16 +22,15 @@ struct Belief {
     Symmetric<Real, capacity> covariance;
 };
 
-template <class Real, int capacity>
-void copy(const Symmetric<Real, capacity>& from, int n, Symmetric<Real, capacity>& to) {
-    for (int i = 0; i < n; ++i)
-        for (int j = i; j < n; ++j) to.entry[i][j] = from.entry[i][j];
+template <class Real, int capacity, class Size>
+void copy(const Symmetric<Real, capacity>& from, Size n, Symmetric<Real, capacity>& to) {
+    each(zero, n, [&](auto i) { each(i, n, [&](auto j) { to.entry[i][j] = from.entry[i][j]; }); });
 }
 
-template <class Real, int capacity>
-Real trace(const Symmetric<Real, capacity>& P, int n) {
+template <class Real, int capacity, class Size>
+Real trace(const Symmetric<Real, capacity>& P, Size n) {
     Real sum = P.entry[0][0];
-    for (int i = 1; i < n; ++i) sum = sum + P.entry[i][i];
+    each(one, n, [&](auto i) { sum = sum + P.entry[i][i]; });
     return sum;
 }
 
@@ -42,32 +41,75 @@ struct SquaredError {
     Mask<Real> positive_definite{};
 };
 
-/// e' P^-1 e over the block [first, first + count) of the state, with that block's P, by Cholesky: P = U'U, U'y = e,
-/// y'y [Bar-Shalom 2001, 5.4.2].
+/// The inverse of a symmetric 2 x 2 matrix, zero where it is not `used`, and whether it is positive definite.
+template <class Real>
+struct Inverse2 {
+    Real xx{}, xy{}, yy{};
+    Mask<Real> positive_definite{};
+};
+
+template <class Real>
+Inverse2<Real> inverse(Real xx, Real xy, Real yy, Mask<Real> used) {
+    const Real determinant = fnma(xy, xy, xx * yy);
+    const Real weight = select(used, Real(1) / determinant, Real(0));
+    return {yy * weight, -(xy * weight), xx * weight,
+            either(both(xx > Real(0), determinant > Real(0)), negated(used))};
+}
+
+/// a' S^-1 b
+template <class Real>
+Real between(const Vector2<Real>& a, const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
+    const Real x = fma(S_inverse.xy, b.y, S_inverse.xx * b.x), y = fma(S_inverse.yy, b.y, S_inverse.xy * b.x);
+    return fma(y, a.y, x * a.x);
+}
+
+/// A matrix and a vector that are being eliminated, from the last row up.
 template <class Real, int capacity>
-SquaredError<Real> normalised_squared_error(const Symmetric<Real, capacity>& P, const Real* error, int first,
-                                            int count) {
-    Symmetric<Real, capacity> U;
-    Real y[capacity];
-    SquaredError<Real> result{Real(0), all_lanes<Real>()};
-    for (int i = 0; i < count; ++i) {
-        Real pivot = P.entry[first + i][first + i];
-        Real rest = error[first + i];
-        for (int k = 0; k < i; ++k) {
-            pivot = fnma(U.entry[k][i], U.entry[k][i], pivot);
-            rest = fnma(U.entry[k][i], y[k], rest);
-        }
-        result.positive_definite = both(result.positive_definite, pivot > Real(0));
-        const Real inverse_root = Real(1) / sqrt(pivot);
-        y[i] = rest * inverse_root;
-        result.value = fma(y[i], y[i], result.value);
-        for (int j = i + 1; j < count; ++j) {
-            Real entry = P.entry[first + i][first + j];
-            for (int k = 0; k < i; ++k) entry = fnma(U.entry[k][i], U.entry[k][j], entry);
-            U.entry[i][j] = entry * inverse_root;
-        }
+struct Elimination {
+    Symmetric<Real, capacity> A;
+    Real e[capacity];
+};
+
+/// e' A^-1 e over the rows [i, i + 2), which are then eliminated from the rows [first, i).
+template <class Real, int capacity, class First, class Index>
+CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& left, First first, Index i) {
+    auto& A = left.A.entry;
+    const Inverse2<Real> pivot = inverse(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
+    const Vector2<Real> e{left.e[i], left.e[i + one]};
+    each(first, i, [&](auto k) {
+        const Vector2<Real> c{A[k][i], A[k][i + one]};
+        const Vector2<Real> scaled{fma(pivot.xy, c.y, pivot.xx * c.x), fma(pivot.yy, c.y, pivot.xy * c.x)};
+        left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, left.e[k]));
+        each(first, k + one, [&](auto m) {
+            A[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+        });
+    });
+    return {between(e, pivot, e), pivot.positive_definite};
+}
+
+/// e' P^-1 e over the blocks [i, last) of the state, for i = last - 2, last - 4 ... down to first, each with that
+/// block's P [Bar-Shalom 2001, 5.4.2]: told(i, value and definiteness so far). P is eliminated two rows at a time from
+/// its end, so that one elimination serves every block that ends at `last`. An odd row is left over as the first.
+template <class Real, int capacity, class First, class Last, class Told>
+CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first, Last last,
+                           Elimination<Real, capacity>& left, Told&& told) {
+    each(first, last, [&](auto i) {
+        left.e[i] = error[i];
+        each(i, last, [&](auto j) { left.A.entry[i][j] = P.entry[i][j]; });
+    });
+    SquaredError<Real> sum{Real(0), all_lanes<Real>()};
+    const auto add = [&](auto i, const SquaredError<Real>& part) {
+        sum = {sum.value + part.value, both(sum.positive_definite, part.positive_definite)};
+        told(i, sum);
+    };
+    each(zero, half(last - first), [&](auto pair) {
+        const auto i = last - two * (pair + one);
+        add(i, eliminate_pair(left, first, i));
+    });
+    if ((last - first) % 2 != 0) {
+        const Real pivot = left.A.entry[first][first];
+        add(first, {left.e[first] * left.e[first] / pivot, pivot > Real(0)});
     }
-    return result;
 }
 
 }  // namespace CREDENCE_UNIT

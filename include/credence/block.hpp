@@ -34,6 +34,6 @@ int trials_in_block(std::int64_t trials, std::int64_t index);
 
 /// Simulates the first `trials` trials of a block. Thread-safe.
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
-                SimulateFunction simulate = best_unit().simulate);
+                const Unit& unit = best_unit());
 
 }  // namespace credence

@@ -24,35 +24,36 @@ Command<Real> command_from(const Control& control) {
 /// Everything of the next step that no candidate changes: features predicted to pose k, and all edges taken in. (F and
 /// the fresh odometry noise touch the robot's rows only, so edges condition equally well before the robot moves.)
 template <class Layout, class Real, int capacity>
-void prepare_candidates(const Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
-                        int k, Belief<Real, capacity>& base) {
-    const int n = layout.size();
-    for (int i = 0; i < n; ++i) base.mean[i] = belief.mean[i];
+CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, const FilterParameters& filter,
+                                      const Layout& layout, int k, Belief<Real, capacity>& base) {
+    const auto n = layout.size();
+    each(zero, n, [&](auto i) { base.mean[i] = belief.mean[i]; });
     copy(belief.covariance, n, base.covariance);
     predict_features(base, filter, layout, k);
-    Gain<Real, capacity> gain;
-    for (int e = 0; e < filter.edge_count; ++e)
-        condition<Layout>(base.covariance, n, edge_rows<Layout, Real>(filter.edges[e]), Real(filter.variance_edge),
-                          all_lanes<Real>(), gain);
+    each(zero, layout.features() - one, [&](auto c) {
+        if (filter.contrasts[c].scale != 0)
+            condition(base.covariance, layout, contrast_rows<Real>(filter, layout, c),
+                      Real(filter.contrasts[c].scale * filter.variance_edge), all_lanes<Real>());
+    });
 }
 
-/// trace(P) after one step under a candidate: predict, gate and take sigma at the predicted mean, update P.
+/// trace(P) after one step under a candidate: predict, gate and take sigma at the predicted mean, update P. The plain
+/// form, and the oracle of planner.hpp's. `next` is room to work in.
 template <class Layout, class Real, int capacity>
-Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command, const FilterParameters& filter,
-                    const SensorParameters& sensor, const Layout& layout) {
-    const int n = layout.size();
-    Belief<Real, capacity> next;
-    for (int i = 0; i < n; ++i) next.mean[i] = base.mean[i];
+CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command,
+                                  const FilterParameters& filter, const SensorParameters& sensor,
+                                  const Layout& layout, Belief<Real, capacity>& next) {
+    const auto n = layout.size();
+    each(zero, n, [&](auto i) { next.mean[i] = base.mean[i]; });
     copy(base.covariance, n, next.covariance);
     predict_robot(next, filter, layout, command);
-    Gain<Real, capacity> gain;
-    for (int j = 0; j < layout.features(); ++j) {
-        const Real q = sqrt(squared_norm(predicted_difference<Layout>(next.mean, j)));
-        const Mask<Real> seen = in_range(sensor, q);
-        if (!any(seen)) continue;
-        condition<Layout>(next.covariance, n, sighting_rows<Layout>(next.mean, j),
-                          believed_variance(filter, sigma_at(sensor, q)), seen, gain);
-    }
+    each(zero, layout.features(), [&](auto j) {
+        const Real squared = squared_norm(predicted_difference<Layout>(next.mean, j));
+        const Mask<Real> seen = in_range(sensor, squared);
+        if (any(seen))
+            condition(next.covariance, layout, sighting_rows<Layout>(next.mean, j),
+                      believed_variance(filter, sigma_at(sensor, squared)), seen);
+    });
     return trace(next.covariance, n);
 }
 
@@ -63,27 +64,29 @@ struct Choice {
     Command<Real> command;
     Real best = Real(std::numeric_limits<double>::infinity());
 
-    void offer(const Command<Real>& candidate, Real cost) {
-        const Mask<Real> taken = cost <= best * Real(1 + 1e-12);
+    void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
+
+    /// Offers in some lanes only.
+    void offer(const Command<Real>& candidate, Real cost, Mask<Real> offered) {
+        const Mask<Real> taken = both(offered, cost <= best * Real(1 + 1e-12));
         command.turn = select(taken, candidate.turn, command.turn);
         command.move.x = select(taken, candidate.move.x, command.move.x);
         command.move.y = select(taken, candidate.move.y, command.move.y);
-        best = select(cost < best, cost, best);
+        best = select(both(offered, cost < best), cost, best);
     }
 };
 
-/// Greedy control from pose k - 1 to k, given the belief at pose k - 1. `costs(i, cost)` is told every candidate's
-/// cost.
+/// Greedy control from pose k - 1 to k by the plain form, given the belief at pose k - 1. `costs(i, cost)` is told
+/// every candidate's cost.
 template <class Layout, class Real, int capacity, class Costs>
-Command<Real> greedy_command(const Belief<Real, capacity>& belief, const ControlParameters& control,
-                             const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
-                             int k, Costs&& costs) {
-    Belief<Real, capacity> base;
+Command<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                           const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                           int k, Belief<Real, capacity>& base, Belief<Real, capacity>& next, Costs&& costs) {
     prepare_candidates(belief, filter, layout, k, base);
     Choice<Real> choice;
     for (int i = 0; i < control.candidate_count; ++i) {
         const Command<Real> candidate = command_from<Real>(control.candidates[i]);
-        const Real cost = candidate_cost(base, candidate, filter, sensor, layout);
+        const Real cost = candidate_cost(base, candidate, filter, sensor, layout, next);
         costs(i, cost);
         choice.offer(candidate, cost);
     }

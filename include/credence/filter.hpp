@@ -10,6 +10,13 @@
 
 namespace credence {
 
+/// One column of the factored Laplacian B'B = C D C' of the edge graph: the combination sum_j coefficient[j] f_j, which
+/// the edges together measure with noise scale * sigma_edge^2 [docs/model.md, Contrasts].
+struct Contrast {
+    const double* coefficient = nullptr;     ///< [M]; 0 before the contrast's own feature, 1 at it
+    double scale = 0;                        ///< 1/D; 0 where the graph has no such contrast
+};
+
 /// What the filter believes of the noises (sigma times the scenario's factors, squared), and what it knows of the
 /// world.
 struct FilterParameters {
@@ -18,6 +25,8 @@ struct FilterParameters {
     const Point* sway_increment = nullptr;   ///< [K, M] d_{k,j} = o_{k,j} - o_{k-1,j}, row 0 unused
     const Edge* edges = nullptr;
     int edge_count = 0;
+    const Contrast* contrasts = nullptr;     ///< [M - 1]
+    double laplacian_bound = 0;              ///< not below any eigenvalue of the edge graph's Laplacian
     double variance_heading = 0, variance_odometry = 0, variance_feature = 0, variance_edge = 0;
     double variance_initial_heading = 0, variance_initial_position = 0;
     double measurement_factor = 1;           ///< on sigma_feat
@@ -53,23 +62,23 @@ void start_belief(Belief<Real, capacity>& belief, const FilterParameters& filter
 /// Predicts the features to pose k: f <- f + t_{k-1} + d_{k,j}, P_ff <- P_ff + sigma_f^2 I.
 template <class Layout, class Real, int capacity>
 void predict_features(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout, int k) {
-    for (int j = 0; j < layout.features(); ++j) {
-        const int f = Layout::feature(j);
-        const Vector2<Real> move =
-            broadcast<Real>(filter.translation[k - 1]) + broadcast<Real>(filter.sway_increment_at(k, j));
-        belief.mean[f] = belief.mean[f] + move.x;
-        belief.mean[f + 1] = belief.mean[f + 1] + move.y;
-        for (int axis = 0; axis < 2; ++axis) {
-            Real& variance = belief.covariance.entry[f + axis][f + axis];
-            variance = variance + Real(filter.variance_feature);
-        }
-    }
+    each(zero, layout.features(), [&](auto j) {
+        const auto f = Layout::feature(j);
+        const Point &t = filter.translation[k - 1], &d = filter.sway_increment_at(k, j);
+        belief.mean[f] = belief.mean[f] + Real(t.x + d.x);
+        belief.mean[f + one] = belief.mean[f + one] + Real(t.y + d.y);
+        each(f, f + two, [&](auto i) {
+            belief.covariance.entry[i][i] = belief.covariance.entry[i][i] + Real(filter.variance_feature);
+        });
+    });
 }
 
 /// F P F' for F = I but F[r, theta] = a: rows r_x and r_y of P gain a times the heading's row.
 template <class Layout, class Real, int capacity>
-void turn_position(Symmetric<Real, capacity>& P, int n, const Vector2<Real>& a) {
-    constexpr int t = Layout::heading, x = Layout::position, y = x + 1;
+void turn_position(Symmetric<Real, capacity>& P, const Layout& layout, const Vector2<Real>& a) {
+    constexpr auto t = Layout::heading;
+    constexpr auto x = Layout::position;
+    constexpr auto y = x + one;
     auto& e = P.entry;
     const Real old_tx = e[t][x], old_ty = e[t][y];
     e[t][x] = fma(a.x, e[t][t], old_tx);
@@ -77,10 +86,10 @@ void turn_position(Symmetric<Real, capacity>& P, int n, const Vector2<Real>& a) 
     e[x][x] = fma(a.x, old_tx + e[t][x], e[x][x]);
     e[x][y] = fma(a.y, e[t][x], fma(a.x, old_ty, e[x][y]));
     e[y][y] = fma(a.y, old_ty + e[t][y], e[y][y]);
-    for (int j = y + 1; j < n; ++j) {
+    each(Layout::pose_size, layout.size(), [&](auto j) {
         e[x][j] = fma(a.x, e[t][j], e[x][j]);
         e[y][j] = fma(a.y, e[t][j], e[y][j]);
-    }
+    });
 }
 
 /// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = R J
@@ -88,14 +97,15 @@ void turn_position(Symmetric<Real, capacity>& P, int n, const Vector2<Real>& a) 
 template <class Layout, class Real, int capacity>
 void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                    const Command<Real>& command) {
-    constexpr int x = Layout::position, y = x + 1;
+    constexpr auto x = Layout::position;
+    constexpr auto y = x + one;
     auto& P = belief.covariance;
     Vector2<Real> move = command.move;
     if constexpr (Layout::has_heading) {
-        constexpr int t = Layout::heading;
+        constexpr auto t = Layout::heading;
         move = rotate(rotation(belief.mean[t]), command.move);
         belief.mean[t] = belief.mean[t] + command.turn;
-        turn_position<Layout>(P, layout.size(), {-move.y, move.x});
+        turn_position(P, layout, {-move.y, move.x});
         P.entry[t][t] = P.entry[t][t] + Real(filter.variance_heading);
     }
     belief.mean[x] = belief.mean[x] + move.x;

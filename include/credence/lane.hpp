@@ -19,11 +19,19 @@ struct LaneTypes {
     typedef std::uint64_t Unsigned __attribute__((vector_size(8 * W)));
 };
 
-/// One bool per lane: all bits set, or none.
+/// One bool per lane: all bits set, or none; with AVX-512 a bit each.
 template <int W>
 struct LaneMask {
-    typename LaneTypes<W>::Integers m;
+    using M = typename LaneTypes<W>::Integers;
+    M m;
 };
+#if defined(__AVX512F__)
+template <>
+struct LaneMask<8> {
+    using M = __mmask8;
+    M m;
+};
+#endif
 
 /// One unsigned 64-bit integer per lane.
 template <int W>
@@ -42,7 +50,13 @@ struct LaneBits {
     friend LaneBits operator^(LaneBits a, LaneBits b) { return a.v ^ b.v; }
     friend LaneBits operator<<(LaneBits a, int n) { return a.v << n; }
     friend LaneBits operator>>(LaneBits a, int n) { return a.v >> n; }
-    friend LaneMask<W> operator!=(LaneBits a, LaneBits b) { return {a.v != b.v}; }
+    friend LaneMask<W> operator!=(LaneBits a, LaneBits b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmpneq_epi64_mask((__m512i)a.v, (__m512i)b.v)};
+        else
+#endif
+        return {a.v != b.v};
+    }
 };
 
 template <int W>
@@ -59,11 +73,29 @@ struct Lane {
     friend Lane operator*(Lane a, Lane b) { return a.v * b.v; }
     friend Lane operator/(Lane a, Lane b) { return a.v / b.v; }
     friend Lane operator-(Lane a) { return -a.v; }
-    friend LaneMask<W> operator<(Lane a, Lane b) { return {a.v < b.v}; }
-    friend LaneMask<W> operator<=(Lane a, Lane b) { return {a.v <= b.v}; }
-    friend LaneMask<W> operator>(Lane a, Lane b) { return {a.v > b.v}; }
-    friend LaneMask<W> operator>=(Lane a, Lane b) { return {a.v >= b.v}; }
-    friend LaneMask<W> operator==(Lane a, Lane b) { return {a.v == b.v}; }
+    friend LaneMask<W> operator<(Lane a, Lane b) { return b > a; }
+    friend LaneMask<W> operator<=(Lane a, Lane b) { return b >= a; }
+    friend LaneMask<W> operator>(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_GT_OQ)};
+        else
+#endif
+        return {a.v > b.v};
+    }
+    friend LaneMask<W> operator>=(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_GE_OQ)};
+        else
+#endif
+        return {a.v >= b.v};
+    }
+    friend LaneMask<W> operator==(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_EQ_OQ)};
+        else
+#endif
+        return {a.v == b.v};
+    }
 };
 
 /// Trials in a Real.
@@ -101,33 +133,77 @@ LaneBits<W> widening_product(LaneBits<W> a, std::uint32_t b) {
 #if defined(__AVX2__)
     if constexpr (W == 4) return (typename LaneBits<W>::V)_mm256_mul_epu32((__m256i)a.v, _mm256_set1_epi64x(b));
 #endif
-    return a.v * std::uint64_t{b};
+    return (a.v & std::uint64_t{0xffffffff}) * std::uint64_t{b};
+}
+
+/// a ^ b ^ c, one instruction where there is one.
+template <int W>
+LaneBits<W> exclusive_or(LaneBits<W> a, LaneBits<W> b, LaneBits<W> c) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return (typename LaneBits<W>::V)_mm512_ternarylogic_epi64((__m512i)a.v, (__m512i)b.v, (__m512i)c.v, 0x96);
+#endif
+    return a.v ^ b.v ^ c.v;
 }
 
 template <int W>
-LaneMask<W> both(LaneMask<W> a, LaneMask<W> b) { return {a.m & b.m}; }
+LaneMask<W> both(LaneMask<W> a, LaneMask<W> b) { return {static_cast<typename LaneMask<W>::M>(a.m & b.m)}; }
 template <int W>
-LaneMask<W> either(LaneMask<W> a, LaneMask<W> b) { return {a.m | b.m}; }
+LaneMask<W> either(LaneMask<W> a, LaneMask<W> b) { return {static_cast<typename LaneMask<W>::M>(a.m | b.m)}; }
 template <int W>
-LaneMask<W> negated(LaneMask<W> a) { return {~a.m}; }
+LaneMask<W> negated(LaneMask<W> a) { return {static_cast<typename LaneMask<W>::M>(~a.m)}; }
 
+/// The lanes of a mask as bits, lane 0 lowest.
+inline unsigned lane_bits(bool mask) { return mask; }
 template <int W>
-bool any(LaneMask<W> mask) {
+unsigned lane_bits(LaneMask<W> mask) {
 #if defined(__AVX512F__)
-    if constexpr (W == 8) return _mm512_test_epi64_mask((__m512i)mask.m, (__m512i)mask.m) != 0;
+    if constexpr (W == 8) return mask.m;
+    else
 #endif
 #if defined(__AVX2__)
-    if constexpr (W == 4) return _mm256_movemask_pd((__m256d)mask.m) != 0;
+    if constexpr (W == 4) return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask.m));
+    else
 #endif
-    std::int64_t all = 0;
-    for (int i = 0; i < W; ++i) all |= mask.m[i];
-    return all != 0;
+    {
+        unsigned bits = 0;
+        for (int i = 0; i < W; ++i) bits |= static_cast<unsigned>(mask.m[i] & 1) << i;
+        return bits;
+    }
 }
+
+template <int W>
+bool any(LaneMask<W> mask) { return lane_bits(mask) != 0; }
 
 template <int W>
 Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return (typename Lane<W>::V)_mm512_mask_blend_pd(mask.m, (__m512d)no.v, (__m512d)yes.v);
+    else
+#endif
     return mask.m ? yes.v : no.v;
 }
+
+/// A pack from its doubles in memory, wherever they lie.
+template <class Real>
+Real load(const double* from) {
+    Real pack;
+    __builtin_memcpy(static_cast<void*>(&pack), from, sizeof pack);
+    return pack;
+}
+template <class Real>
+void store(const Real& pack, double* to) {
+    __builtin_memcpy(to, &pack, sizeof pack);
+}
+
+/// One lane's number.
+inline double lane_of(double x, int) { return x; }
+template <int W>
+double lane_of(const Lane<W>& x, int lane) { return x.v[lane]; }
+inline void set_lane(double& x, int, double value) { x = value; }
+template <int W>
+void set_lane(Lane<W>& x, int lane, double value) { x.v[lane] = value; }
 
 template <int W>
 Lane<W> fma(Lane<W> a, Lane<W> b, Lane<W> c) {

@@ -1,15 +1,10 @@
 #pragma once
 // Room 8: a scenario made ready: the tables that its equations read, computed once.
 
-#include <credence/controller.hpp>
+#include <credence/planner.hpp>
 #include <credence/record.hpp>
 
 namespace credence {
-
-/// First index and length of a state block, without its name.
-struct BlockRange {
-    int first = 0, count = 0;
-};
 
 /// What a trial reads: plain numbers and pointers into a Problem.
 struct ProblemView {
@@ -19,7 +14,6 @@ struct ProblemView {
     SensorParameters sensor;
     FilterParameters filter;
     ControlParameters control;
-    const BlockRange* blocks = nullptr;
     int block_count = 0;
     int figure_count = 0;
 };
@@ -36,6 +30,7 @@ public:
     const ProblemView& view() const { return view_; }
 
 private:
+    void factor_edges();
     void fill_world();
     void fill_filter();
     void fill_control();
@@ -44,7 +39,8 @@ private:
     std::vector<Point> translation_, sway_, sway_increment_;
     std::vector<Edge> edges_;
     std::vector<Control> fixed_, candidates_;
-    std::vector<BlockRange> blocks_;
+    std::vector<double> contrast_coefficients_;
+    std::vector<Contrast> contrasts_;
     ProblemView view_;
 };
 

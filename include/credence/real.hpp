@@ -43,8 +43,11 @@ template <class Real>
 Mask<Real> all_lanes() {
     return Real(0) == Real(0);
 }
-/// a b for a, b below 2^32: all 64 bits of the product.
-inline std::uint64_t widening_product(std::uint64_t a, std::uint32_t b) { return a * b; }
+/// The low 32 bits of a, times b: all 64 bits of the product.
+inline std::uint64_t widening_product(std::uint64_t a, std::uint32_t b) {
+    return std::uint64_t{static_cast<std::uint32_t>(a)} * b;
+}
+inline std::uint64_t exclusive_or(std::uint64_t a, std::uint64_t b, std::uint64_t c) { return a ^ b ^ c; }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
 inline bool any(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }
@@ -53,6 +56,10 @@ inline bool negated(bool mask) { return !mask; }
 /// True where x is neither infinite nor NaN.
 inline bool finite(double x) { return x - x == 0.0; }
 inline double absolute(double x) { return __builtin_fabs(x); }
+
+/// Tells the compiler to read memory anew from here on: what it would keep of large arrays does not fit the registers,
+/// and goes to the stack and back.
+inline void reload_memory() { asm volatile("" ::: "memory"); }
 
 /// Added to |x| < 2^51 and taken away again, it rounds x to the nearest integer, ties to even; while it is added, the
 /// low bits of the sum are those of the integer.

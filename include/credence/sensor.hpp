@@ -10,6 +10,8 @@ namespace credence {
 
 struct SensorParameters {
     double range_min = 0, range_max = 0;
+    /// r_min <= sqrt(s) <= r_max exactly where these bound s: the roots are spared.
+    double squared_range_min = 0, squared_range_max = 0;
     RangeNoise noise = RangeNoise::constant;
     double sigma = 0;                 ///< constant noise
     double sigma_near = 0;            ///< ranged: at range_min
@@ -21,23 +23,28 @@ struct SensorParameters {
 inline namespace CREDENCE_UNIT {
 
 template <class Real>
-Real range(const Vector2<Real>& from, const Vector2<Real>& to) {
-    return sqrt(squared_norm(to - from));
+Real squared_range(const Vector2<Real>& from, const Vector2<Real>& to) {
+    return squared_norm(to - from);
 }
 
-/// r_min <= q <= r_max, both ends included.
+/// r_min <= q <= r_max, both ends included, of a squared range.
 template <class Real>
-Mask<Real> in_range(const SensorParameters& sensor, Real q) {
-    return both(q >= Real(sensor.range_min), q <= Real(sensor.range_max));
+Mask<Real> in_range(const SensorParameters& sensor, Real squared) {
+    return both(squared >= Real(sensor.squared_range_min), squared <= Real(sensor.squared_range_max));
 }
 
-/// sigma_feat(q): constant, or growing linearly from range_min on, not clamped above.
+/// Noise that grows linearly from range_min on, not clamped above.
 template <class Real>
-Real sigma_at(const SensorParameters& sensor, Real q) {
-    if (sensor.noise == RangeNoise::constant) return Real(sensor.sigma);
+Real ranged_sigma(const SensorParameters& sensor, Real q) {
     const Real beyond = q - Real(sensor.range_min);
     const Real clamped = select(beyond > Real(0), beyond, Real(0));
     return fma(Real(sensor.sigma_slope), clamped, Real(sensor.sigma_near));
+}
+
+/// sigma_feat(q) of a squared range.
+template <class Real>
+Real sigma_at(const SensorParameters& sensor, Real squared) {
+    return sensor.noise == RangeNoise::constant ? Real(sensor.sigma) : ranged_sigma(sensor, sqrt(squared));
 }
 
 /// One look at one feature. Where it is not seen, z and sigma are those it would have had.
@@ -48,21 +55,25 @@ struct Sighting {
     Real sigma{};     ///< true standard deviation of each axis
 };
 
-/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas. The draws are consumed whether or not the feature is in sight.
+/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas for every feature. The draws are consumed whether or not a feature
+/// is in sight. `sightings` [M].
 template <class Layout, class Real, int capacity, class Noise>
-Sighting<Real> look_at(const Truth<Real, capacity>& truth, const Rotation<Real>& heading,
-                       const SensorParameters& sensor, int k, int j, const Noise& noise) {
-    const Real q = range(truth.position, truth.feature[j]);
-    Sighting<Real> sighting;
-    sighting.seen = in_range(sensor, q);
-    if (sensor.detection < 1)
-        sighting.seen =
-            both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
-    sighting.sigma = sigma_at(sensor, q);
-    sighting.z = truth.feature[j] - truth.position;
-    if constexpr (Layout::has_heading) sighting.z = rotate_back(heading, sighting.z);
-    sighting.z = add_scaled(sighting.z, sighting.sigma, noise.normal(Source::measurement, k, j));
-    return sighting;
+CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParameters& sensor, const Layout& layout, int k,
+                        const Noise& noise, Sighting<Real>* sightings) {
+    Vector2<Real> measurement[capacity];
+    draw_all(noise, Source::measurement, k, layout.features(), measurement);
+    each(zero, layout.features(), [&](auto j) {
+        const Real squared = squared_range(truth.position, truth.feature[j]);
+        Sighting<Real>& sighting = sightings[j];
+        sighting.seen = in_range(sensor, squared);
+        if (sensor.detection < 1)
+            sighting.seen =
+                both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
+        sighting.sigma = sigma_at(sensor, squared);
+        sighting.z = truth.feature[j] - truth.position;
+        if constexpr (Layout::has_heading) sighting.z = rotate_back(truth.rotation, sighting.z);
+        sighting.z = add_scaled(sighting.z, sighting.sigma, measurement[j]);
+    });
 }
 
 /// The first estimate of feature j, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j})
@@ -70,7 +81,7 @@ Sighting<Real> look_at(const Truth<Real, capacity>& truth, const Rotation<Real>&
 template <class Real, int capacity, class Noise>
 Sighting<Real> first_sight(const Truth<Real, capacity>& truth, const SensorParameters& sensor, int j,
                            const Noise& noise) {
-    const Real sigma = sigma_at(sensor, range(truth.position, truth.feature[j]));
+    const Real sigma = sigma_at(sensor, squared_range(truth.position, truth.feature[j]));
     return {Mask<Real>{}, add_scaled(truth.feature[j], sigma, noise.normal(Source::measurement, 0, j)), sigma};
 }
 

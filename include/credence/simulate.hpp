@@ -3,23 +3,27 @@
 
 #include <credence/problem.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 namespace credence {
 
-/// Trials are stored eight by eight, one next to the other: a pack of lanes writes its results where they belong.
+/// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.
 inline constexpr int octet = 8;
 
-/// Consecutive trials of one arm. Results are the same bits from every unit.
+/// Consecutive trials of one arm, and where their results go. Results are the same bits from every unit. Sums are eight
+/// running sums, trial i of the batch going to the one of i mod 8 in trial order; failed trials do not enter them.
 struct Batch {
     Controller controller = Controller::fixed;
     std::uint64_t root_seed = 0;
     std::int64_t first_trial = 0;
     int trials = 0;
-    double* columns = nullptr;  ///< [octets, column_count, 8], a failed trial's still unfilled
-    double* figures = nullptr;  ///< [octets, figure_count, K - 1, 8]
-    double* scratch = nullptr;  ///< [column_count + figure_count (K - 1), 8], aligned to 64 bytes
+    double* columns = nullptr;          ///< [octets, column_count, 8], a failed trial's still unfilled
+    double* sums = nullptr;             ///< [figure_count, K - 1, 8], added to
+    double* square_sums = nullptr;      ///< [figure_count, K - 1, 8], added to
+    double* run_square_sums = nullptr;  ///< [figure_count, 8], added to: of each trial's sum over its steps
+    void* workspace = nullptr;          ///< workspace_size bytes from a 64-byte boundary on
 };
 
 using SimulateFunction = void (*)(const ProblemView&, const Batch&);
@@ -29,10 +33,17 @@ struct Unit {
     std::string name;
     int lanes = 1;
     SimulateFunction simulate = nullptr;
+    std::size_t (*workspace_size)(const ProblemView&) = nullptr;
 };
+
+/// Environment variable that names the unit to run, for tests.
+inline constexpr const char* force_unit_variable = "CREDENCE_FORCE_UNIT";
 
 /// Every unit that was built and that this processor can run, the best one first.
 std::vector<Unit> runnable_units();
+
+/// The unit that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
+/// InputError where that is none of runnable_units; who computes calls this before anything else.
 Unit best_unit();
 
 }  // namespace credence

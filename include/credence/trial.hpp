@@ -14,7 +14,7 @@ struct NoObserver {
     template <class... Anything>
     void started(const Anything&...) {}
     template <class... Anything>
-    void cost(const Anything&...) {}
+    void planned(const Anything&...) {}
     template <class... Anything>
     void predicted(const Anything&...) {}
     template <class... Anything>
@@ -83,68 +83,136 @@ void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_erro
     outcome.note(largest > Real(divergence_bound), Status::diverged, k);
 }
 
+/// Whether note_trouble could find anything. The diagonal speaks for a positive definite P: |P_ij| <= max P_ii, and an
+/// entry that is not finite spoils a pivot.
+template <class Layout, class Real, int capacity>
+bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real squared_errors,
+             Mask<Real> positive_definite) {
+    Real total = absolute(squared_errors);  // no less than any of its parts, and not finite if one of them is not
+    each(zero, layout.size(), [&](auto i) {
+        total = total + (absolute(belief.mean[i]) + absolute(belief.covariance.entry[i][i]));
+    });
+    return any(negated(both(positive_definite, total <= Real(divergence_bound))));
+}
+
+/// A belief's errors, judged: NEES of every block, in the order of Layout's, with each block's own P; e_i/sqrt(P_ii).
+template <class Layout, class Real>
+struct Judgement {
+    Real nees[Layout::largest_block_count], standardised_error[Layout::capacity];
+    Mask<Real> positive_definite{};
+};
+
+template <class Layout, class Real, int capacity>
+CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const Layout& layout, const Real* error,
+                                  Elimination<Real, capacity>& work, Judgement<Layout, Real>& judgement) {
+    const auto n = layout.size();
+    const auto& P = belief.covariance;
+    Real* nees = judgement.nees;
+    judgement.positive_definite = all_lanes<Real>();
+    const auto judge = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
+        nested_squared_errors(P, error, first, last, work, [&](auto i, const SquaredError<Real>& result) {
+            keep(i, result.value);
+            if (i == first)
+                judgement.positive_definite = both(judgement.positive_definite, result.positive_definite);
+        });
+    };
+    const auto standardise = [&](auto i) { judgement.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
+    judge(zero, n, [&](auto i, Real value) {
+        if (i == 0) nees[Layout::block_all] = value;
+        if (i == Layout::pose_size) nees[Layout::block_features] = value;
+        if (i == n - two) nees[Layout::block_feature(layout.features() - one)] = value;
+        // Done here, the roots fill the time in which the elimination waits for its pivots.
+        standardise(i);
+        if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
+    });
+    judge(zero, Layout::pose_size, [&](auto i, Real value) {
+        if (i == 0) nees[Layout::block_pose] = value;
+        if constexpr (Layout::has_heading)
+            if (i == Layout::position) nees[Layout::block_position] = value;
+    });
+    if constexpr (Layout::has_heading)
+        nees[Layout::block_heading] = judgement.standardised_error[0] * judgement.standardised_error[0];
+    each(zero, layout.features() - one, [&](auto j) {
+        const auto f = Layout::feature(j);
+        judge(f, f + two, [&](auto i, Real value) {
+            if (i == f) nees[Layout::block_feature(j)] = value;
+        });
+    });
+}
+
 /// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
-void judge_step(const ProblemView& problem, const Layout& layout, const Belief<Real, state_capacity>& belief,
-                const Truth<Real, feature_capacity>& truth, const UpdateResult<Real>& update, int k,
-                Sums<Real>& sums, Outcome<Real>& outcome, Real* figures) {
-    const int steps = problem.poses - 1, n = layout.size();
+CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
+                              const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
+                              const Update<Real, state_capacity>& update, int k,
+                              Elimination<Real, state_capacity>& work, Sums<Real>& sums, Outcome<Real>& outcome,
+                              Real* figures) {
+    const int steps = problem.poses - 1;
+    const auto n = layout.size();
     Real* next = figures + (k - 1);
     const auto write = [&](Real value) { *next = value, next += steps; };
 
     Real error[state_capacity];
+    Judgement<Layout, Real> judgement;
     estimation_error(belief, truth, layout, error);
-    const Real reported = Real(problem.filter.covariance_factor);
-    Mask<Real> positive_definite = update.positive_definite;
-    Real whole = Real(0);
-    for (int b = 0; b < problem.block_count; ++b) {
-        const BlockRange block = problem.blocks[b];
-        const SquaredError<Real> nees =
-            normalised_squared_error(belief.covariance, error, block.first, block.count);
-        positive_definite = both(positive_definite, nees.positive_definite);
-        const Real value = nees.value / reported;
-        if (b == 0) whole = value;
-        write(value);
-    }
-    const Real trace_P = reported * trace(belief.covariance, n);
+    judge_blocks(belief, layout, error, work, judgement);
+    // What is reported is P times a factor, 1 but for tests of the judge.
+    const double reported = problem.filter.covariance_factor;
+    const Mask<Real> positive_definite = both(update.positive_definite, judgement.positive_definite);
+    const Real whole = judgement.nees[Layout::block_all] * Real(1 / reported);
+    const Real trace_P = Real(reported) * trace(belief.covariance, n);
     const Real squared_error = squared_pose_error<Layout>(error);
+    each(zero, layout.block_count(), [&](auto b) { write(judgement.nees[b] * Real(1 / reported)); });
     write(update.nis);
     write(update.rows);
     write(update.unseen);
     write(trace_P);
     write(squared_error);
-    for (int i = 0; i < n; ++i) write(error[i] / sqrt(reported * belief.covariance.entry[i][i]));
+    const Real inverse_root = Real(1 / __builtin_sqrt(reported));
+    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
 
-    sums.nees = sums.nees + whole / Real(n);
+    sums.nees = sums.nees + whole;
     sums.nis = sums.nis + update.nis;
     sums.rows = sums.rows + update.rows;
     sums.unseen = sums.unseen + update.unseen;
     sums.pose_error = sums.pose_error + squared_error;
     sums.trace = trace_P;
-    note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
+    if (trouble(belief, layout, whole + update.nis, positive_definite))
+        note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
 }
 
 /// The trial's columns in the order of ColumnIndex; those of a failed trial are filled by the engine.
 template <class Real>
-void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int steps, Real* columns) {
+void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int n, int steps, Real* columns) {
     columns[column_trace_P] = sums.trace;
     columns[column_unseen] = sums.unseen;
     columns[column_pose_error] = sums.pose_error;
-    columns[column_nees_ratio] = sums.nees / Real(steps);
+    columns[column_nees_ratio] = sums.nees / Real(steps * n);
     columns[column_nis_ratio] = sums.nis / sums.rows;
     columns[column_status] = outcome.status;
     columns[column_status_pose] = outcome.pose;
 }
 
+/// What one trial needs room for. Sixty-four features in lanes would not fit a thread's stack.
+template <class Layout, class Real>
+struct Workspace {
+    Truth<Real, Layout::feature_capacity> truth;
+    Belief<Real, Layout::capacity> belief;
+    Sighting<Real> sightings[Layout::feature_capacity];
+    Update<Real, Layout::capacity> update;
+    Elimination<Real, Layout::capacity> elimination;
+    PlannerWorkspace<Layout, Real> planner;
+};
+
 /// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
 template <class Layout, class Real, class Noise, class Observer>
 void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
-               Real* columns, Real* figures) {
+               Workspace<Layout, Real>& work, Real* columns, Real* figures) {
     const Layout layout(problem.features);
-    const int features = layout.features();
-    Truth<Real, Layout::feature_capacity> truth;
-    Belief<Real, Layout::capacity> belief{};
-    Sighting<Real> sightings[Layout::feature_capacity];
+    const auto features = layout.features();
+    auto& truth = work.truth;
+    auto& belief = work.belief;
+    auto& sightings = work.sightings;
     Sums<Real> sums;
     Outcome<Real> outcome;
 
@@ -161,9 +229,10 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     for (int k = 1; k < problem.poses; ++k) {
         // Choose where to go, from what is believed.
         Command<Real> command = command_from<Real>(problem.control.fixed[k - 1]);
-        if (controller == Controller::greedy)
-            command = greedy_command(belief, problem.control, problem.filter, problem.sensor, layout, k,
-                                     [&](int candidate, Real cost) { observer.cost(k, candidate, cost); });
+        if (controller == Controller::greedy) {
+            command = plan(belief, problem.control, problem.filter, problem.sensor, layout, k, work.planner);
+            observer.planned(k, layout, belief);
+        }
 
         // The world moves on.
         move_features(truth, problem.world, features, k, noise);
@@ -174,21 +243,18 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         predict_features(belief, problem.filter, layout, k);
 
         // See.
-        Rotation<Real> heading{};
-        if constexpr (Layout::has_heading) heading = rotation(truth.heading);
-        for (int j = 0; j < features; ++j)
-            sightings[j] = look_at<Layout>(truth, heading, problem.sensor, k, j, noise);
+        look(truth, problem.sensor, layout, k, noise, sightings);
         const auto edge_measurement = [&](int e) {
             return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
         };
         observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement);
 
         // Update, and compare with the truth.
-        const UpdateResult<Real> result = update(belief, problem.filter, layout, sightings, edge_measurement);
-        judge_step(problem, layout, belief, truth, result, k, sums, outcome, figures);
+        update_belief(belief, problem.filter, layout, sightings, edge_measurement, work.update);
+        judge_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, figures);
         observer.updated(k, layout, belief, figures);
     }
-    write_columns(sums, outcome, problem.poses - 1, columns);
+    write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
 }
 
 }  // namespace CREDENCE_UNIT

@@ -29,6 +29,7 @@ inline namespace CREDENCE_UNIT {
 template <class Real, int feature_capacity>
 struct Truth {
     Real heading{};
+    Rotation<Real> rotation;                     ///< R(heading); heading model only
     Vector2<Real> position;
     Vector2<Real> centre[feature_capacity];
     Vector2<Real> feature[feature_capacity];
@@ -40,42 +41,45 @@ Vector2<Real> broadcast(const Point& point) {
 }
 
 /// p_{k,j} = c_{k,j} + o_{k,j} + sigma_def eps^def_{k,j}; where deformation walks, the draw is in c already.
-template <class Real, int capacity, class Noise>
-void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, int features, int k,
-                     const Noise& noise) {
-    for (int j = 0; j < features; ++j) {
-        const Vector2<Real> at_rest = truth.centre[j] + broadcast<Real>(world.sway_at(k, j));
+/// `deformation` [M] are the draws of pose k.
+template <class Real, int capacity, class Count>
+void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, int k,
+                     const Vector2<Real>* deformation) {
+    each(zero, features, [&](auto j) {
+        truth.feature[j] = truth.centre[j] + broadcast<Real>(world.sway_at(k, j));
         if (world.deformation == Deformation::jitter)
-            truth.feature[j] =
-                add_scaled(at_rest, Real(world.sigma_deformation), noise.normal(Source::deformation, k, j));
-        else
-            truth.feature[j] = at_rest;
-    }
+            truth.feature[j] = add_scaled(truth.feature[j], Real(world.sigma_deformation), deformation[j]);
+    });
 }
 
 /// The truth at pose 0: features about f_0, the robot at 0 (or drawn about it).
-template <class Real, int capacity, class Noise>
-void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, int features, const Noise& noise) {
+template <class Real, int capacity, class Count, class Noise>
+void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, const Noise& noise) {
     truth.heading = Real(world.sigma_initial_heading) * noise.normal(Source::odometry_heading, 0, 0).x;
+    truth.rotation = rotation(truth.heading);
     truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position),
                                 noise.normal(Source::odometry_position, 0, 0));
-    for (int j = 0; j < features; ++j) truth.centre[j] = broadcast<Real>(world.first_position[j]);
-    deform_features(truth, world, features, 0, noise);
+    each(zero, features, [&](auto j) { truth.centre[j] = broadcast<Real>(world.first_position[j]); });
+    Vector2<Real> deformation[capacity];
+    if (world.deformation == Deformation::jitter) draw_all(noise, Source::deformation, 0, features, deformation);
+    deform_features(truth, world, features, 0, deformation);
 }
 
 /// Features from pose k - 1 to k: c_k = c_{k-1} + t_{k-1} + sigma_walk eps^walk_{k-1} (+ sigma_def eps^def_k where
 /// deformation walks).
-template <class Real, int capacity, class Noise>
-void move_features(Truth<Real, capacity>& truth, const WorldParameters& world, int features, int k,
-                   const Noise& noise) {
-    for (int j = 0; j < features; ++j) {
-        Vector2<Real> centre = truth.centre[j] + broadcast<Real>(world.translation[k - 1]);
-        centre = add_scaled(centre, Real(world.sigma_walk), noise.normal(Source::walk, k - 1, j));
+template <class Real, int capacity, class Count, class Noise>
+CREDENCE_FLAT void move_features(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, int k,
+                                 const Noise& noise) {
+    Vector2<Real> walk[capacity], deformation[capacity];
+    draw_all(noise, Source::walk, k - 1, features, walk);
+    draw_all(noise, Source::deformation, k, features, deformation);
+    each(zero, features, [&](auto j) {
+        const Vector2<Real> centre = truth.centre[j] + broadcast<Real>(world.translation[k - 1]);
+        truth.centre[j] = add_scaled(centre, Real(world.sigma_walk), walk[j]);
         if (world.deformation == Deformation::walk)
-            centre = add_scaled(centre, Real(world.sigma_deformation), noise.normal(Source::deformation, k, j));
-        truth.centre[j] = centre;
-    }
-    deform_features(truth, world, features, k, noise);
+            truth.centre[j] = add_scaled(truth.centre[j], Real(world.sigma_deformation), deformation[j]);
+    });
+    deform_features(truth, world, features, k, deformation);
 }
 
 /// A control of one step: turn in radians; move in length units, body frame (heading model) or world frame.
@@ -88,13 +92,14 @@ struct Command {
 /// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
 /// sigma_odom eps.
 template <class Layout, class Real, int capacity, class Noise>
-void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
+CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
                 const Noise& noise) {
     Vector2<Real> move = command.move;
     if constexpr (Layout::has_heading) {
-        move = rotate(rotation(truth.heading), command.move);
+        move = rotate(truth.rotation, command.move);
         truth.heading = fma(Real(world.sigma_heading), noise.normal(Source::odometry_heading, k, 0).x,
                             truth.heading + command.turn);
+        truth.rotation = rotation(truth.heading);
     }
     truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry),
                                 noise.normal(Source::odometry_position, k, 0));

@@ -4,6 +4,7 @@
 #include "version.hpp"
 
 #include <credence/error.hpp>
+#include <credence/simulate.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>
@@ -43,6 +44,7 @@ int complain(const std::string& message, int exit_code) {
 }
 
 int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
+    best_unit();  // refuses a bad CREDENCE_FORCE_UNIT before any work
     const auto parsed = [&](const cli::Command& command) { return cli::parse(command, arguments); };
     if (name == "run") { const auto p = parsed(cli::run_command()); return p ? cli::run(*p, line) : 0; }
     if (name == "report") { const auto p = parsed(cli::report_command()); return p ? cli::report(*p) : 0; }

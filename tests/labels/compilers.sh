@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Label compilers: clang builds everything without a warning, passes the core suite, and its program gives the bits of g++'s.
+# Label compilers: clang builds everything without a warning, passes the core suite, prints the committed digest, and
+# its program gives the bits of g++'s.
 set -euo pipefail
 cmake --preset clang >/dev/null
 cmake --build --preset clang -j "$(nproc)" | tail -n 3
 build-clang/tests/credence_tests '~[long]' | tail -n 3
+bash tests/digest/check.sh build-clang/tests/digest/credence_digest
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for compiler in build build-clang; do

@@ -1,0 +1,13 @@
+#pragma once
+// The engine on counting numbers: a unit like any other, which gives the same columns and counts its operations.
+
+#include <credence/simulate.hpp>
+
+namespace credence::bench {
+
+Unit counted_unit();
+
+/// Floating-point operations since the program began. Not for several threads.
+std::uint64_t counted_operations();
+
+}  // namespace credence::bench

@@ -1,0 +1,35 @@
+#include "kernels.hpp"
+
+#include <credence/simulate.hpp>
+
+namespace credence {
+
+namespace bench_portable {
+extern const bench::Kernels kernels;
+}
+#ifdef CREDENCE_X86_UNITS
+namespace bench_v3 {
+extern const bench::Kernels kernels;
+}
+namespace bench_v4 {
+extern const bench::Kernels kernels;
+}
+#endif
+
+namespace bench {
+
+std::vector<Kernels> runnable_kernels() {
+    std::vector<Kernels> built{bench_portable::kernels};
+#ifdef CREDENCE_X86_UNITS
+    built.push_back(bench_v3::kernels);
+    built.push_back(bench_v4::kernels);
+#endif
+    std::vector<Kernels> runnable;
+    for (const Unit& unit : runnable_units())
+        for (const Kernels& kernels : built)
+            if (unit.name == kernels.unit) runnable.push_back(kernels);
+    return runnable;
+}
+
+}  // namespace bench
+}  // namespace credence

@@ -1,0 +1,107 @@
+// One instruction set's kernels. As in the engine's units, nothing here may emit a symbol outside the namespace.
+
+#include <credence/lane.hpp>
+#include <credence/trial.hpp>
+
+#include "kernels.hpp"
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+namespace {
+
+using Real = Pack<CREDENCE_LANES>;
+
+double first_lane(const Real& pack) {
+    double first;
+    __builtin_memcpy(&first, &pack, sizeof first);
+    return first;
+}
+
+double normals(std::int64_t rounds) {
+    const KeyedDraws<Real> draws(1, Bits<Real>{}, std::numeric_limits<double>::infinity());
+    Real sum = Real(0);
+    for (std::int64_t i = 0; i < rounds; ++i) {
+        const Vector2<Real> draw = draws.normal(Source::walk, static_cast<int>(i), 0);
+        sum = sum + (draw.x + draw.y);
+    }
+    return first_lane(sum);
+}
+
+double filter_steps(const ProblemView& problem, std::int64_t steps) {
+    using Layout = credence::Layout<Process::heading, 3>;
+    constexpr int room = 64;  // for the figures of one step
+    const Layout layout(problem.features);
+    const KeyedDraws<Real> draws(1, Bits<Real>{}, std::numeric_limits<double>::infinity());
+    Workspace<Layout, Real> work;
+    Sums<Real> sums;
+    Outcome<Real> outcome;
+    Real figures[room];
+    start_truth(work.truth, problem.world, problem.features, draws);
+    for (int j = 0; j < problem.features; ++j) work.sightings[j] = first_sight(work.truth, problem.sensor, j, draws);
+    start_belief(work.belief, problem.filter, layout, work.sightings);
+    for (int j = 0; j < problem.features; ++j)
+        work.sightings[j] = look_at<Layout>(work.truth, problem.sensor, 1, j, draws);
+    const auto edge_measurement = [&](int e) {
+        return measure_edge(work.truth, problem.sensor, problem.filter.edges[e], 1, e, draws);
+    };
+    for (std::int64_t step = 0; step < steps; ++step) {
+        predict_robot(work.belief, problem.filter, layout, Command<Real>{});
+        predict_features(work.belief, problem.filter, layout, 1);
+        update_belief(work.belief, problem.filter, layout, work.sightings, edge_measurement, work.update);
+        judge_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome, figures);
+    }
+    return first_lane(sums.nees + sums.nis);
+}
+
+/// More than latency times units of any processor at hand, and few enough for the registers.
+constexpr int chains = 12;
+
+#if defined(__x86_64__)
+#define CREDENCE_REGISTER "+v"
+#elif defined(__aarch64__)
+#define CREDENCE_REGISTER "+w"
+#else
+#define CREDENCE_REGISTER "+m"
+#endif
+
+/// Keeps a number in its register and forgets what it is: equal chains could be computed once.
+template <class Number>
+void forget(Number& x) {
+    if constexpr (lanes<Number> == 1)
+        asm volatile("" : CREDENCE_REGISTER(x));
+    else
+        asm volatile("" : CREDENCE_REGISTER(x.v));
+}
+
+double multiply_adds(std::int64_t rounds) {
+    Real a(0), b(1), c(2), d(3), e(4), f(5), g(6), h(7), i(8), j(9), k(10), l(11), factor(0.999), term(0.001);
+    forget(factor);
+    forget(term);
+    const auto step = [&](auto&... x) CREDENCE_INLINE_LAMBDA { ((x = fma(x, factor, term), forget(x)), ...); };
+    for (std::int64_t round = 0; round < rounds; ++round) step(a, b, c, d, e, f, g, h, i, j, k, l);
+    return first_lane(a + b + c + d + e + f + g + h + i + j + k + l);
+}
+
+}  // namespace
+
+#if defined(__FMA__) || defined(__aarch64__)
+constexpr bool hardware_fma = true;
+#else
+constexpr bool hardware_fma = false;
+#endif
+
+#define CREDENCE_TEXT_OF(x) #x
+#define CREDENCE_TEXT(x) CREDENCE_TEXT_OF(x)
+
+extern const bench::Kernels kernels;
+const bench::Kernels kernels{CREDENCE_TEXT(CREDENCE_UNIT) + sizeof "bench",
+                             CREDENCE_LANES,
+                             chains,
+                             hardware_fma,
+                             normals,
+                             filter_steps,
+                             multiply_adds};
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,34 @@
+#pragma once
+// What is measured: scenarios with one arm each.
+
+#include <credence/problem.hpp>
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace credence::bench {
+
+/// One arm of one scenario, made ready. `trials` of a block are run at once.
+struct Row {
+    std::string name;
+    Controller controller = Controller::fixed;
+    int trials = 0;
+    Problem problem;
+
+    Row(std::string row_name, const Scenario& scenario, int trials_at_once);
+    Row(const Row&) = delete;
+    int features() const { return problem.view().features; }
+    /// Steps of all the trials that are run at once.
+    int steps() const { return trials * (problem.view().poses - 1); }
+};
+
+/// The seed's cells (process, path, noise, controller), and greedy planning with more heading noise.
+const std::deque<Row>& seed_rows();
+
+/// Growth with the number of features: M = 1 ... 64 on the fixed path, up to 16 planned; heading model, straight.
+const std::deque<Row>& growth_rows();
+
+/// The defaults with keys set: name and value in turns. Resolved and validated.
+Scenario scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values);
+
+}  // namespace credence::bench

@@ -1,0 +1,27 @@
+#pragma once
+// Whole trials: credence on every unit, and the baselines, on the same rows in the same run.
+
+#include "kernels.hpp"
+#include "measure.hpp"
+#include "rows.hpp"
+#include "table.hpp"
+
+namespace credence::bench {
+
+/// Registers trial/NAME/UNIT, trial/NAME/A and trial/NAME/B of every row.
+void add_trials(const std::deque<Row>& rows, const Effort& effort);
+
+/// Whether baseline A is run on a row: its joint update grows with the sixth power of M.
+bool has_dynamic(const Row& row);
+
+/// Throws where a baseline's columns, or the counted engine's, are not credence's.
+void require_agreement(const std::deque<Row>& rows, const Effort& effort);
+
+/// Registers a benchmark of a unit's fused multiply-adds; GFLOP/s that it measured.
+void add_peak(const std::string& name, const Kernels& kernels, const Effort& effort);
+double peak_of(const Samples& samples, const Kernels& kernels);
+
+/// Measures the rows: the best unit's table, and the others' one.
+std::vector<Table> trial_tables(const std::string& key, const std::string& title, const std::deque<Row>& rows);
+
+}  // namespace credence::bench

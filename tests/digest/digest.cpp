@@ -1,0 +1,155 @@
+// A digest of a small study: one line of 64 bits for each world and arm, from rooms 1 to 9 only. Every compiler,
+// optimisation, lane width, instruction set and processor must print the lines of expected.txt.
+//   credence_digest [UNIT...]    the units to run (default: all that this processor runs); they must agree
+
+#include <algorithm>
+#include <bit>
+#include <credence/block.hpp>
+#include <credence/error.hpp>
+#include <credence/scenario_keys.hpp>
+#include <credence/text.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "worlds.hpp"
+
+namespace credence {
+
+// The lane widths without an instruction set of their own: what Lane<W> is on any processor.
+namespace w2 {
+void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
+}  // namespace w2
+namespace w4 {
+void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
+}  // namespace w4
+namespace w8 {
+void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
+}  // namespace w8
+
+namespace digest {
+namespace {
+
+// A block far from the first one, so that the upper half of the trial's number is in the keys of the draws; its last
+// octet is not full.
+constexpr std::uint64_t root_seed = 0x9e3779b97f4a7c15u;
+constexpr std::int64_t block_index = 20'000'003;
+constexpr int trials = 37;
+
+/// FNV-1a over the bytes of 64-bit words, lowest byte first on any processor.
+class Digest {
+public:
+    void add(std::uint64_t word) {
+        for (int byte = 0; byte < 8; ++byte) state_ = (state_ ^ (word >> 8 * byte & 0xff)) * 0x100000001b3u;
+    }
+    /// All NaNs are one: their sign and payload are the processor's taste (x86 makes negative ones, ARM positive ones),
+    /// and the results file has one NaN as well.
+    void add(double value) {
+        add(value == value ? std::bit_cast<std::uint64_t>(value) : std::uint64_t{0x7ff8000000000000u});
+    }
+    void add(const std::vector<double>& values) {
+        add(std::uint64_t{values.size()});
+        for (const double value : values) add(value);
+    }
+    std::uint64_t value() const { return state_; }
+
+private:
+    std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+std::vector<Unit> all_units() {
+    std::vector<Unit> units = runnable_units();
+    units.push_back({"w2", 2, w2::simulate, w2::workspace_size});
+    units.push_back({"w4", 4, w4::simulate, w4::workspace_size});
+    units.push_back({"w8", 8, w8::simulate, w8::workspace_size});
+    return units;
+}
+
+std::vector<Unit> asked_units(const std::vector<std::string>& names) {
+    const std::vector<Unit> all = all_units();
+    if (names.empty()) return all;
+    std::vector<Unit> asked;
+    for (const std::string& name : names) {
+        const auto found = std::find_if(all.begin(), all.end(), [&](const Unit& unit) { return unit.name == name; });
+        if (found == all.end()) throw InputError("no unit " + name + " that this processor runs.");
+        asked.push_back(*found);
+    }
+    return asked;
+}
+
+std::vector<World> all_worlds() {
+    std::vector<World> worlds = seed_worlds();
+    for (const auto& more : {graph_worlds(), noise_worlds(), fragile_worlds()})
+        worlds.insert(worlds.end(), more.begin(), more.end());
+    return worlds;
+}
+
+Scenario scenario_of(const World& world) {
+    Scenario scenario;
+    scenario.name = world.name;
+    set_key(scenario, "scenario.poses", short_poses);
+    for (const auto& [key, value] : world.settings) set_key(scenario, key, value);
+    scenario = resolved(scenario);
+    validate(scenario);
+    return scenario;
+}
+
+/// The lines of one world, an arm each.
+std::vector<std::string> lines(const Problem& problem, const Unit& unit) {
+    const Block block = run_block(problem, root_seed, block_index, trials, unit);
+    const std::vector<Arm> arms = arms_of(problem.scenario());
+    std::vector<std::string> lines;
+    for (std::size_t a = 0; a < arms.size(); ++a) {
+        const ArmBlock& arm = block.arms[a];
+        Digest digest;
+        for (const auto* values : {&arm.columns, &arm.sums, &arm.square_sums, &arm.run_square_sums})
+            digest.add(*values);
+        char text[100];
+        std::snprintf(text, sizeof text, " %d %016llx", arm.counted, static_cast<unsigned long long>(digest.value()));
+        lines.push_back(problem.scenario().name + " " + arm_name(arms[a]) + text);
+    }
+    return lines;
+}
+
+/// Prints every line as the first unit has it, and on the error stream those that another unit has otherwise.
+bool all_agree(const std::vector<Unit>& units) {
+    bool agree = true;
+    for (const World& world : all_worlds()) {
+        const Problem problem(scenario_of(world));
+        const std::vector<std::string> first = lines(problem, units.front());
+        std::printf("%s\n", joined(first, "\n").c_str());
+        for (std::size_t u = 1; u < units.size(); ++u) {
+            const std::vector<std::string> other = lines(problem, units[u]);
+            for (std::size_t a = 0; a < first.size(); ++a) {
+                if (other[a] == first[a]) continue;
+                std::fprintf(stderr, "%s has %s\n", units[u].name.c_str(), other[a].c_str());
+                agree = false;
+            }
+        }
+    }
+    return agree;
+}
+
+int run(const std::vector<std::string>& names) {
+    const std::vector<Unit> units = asked_units(names);
+    const bool agree = all_agree(units);
+    std::fprintf(stderr, "units:");
+    for (const Unit& unit : units) std::fprintf(stderr, " %s", unit.name.c_str());
+    std::fprintf(stderr, agree ? "\n" : " (they do not agree)\n");
+    return agree ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace digest
+}  // namespace credence
+
+int main(int argc, char** argv) {
+    try {
+        return credence::digest::run(std::vector<std::string>(argv + 1, argv + argc));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "credence_digest: %s\n", error.what());
+        return 2;
+    }
+}

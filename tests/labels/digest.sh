@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Label digest: rooms 1 to 9 print the committed digest from g++ at -O2, on aarch64, and on older x86 processors, both
+# emulated. The core label has g++ at -O3, the label compilers has clang.
+set -euo pipefail
+for tool in aarch64-linux-gnu-g++ qemu-aarch64 qemu-x86_64; do
+  command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
+done
+
+for preset in digest-o2 digest-aarch64; do
+  cmake --preset $preset >/dev/null
+  cmake --build --preset $preset -j "$(nproc)" | tail -n 1
+done
+native=build-digest-o2/tests/digest/credence_digest
+bash tests/digest/check.sh $native
+bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest &
+checks=($!)
+
+# A processor of 2006 has neither AVX nor fma: an instruction too new would end the program. One of 2013 has no AVX-512.
+if [ "$(uname -m)" = x86_64 ]; then
+  bash tests/digest/check.sh qemu-x86_64 -cpu core2duo $native portable &
+  checks+=($!)
+  bash tests/digest/check.sh qemu-x86_64 -cpu Haswell $native v3
+  for beyond in 'core2duo v3' 'core2duo v4' 'Haswell v4'; do
+    read -r processor unit <<<"$beyond"
+    status=0
+    qemu-x86_64 -cpu "$processor" $native "$unit" >/dev/null 2>&1 || status=$?
+    [ $status -eq 2 ] || { echo "unit $unit is not refused on $processor"; exit 1; }
+  done
+fi
+for check in "${checks[@]}"; do wait "$check"; done
