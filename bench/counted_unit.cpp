@@ -16,6 +16,7 @@ struct PackOf<CREDENCE_LANES> {
 }  // namespace CREDENCE_UNIT
 }  // namespace credence
 
+#define CREDENCE_WRITTEN_OUT 3
 #include "../src/simulate_unit.cpp"
 
 namespace credence::bench {

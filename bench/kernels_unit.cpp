@@ -37,11 +37,10 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
     Sums<Real> sums;
     Outcome<Real> outcome;
     Real figures[room];
-    start_truth(work.truth, problem.world, problem.features, draws);
+    start_truth(work.truth, problem.world, layout.features(), draws);
     for (int j = 0; j < problem.features; ++j) work.sightings[j] = first_sight(work.truth, problem.sensor, j, draws);
     start_belief(work.belief, problem.filter, layout, work.sightings);
-    for (int j = 0; j < problem.features; ++j)
-        work.sightings[j] = look_at<Layout>(work.truth, problem.sensor, 1, j, draws);
+    look(work.truth, problem.sensor, layout, 1, draws, work.sightings);
     const auto edge_measurement = [&](int e) {
         return measure_edge(work.truth, problem.sensor, problem.filter.edges[e], 1, e, draws);
     };

@@ -23,23 +23,63 @@ Bits<Real> trials_from(std::int64_t first) {
     }
 }
 
-/// Adds a pack's figures [figure_count, K - 1] to the running sums, from a pack's first place in their octets on.
-/// Trials that do not count add zeros.
+/// Octets whose figures are kept before they are folded, at most: the running sums then come from far away only so often.
+inline constexpr int fold_octets = 4;
+
+/// As many as stay near, and one for long trials.
+int octets_kept(const ProblemView& problem) {
+    constexpr int near = 1 << 16;  // numbers: half a megabyte
+    const int kept = near / octet / problem.figure_count / (problem.poses - 1);
+    return kept < 1 ? 1 : kept > fold_octets ? fold_octets : kept;
+}
+
+/// The figures [packs, figure_count, K - 1] of up to fold_octets octets of trials, and which of them count.
 template <class Real>
-void fold(const Real* figures, Mask<Real> counts, const ProblemView& problem, const Batch& batch, int place) {
+struct Unfolded {
+    static constexpr int packs_per_octet = octet / lanes<Real>;
+    Real* figures = nullptr;
+    std::int64_t cells = 0;
+    int capacity = 0, packs = 0;
+    Mask<Real> counts[fold_octets * packs_per_octet] = {};
+
+    Unfolded(Real* room, const ProblemView& problem)
+        : figures(room),
+          cells(std::int64_t{problem.figure_count} * (problem.poses - 1)),
+          capacity(octets_kept(problem) * packs_per_octet) {}
+
+    Real* next() { return figures + packs * cells; }
+    void keep(Mask<Real> counted) { counts[packs++] = counted; }
+    bool full() const { return packs == capacity; }
+};
+
+/// Adds what is unfolded to the running sums, in trial order. Trials that do not count add zeros.
+template <class Real>
+void fold(Unfolded<Real>& unfolded, const ProblemView& problem, const Batch& batch) {
+    constexpr int stride = Unfolded<Real>::packs_per_octet;
     const int steps = problem.poses - 1;
-    for (int f = 0; f < problem.figure_count; ++f) {
-        Real run_sum = Real(0);
-        for (int cell = f * steps; cell < (f + 1) * steps; ++cell) {
-            const Real value = select(counts, figures[cell], Real(0));
-            double *sum = batch.sums + cell * octet + place, *square_sum = batch.square_sums + cell * octet + place;
-            store(load<Real>(sum) + value, sum);
-            store(fma(value, value, load<Real>(square_sum)), square_sum);
-            run_sum = run_sum + value;
+    for (int f = 0; f < problem.figure_count; ++f)
+        for (int start = 0; start < stride; ++start) {
+            const int place = start * lanes<Real>;
+            Real run_sum[fold_octets];
+            for (Real& sum : run_sum) sum = Real(0);
+            for (int cell = f * steps; cell < (f + 1) * steps; ++cell) {
+                double *to = batch.sums + cell * octet + place, *to_square = batch.square_sums + cell * octet + place;
+                Real sum = load<Real>(to), square_sum = load<Real>(to_square);
+                for (int pack = start, i = 0; pack < unfolded.packs; pack += stride, ++i) {
+                    const Real value = select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
+                    sum = sum + value;
+                    square_sum = fma(value, value, square_sum);
+                    run_sum[i] = run_sum[i] + value;
+                }
+                store(sum, to);
+                store(square_sum, to_square);
+            }
+            double* to = batch.run_square_sums + f * octet + place;
+            Real run_square_sum = load<Real>(to);
+            for (int i = 0; i < fold_octets; ++i) run_square_sum = fma(run_sum[i], run_sum[i], run_square_sum);
+            store(run_square_sum, to);
         }
-        double* run_square_sum = batch.run_square_sums + f * octet + place;
-        store(fma(run_sum, run_sum, load<Real>(run_square_sum)), run_square_sum);
-    }
+    unfolded.packs = 0;
 }
 
 /// The lanes 0 ... count - 1.
@@ -60,24 +100,25 @@ struct Simulation {
     using Layout = credence::Layout<process, compiled_features>;
 
     static std::size_t workspace_size(const ProblemView& problem) {
-        const int cells = problem.figure_count * (problem.poses - 1);
-        return sizeof(Workspace<Layout, Real>) + static_cast<std::size_t>(cells) * sizeof(Real);
+        const Unfolded<Real> unfolded(nullptr, problem);
+        const std::int64_t figures = unfolded.cells * unfolded.capacity;
+        return sizeof(Workspace<Layout, Real>) + static_cast<std::size_t>(figures) * sizeof(Real);
     }
 
     static void simulate(const ProblemView& problem, const Batch& batch) {
         auto& work = *static_cast<Workspace<Layout, Real>*>(batch.workspace);
-        Real* figures = reinterpret_cast<Real*>(&work + 1);
+        Unfolded<Real> unfolded(reinterpret_cast<Real*>(&work + 1), problem);
         for (int i = 0; i < batch.trials; i += lanes<Real>) {
             const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i),
                                          problem.world.truncate);
             NoObserver nobody;
             Real columns[column_count];
-            run_trial(problem, batch.controller, draws, nobody, work, columns, figures);
+            run_trial(problem, batch.controller, draws, nobody, work, columns, unfolded.next());
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
             for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
             const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
-            fold(figures, both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i)), problem,
-                 batch, i % octet);
+            unfolded.keep(both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i)));
+            if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
         }
     }
 };

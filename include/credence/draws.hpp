@@ -6,8 +6,8 @@
 //   Vector2<Real> normal(Source, int pose, int index)   two independent standard-normal draws
 //   Real          uniform(Source, int pose, int index)  in [0, 1)
 
-#include <credence/each.hpp>
 #include <credence/elementary.hpp>
+#include <credence/several.hpp>
 
 namespace credence {
 
@@ -20,6 +20,12 @@ enum class Source : std::uint32_t {
     measurement = 4,        ///< by feature; at pose 0 the initial estimate
     edge = 5,               ///< by edge in graph order
     detection = 6,          ///< by feature, uniform
+};
+
+/// What one of a pose's draws is for.
+struct DrawKey {
+    Source source;
+    int index;
 };
 
 inline namespace CREDENCE_UNIT {
@@ -49,21 +55,33 @@ struct PhiloxKeys {
 /// keyed bijection on a 128-bit counter. Checked bit for bit against the Random123 library in tests/draws.
 template <class Word>
 PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, const PhiloxKeys& keys) {
+    Word w0 = counter.word[0], w1 = counter.word[1], w2 = counter.word[2], w3 = counter.word[3];
     // What the rounds leave in the upper halves is never read: products take the lower ones.
-    for (const auto& [key0, key1] : keys.round) {
-        const Word product0 = widening_product(counter.word[0], 0xD2511F53u);
-        const Word product1 = widening_product(counter.word[2], 0xCD9E8D57u);
-        counter = {{exclusive_or(product1 >> 32, counter.word[1], Word(key0)), product1,
-                    exclusive_or(product0 >> 32, counter.word[3], Word(key1)), product0}};
-    }
-    for (Word& word : counter.word) word = word & std::uint64_t{0xffffffff};
-    return counter;
+    each(zero, Known<PhiloxKeys::rounds>{}, [&](auto round) CREDENCE_INLINE_LAMBDA {
+        const Word product0 = widening_product(w0, 0xD2511F53u), product1 = widening_product(w2, 0xCD9E8D57u);
+        w0 = exclusive_or(product1 >> 32, w1, Word(keys.round[round][0]));
+        w2 = exclusive_or(product0 >> 32, w3, Word(keys.round[round][1]));
+        w1 = product1;
+        w3 = product0;
+    });
+    constexpr std::uint64_t lower_half = 0xffffffff;
+    return {{w0 & lower_half, w1 & lower_half, w2 & lower_half, w3 & lower_half}};
 }
 
 /// 52 bits as a number in [1, 2).
 template <class Real>
 Real in_one_to_two(Bits<Real> high, Bits<Real> low) {
     return from_bits((((high << 32) | low) >> 12) | 0x3ff0000000000000u);
+}
+
+/// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).
+template <class Real>
+Vector2<Real> box_muller(const PhiloxBlock<Bits<Real>>& random) {
+    const Real u1 = Real(2) - in_one_to_two<Real>(random.word[1], random.word[0]);
+    const Real u2 = in_one_to_two<Real>(random.word[3], random.word[2]) - Real(1);
+    const Real radius = sqrt(Real(-2) * log(u1));
+    const Rotation<Real> angle = rotation_of_turns(u2);
+    return {radius * angle.cosine, radius * angle.sine};
 }
 
 /// Keyed noise of one trial (of each lane's trial).
@@ -78,18 +96,21 @@ public:
           truncate_(truncate) {}
 
     Vector2<Real> normal(Source source, int pose, int index) const {
-        return truncated(transformed(block(source, pose, index, 0)), source, pose, index);
+        return truncated(box_muller<Real>(block(source, pose, index, 0)), source, pose, index);
     }
 
-    /// The same for `count` draws, stage by stage: the stages of one draw wait for each other, those of several do not.
+    /// The same for several draws of one pose, step by step together.
     template <int count>
-    void normals(Source source, int pose, int first, Known<count>, Vector2<Real>* draws) const {
-        PhiloxBlock<Bits<Real>> random[count];
-        Real radius[count];
-        each(zero, Known<count>{}, [&](auto i) { random[i] = block(source, pose, first + i, 0); });
-        each(zero, Known<count>{}, [&](auto i) { radius[i] = radius_of(random[i]); });
+    void normals(const DrawKey (&keys)[count], int pose, Vector2<Real>* draws) const {
+        using Together = Several<Real, count>;
+        PhiloxBlock<Bits<Together>> counter;
         each(zero, Known<count>{}, [&](auto i) {
-            draws[i] = truncated(at_angle(radius[i], random[i]), source, pose, first + i);
+            const PhiloxBlock<Bits<Real>> own = counter_of(keys[i].source, pose, keys[i].index, 0);
+            each(zero, Known<4>{}, [&](auto word) { counter.word[word].part[i] = own.word[word]; });
+        });
+        const Vector2<Together> together = box_muller<Together>(philox(counter, keys_));
+        each(zero, Known<count>{}, [&](auto i) {
+            draws[i] = truncated({together.x.part[i], together.y.part[i]}, keys[i].source, pose, keys[i].index);
         });
     }
 
@@ -114,37 +135,23 @@ private:
         for (std::uint32_t again = 1; again < attempts; ++again) {
             const Mask<Real> redraw_x = absolute(draw.x) > truncate_, redraw_y = absolute(draw.y) > truncate_;
             if (!any(either(redraw_x, redraw_y))) break;
-            const Vector2<Real> next = transformed(block(source, pose, index, again));
+            const Vector2<Real> next = box_muller<Real>(block(source, pose, index, again));
             draw = {select(redraw_x, next.x, draw.x), select(redraw_y, next.y, draw.y)};
         }
         return draw;
     }
 
     /// Counter: trial (64 bits), pose (32), then attempt (12), source (4) and index (16).
-    PhiloxBlock<Bits<Real>> block(Source source, int pose, int index, std::uint32_t attempt_number) const {
+    PhiloxBlock<Bits<Real>> counter_of(Source source, int pose, int index, std::uint32_t attempt_number) const {
         const std::uint64_t what = std::uint64_t{attempt_number} << 20 |
                                    std::uint64_t{static_cast<std::uint32_t>(source)} << 16 |
                                    static_cast<std::uint64_t>(index);
-        const Bits<Real> zero{};
-        return philox<Bits<Real>>(
-            {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, zero + static_cast<std::uint64_t>(pose), zero + what}},
-            keys_);
+        const Bits<Real> none{};
+        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(pose), none + what}};
     }
 
-    /// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).
-    static Real radius_of(const PhiloxBlock<Bits<Real>>& random) {
-        const Real u1 = Real(2) - in_one_to_two<Real>(random.word[1], random.word[0]);
-        return sqrt(Real(-2) * log(u1));
-    }
-
-    static Vector2<Real> at_angle(Real radius, const PhiloxBlock<Bits<Real>>& random) {
-        const Real u2 = in_one_to_two<Real>(random.word[3], random.word[2]) - Real(1);
-        const Rotation<Real> angle = rotation_of_turns(u2);
-        return {radius * angle.cosine, radius * angle.sine};
-    }
-
-    static Vector2<Real> transformed(const PhiloxBlock<Bits<Real>>& random) {
-        return at_angle(radius_of(random), random);
+    PhiloxBlock<Bits<Real>> block(Source source, int pose, int index, std::uint32_t attempt_number) const {
+        return philox(counter_of(source, pose, index, attempt_number), keys_);
     }
 
     PhiloxKeys keys_;
@@ -153,24 +160,28 @@ private:
     Real truncate_;
 };
 
-/// Draws of one source and pose for indices 0 ... count - 1, from any source of noise.
+/// Several draws of one pose, from any source of noise.
+template <class Noise, int count, class Real>
+void draw_several(const Noise& noise, const DrawKey (&keys)[count], int pose, Vector2<Real>* draws) {
+    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, pose, keys[i].index);
+}
+
+/// Keyed draws, together; one copy of the code for all who draw.
+template <class Real, int count>
+[[gnu::noinline]] CREDENCE_FLAT void draw_several(const KeyedDraws<Real>& noise, const DrawKey (&keys)[count], int pose,
+                                                  Vector2<Real>* draws) {
+    noise.normals(keys, pose, draws);
+}
+
+/// Draws of one source and pose for features 0 ... count - 1.
 template <class Noise, class Count, class Real>
 void draw_all(const Noise& noise, Source source, int pose, Count count, Vector2<Real>* draws) {
-    each(zero, count, [&](auto i) { draws[i] = noise.normal(source, pose, i); });
-}
-
-/// Keyed draws, several at a time; one copy of the code for all who draw.
-template <class Real, int count>
-[[gnu::noinline]] CREDENCE_FLAT void draw_all(const KeyedDraws<Real>& noise, Source source, int pose, Known<count> all,
-                            Vector2<Real>* draws) {
-    noise.normals(source, pose, 0, all, draws);
-}
-
-template <class Real>
-[[gnu::noinline]] CREDENCE_FLAT void draw_all(const KeyedDraws<Real>& noise, Source source, int pose, int count, Vector2<Real>* draws) {
-    constexpr Known<4> group{};
+    constexpr int group = 3;  // what fits the registers
     int i = 0;
-    for (; i + group <= count; i += group) noise.normals(source, pose, i, group, draws + i);
+    for (; i + group <= count; i += group) {
+        const DrawKey keys[group]{{source, i}, {source, i + 1}, {source, i + 2}};
+        draw_several(noise, keys, pose, draws + i);
+    }
     for (; i < count; ++i) draws[i] = noise.normal(source, pose, i);
 }
 

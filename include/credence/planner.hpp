@@ -36,7 +36,7 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
     auto& still = work.still;
     auto& screening = work.screening;
     auto& space = work.space;
-    const double kappa = least_feature_variance(filter);
+    const ValueParameters parameters = value_parameters(sensor, filter);
     Rotation<Real> heading{};
     if constexpr (Layout::has_heading) heading = rotation(still.mean[Layout::heading]);
     enter_measurement_space(still, filter, layout, space);
@@ -48,12 +48,12 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
     for (int first = 0; first < control.candidate_count; first += screening_chunk) {
         const int left = control.candidate_count - first, count = left < screening_chunk ? left : screening_chunk;
         const Real reference =
-            value_candidates<ranged>(still, heading, control, filter, sensor, layout, kappa, first, count, screening);
+            value_candidates<ranged>(still, heading, control, sensor, layout, parameters, first, count, screening);
         Command<Real> command;
         for (int lane = 0; lane < lanes<Real>; ++lane)
             fetch(control, static_cast<int>(lane_of(reference, lane)), lane, command);
         const TurnedTrace<Real> rest = tangent(still, space.position + world_move<Layout>(heading, command.move),
-                                               filter, sensor, layout, kappa, screening);
+                                               filter, sensor, layout, parameters.kappa, screening);
         const Real known = cost(command);
         const Real threshold = select(known < choice.best, known, choice.best) * Real(1 + 1e-9);
         screen(rest, threshold, heading, control, layout, first, count, screening);

@@ -34,25 +34,35 @@ inline double least_feature_variance(const FilterParameters& filter) {
     return filter.variance_feature > 0 ? 1 / (1 / filter.variance_feature + edges) : 0;
 }
 
-/// v_j at a squared range, not below it.
+/// What v_j is made of: kappa, and the believed sigma at a range q, offset + slope q but at least near.
+struct ValueParameters {
+    double kappa = 0, near = 0, offset = 0, slope = 0;
+    double constant = 0;  ///< v_j where the noise is constant
+};
+
+inline ValueParameters value_parameters(const SensorParameters& sensor, const FilterParameters& filter) {
+    const double kappa = least_feature_variance(filter), factor = filter.measurement_factor;
+    const double believed = factor * sensor.sigma;
+    return {kappa, factor * sensor.sigma_near, factor * (sensor.sigma_near - sensor.sigma_slope * sensor.range_min),
+            factor * sensor.sigma_slope, 1 / (believed * believed + kappa)};
+}
+
+/// v_j at a squared range within the sensor's, not below it: sigma grows with the range, so a range from below gives a
+/// value from above. The margin covers the rounding.
 template <bool ranged, class Real>
-Real greatest_value(const SensorParameters& sensor, const FilterParameters& filter, double kappa, Real squared) {
-    if constexpr (ranged) {
-        // sigma grows with the range, so a range from below gives a value from above.
-        const Real sigma = ranged_sigma(sensor, sqrt_from_below(squared));
-        return Real(1 + 1e-12) / (believed_variance(filter, sigma) + Real(kappa));
-    } else {
-        const double believed = filter.measurement_factor * sensor.sigma;
-        return Real((1 + 1e-12) / (believed * believed + kappa));
-    }
+Real greatest_value(const ValueParameters& parameters, Real squared) {
+    if constexpr (!ranged) return Real(parameters.constant * (1 + 1e-12));
+    const Real line = fma(Real(parameters.slope), sqrt_from_below(squared), Real(parameters.offset));
+    const Real sigma = select(line > Real(parameters.near), line, Real(parameters.near));
+    return Real(1 + 1e-12) / fma(sigma, sigma, Real(parameters.kappa));
 }
 
 /// Values of the candidates first ... first + count - 1; returns, lane by lane, the number of the one that sees most.
 template <bool ranged, class Layout, class Real, int capacity>
 CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const Rotation<Real>& heading,
-                                    const ControlParameters& control, const FilterParameters& filter,
-                                    const SensorParameters& sensor, const Layout& layout, double kappa, int first,
-                                    int count, ScreeningWorkspace<Layout, Real>& work) {
+                                    const ControlParameters& control, const SensorParameters& sensor,
+                                    const Layout& layout, const ValueParameters& parameters, int first, int count,
+                                    ScreeningWorkspace<Layout, Real>& work) {
     Real most = Real(-1), reference = Real(first);
     const Vector2<Real> position = point_at(still.mean, Layout::position);
     for (int i = 0; i < count; ++i) {
@@ -61,7 +71,7 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
         Real sum = Real(0);
         each(zero, layout.features(), [&](auto j) {
             const Real squared = squared_range(there, point_at(still.mean, Layout::feature(j)));
-            const Real value = greatest_value<ranged>(sensor, filter, kappa, squared);
+            const Real value = greatest_value<ranged>(parameters, squared);
             work.value[i][j] = select(in_range(sensor, squared), value, Real(0));
             sum = sum + work.value[i][j];
         });
@@ -138,7 +148,7 @@ CREDENCE_FLAT void screen(const TurnedTrace<Real>& rest, Real threshold, const R
             const Real slope = Layout::has_heading ? work.slope[j].at(a, squared_a) : work.slope[j].constant;
             bound = fnma(slope, work.value[i][j], bound);
         });
-        for (unsigned left = lane_bits(bound <= threshold); left != 0; left &= left - 1) {
+        for (unsigned left = lane_bits(negated(bound > threshold)); left != 0; left &= left - 1) {
             const int lane = __builtin_ctz(left);
             work.queue[lane][work.queued[lane]++] = first + i;
         }

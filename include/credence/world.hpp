@@ -94,15 +94,17 @@ struct Command {
 template <class Layout, class Real, int capacity, class Noise>
 CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
                 const Noise& noise) {
-    Vector2<Real> move = command.move;
+    constexpr DrawKey keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
+    Vector2<Real> move = command.move, draws[2];
     if constexpr (Layout::has_heading) {
+        draw_several(noise, keys, k, draws);
         move = rotate(truth.rotation, command.move);
-        truth.heading = fma(Real(world.sigma_heading), noise.normal(Source::odometry_heading, k, 0).x,
-                            truth.heading + command.turn);
+        truth.heading = fma(Real(world.sigma_heading), draws[1].x, truth.heading + command.turn);
         truth.rotation = rotation(truth.heading);
+    } else {
+        draws[0] = noise.normal(keys[0].source, k, keys[0].index);
     }
-    truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry),
-                                noise.normal(Source::odometry_position, k, 0));
+    truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry), draws[0]);
 }
 
 }  // namespace CREDENCE_UNIT
