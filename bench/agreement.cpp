@@ -7,6 +7,7 @@
 
 #include "baseline.hpp"
 #include "counted_unit.hpp"
+#include "units.hpp"
 #include "trials.hpp"
 
 namespace credence::bench {
@@ -59,7 +60,7 @@ void require_agreement(const std::deque<Row>& rows, const Effort& effort) {
         const std::vector<double> columns = run_block(row.problem, root_seed, 0, trials).arms.front().columns;
         if (has_dynamic(row)) compare(row, "A", make_dynamic(view, row.controller, Draws::keyed), columns, trials);
         compare(row, "B", make_fixed(view, row.controller, Draws::keyed), columns, trials);
-        for (const Unit& unit : runnable_units()) compare(row, unit, columns, trials);
+        for (const Unit& unit : measured_units()) compare(row, unit, columns, trials);
         compare(row, counted_unit(), columns, trials);
     }
 }

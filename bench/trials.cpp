@@ -6,6 +6,7 @@
 
 #include "baseline.hpp"
 #include "counted_unit.hpp"
+#include "units.hpp"
 
 namespace credence::bench {
 
@@ -82,7 +83,7 @@ void add_trials(const std::deque<Row>& rows, const Effort& effort) {
     for (const Row& row : rows) {
         if (has_dynamic(row)) add_baseline(row, "A", make_dynamic, effort);
         add_baseline(row, "B", make_fixed, effort);
-        for (const Unit& unit : runnable_units())
+        for (const Unit& unit : measured_units())
             if (!effort.quick || row.features() <= 8 || unit.name == best_unit().name) add_unit(row, unit, effort);
         for (const Kernels& kernels : runnable_kernels())
             add_peak("trial/" + row.name + "/peak-" + kernels.unit, kernels, effort);
@@ -90,7 +91,7 @@ void add_trials(const std::deque<Row>& rows, const Effort& effort) {
 }
 
 std::vector<Table> trial_tables(const std::string& key, const std::string& title, const std::deque<Row>& rows) {
-    const std::vector<Unit> units = runnable_units();
+    const std::vector<Unit> units = measured_units();
     const std::string best = units.front().name;
     Table table{key,
                 title + ", unit " + best,

@@ -126,6 +126,32 @@ TEST_CASE("status: whatever is not finite in x, P or the squared errors is notic
     CHECK(trouble_with(Belief<double, 9>{}, 1, false).status == not_positive_definite);
 }
 
+TEST_CASE("status: the short look finds trouble wherever the long one does") {
+    const Layout<Process::heading, 3> layout(3);
+    const auto agree = [&](const Belief<double, 9>& belief, double squared_errors, bool positive_definite) {
+        const bool found = trouble_with(belief, squared_errors, positive_definite).status != completed;
+        CHECK((!found || trouble(belief, layout, squared_errors, positive_definite)));
+        return found;
+    };
+    Belief<double, 9> sound{};
+    for (int i = 0; i < 9; ++i) sound.covariance.entry[i][i] = 1;
+    CHECK_FALSE(agree(sound, 1, true));
+    CHECK_FALSE(trouble(sound, layout, 1.0, true));
+    CHECK(agree(sound, 1, false));
+    for (const double bad : {not_a_number, infinity, -infinity, 2e12, -2e12}) {
+        for (int i = 0; i < 9; ++i) {
+            Belief<double, 9> belief = sound;
+            belief.mean[i] = bad;
+            CHECK(agree(belief, 1, true));
+            if (bad < 0) continue;  // a negative variance is no positive definite matrix
+            belief = sound;
+            belief.covariance.entry[i][i] = bad;
+            CHECK(agree(belief, 1, true));
+        }
+        if (std::abs(bad) != 2e12) CHECK(agree(sound, bad, true));
+    }
+}
+
 TEST_CASE("status: an innovation covariance that is not positive definite is noticed") {
     // With P at 1e16 and N at 1e-6, S of a sighting after the first is all rounding; P itself recovers.
     const Scenario scenario = scenario_with({{"model.process", "translation"}, {"noise.odometry", "1e8"}, {"sensor.sigma", "1e-3"},

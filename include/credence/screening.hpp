@@ -129,6 +129,20 @@ CREDENCE_FLAT TurnedTrace<Real> tangent(const Belief<Real, capacity>& still, con
     return rest;
 }
 
+/// The lowest cost that the tangent leaves to a candidate whose v_j are `value`.
+template <class Layout, class Real>
+Real bound_of(const TurnedTrace<Real>& rest, const Vector2<Real>& u, const Real* value, const Layout& layout,
+              const ScreeningWorkspace<Layout, Real>& work) {
+    const Vector2<Real> a{-u.y, u.x};
+    const Real squared_a = squared_norm(u);
+    Real bound = Layout::has_heading ? rest.at(a, squared_a) : rest.constant;
+    each(zero, layout.features(), [&](auto j) {
+        const Real slope = Layout::has_heading ? work.slope[j].at(a, squared_a) : work.slope[j].constant;
+        bound = fnma(slope, value[j], bound);
+    });
+    return bound;
+}
+
 /// Queues, lane by lane and in order, the candidates whose bound does not lie above `threshold`.
 template <class Layout, class Real>
 CREDENCE_FLAT void screen(const TurnedTrace<Real>& rest, Real threshold, const Rotation<Real>& heading,
@@ -136,18 +150,8 @@ CREDENCE_FLAT void screen(const TurnedTrace<Real>& rest, Real threshold, const R
                           ScreeningWorkspace<Layout, Real>& work) {
     for (int lane = 0; lane < lanes<Real>; ++lane) work.queued[lane] = 0;
     for (int i = 0; i < count; ++i) {
-        Vector2<Real> a;
-        Real squared_a = Real(0), bound = rest.constant;
-        if constexpr (Layout::has_heading) {
-            const Vector2<Real> u = rotate(heading, broadcast<Real>(control.candidates[first + i].move));
-            a = {-u.y, u.x};
-            squared_a = squared_norm(u);
-            bound = rest.at(a, squared_a);
-        }
-        each(zero, layout.features(), [&](auto j) {
-            const Real slope = Layout::has_heading ? work.slope[j].at(a, squared_a) : work.slope[j].constant;
-            bound = fnma(slope, work.value[i][j], bound);
-        });
+        const Vector2<Real> u = world_move<Layout>(heading, broadcast<Real>(control.candidates[first + i].move));
+        const Real bound = bound_of(rest, u, work.value[i], layout, work);
         for (unsigned left = lane_bits(negated(bound > threshold)); left != 0; left &= left - 1) {
             const int lane = __builtin_ctz(left);
             work.queue[lane][work.queued[lane]++] = first + i;

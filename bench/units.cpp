@@ -1,0 +1,26 @@
+#include "units.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+#ifdef CREDENCE_X86_UNITS
+namespace one_lane {
+void simulate(const ProblemView&, const Batch&);
+std::size_t workspace_size(const ProblemView&);
+}  // namespace one_lane
+#endif
+
+namespace bench {
+
+std::vector<Unit> measured_units() {
+    std::vector<Unit> units = runnable_units();
+#ifdef CREDENCE_X86_UNITS
+    const auto v3 = std::find_if(units.begin(), units.end(), [](const Unit& unit) { return unit.name == "v3"; });
+    if (v3 != units.end()) units.insert(v3 + 1, {"one_lane", 1, one_lane::simulate, one_lane::workspace_size});
+#endif
+    return units;
+}
+
+}  // namespace bench
+}  // namespace credence

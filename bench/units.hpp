@@ -1,0 +1,12 @@
+#pragma once
+// The units that are measured: those that the processor runs, and one more.
+
+#include <credence/simulate.hpp>
+
+namespace credence::bench {
+
+/// runnable_units(), and, where AVX2 is, the engine one trial at a time with fused multiply-adds in hardware
+/// ("one_lane"): what is left of the gain without lanes is the algebra's and the compiler's.
+std::vector<Unit> measured_units();
+
+}  // namespace credence::bench
