@@ -2,7 +2,7 @@
 // A Real that counts what it is asked to compute: + - * / sqrt as one operation, fma as two. Comparing, selecting,
 // changing a sign and all work on bits (the generator's) count nothing.
 
-#include <credence/real.hpp>
+#include <credence/draws.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
@@ -47,6 +47,12 @@ template <>
 struct BitsOf<Counted> {
     using type = std::uint64_t;
 };
+
+/// One after the other: from_bits gives doubles, of which Several would make no Counted.
+template <int count>
+void draw_several(const KeyedDraws<Counted>& noise, const DrawKey (&keys)[count], int pose, Vector2<Counted>* draws) {
+    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, pose, keys[i].index);
+}
 
 }  // namespace CREDENCE_UNIT
 }  // namespace credence

@@ -7,10 +7,17 @@
 #include <type_traits>
 #include <utility>
 
-/// Inlines everything that the function calls, and what those call: what is written out must end in one place.
+/// CREDENCE_FLAT inlines everything that a function calls, and what those call: what is written out must end in one
+/// place. Sanitizers would watch every one of those instructions, and the compiler take minutes.
+#ifdef CREDENCE_SANITIZED
+#define CREDENCE_FLAT
+#define CREDENCE_INLINE inline
+#define CREDENCE_INLINE_LAMBDA
+#else
 #define CREDENCE_FLAT [[gnu::flatten]]
 #define CREDENCE_INLINE [[gnu::always_inline]] inline
 #define CREDENCE_INLINE_LAMBDA __attribute__((always_inline))
+#endif
 
 namespace credence {
 
