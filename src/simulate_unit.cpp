@@ -23,7 +23,8 @@ Bits<Real> trials_from(std::int64_t first) {
     }
 }
 
-/// Octets whose figures are kept before they are folded, at most: the running sums then come from far away only so often.
+/// Octets whose figures are kept before they are folded, at most: the running sums then come from far away only so
+/// often.
 inline constexpr int fold_octets = 4;
 
 /// As many as stay near, and one for long trials.

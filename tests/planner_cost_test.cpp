@@ -30,7 +30,8 @@ struct Planner {
     Layout layout;
     Belief<double, Layout::capacity> base, next;
     std::unique_ptr<PlannerWorkspace<Layout, double>> work = std::make_unique<PlannerWorkspace<Layout, double>>();
-    std::unique_ptr<MeasurementElimination<Layout, double>> room = std::make_unique<MeasurementElimination<Layout, double>>();
+    std::unique_ptr<MeasurementElimination<Layout, double>> room =
+        std::make_unique<MeasurementElimination<Layout, double>>();
     Rotation<double> heading{1, 0};
 
     Planner(const Problem& problem, const Sample& sample, Layout at) : view(problem.view()), layout(at) {
@@ -86,7 +87,8 @@ TEST_CASE("planner: the cost in the space of the measurements is the plain one")
 TEST_CASE("planner: every visible set is priced as the candidates that see it") {
     for (const char* factor : {"1", "0.5", "2"})
         with_samples<Layout<Process::translation, 3>>(
-            "translation", {{"filter.measurement", factor}}, [&](const Problem& problem, const Sample& sample, auto layout) {
+            "translation", {{"filter.measurement", factor}},
+            [&](const Problem& problem, const Sample& sample, auto layout) {
                 Planner planner(problem, sample, layout);
                 VisibleSets<double>& sets = planner.work->sets;
                 gather_sets(planner.work->still, planner.view.control, planner.view.sensor, layout, sets);
@@ -108,7 +110,8 @@ TEST_CASE("planner: no candidate costs less than its bound") {
             const ValueParameters parameters = value_parameters(view.sensor, view.filter);
             const auto& still = planner.work->still;
             if (view.sensor.noise == RangeNoise::ranged)
-                value_candidates<true>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count, screening);
+                value_candidates<true>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count,
+                                       screening);
             else
                 value_candidates<false>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count, screening);
             for (const int reference : {0, count / 3, count - 1}) {  // any reference will do

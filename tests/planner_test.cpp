@@ -44,7 +44,8 @@ public:
 
     template <class Layout, class Truth, class... More>
     void predicted(int, const Layout&, const Truth&, const Command<double>& command, const More&...) {
-        tally_.different += command.turn != plain_.turn || command.move.x != plain_.move.x || command.move.y != plain_.move.y;
+        tally_.different +=
+            command.turn != plain_.turn || command.move.x != plain_.move.x || command.move.y != plain_.move.y;
     }
 
 private:

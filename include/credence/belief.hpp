@@ -91,8 +91,8 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& l
 /// block's P [Bar-Shalom 2001, 5.4.2]: told(i, value and definiteness so far). P is eliminated two rows at a time from
 /// its end, so that one elimination serves every block that ends at `last`. An odd row is left over as the first.
 template <class Real, int capacity, class First, class Last, class Told>
-CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first, Last last,
-                           Elimination<Real, capacity>& left, Told&& told) {
+CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
+                                           Last last, Elimination<Real, capacity>& left, Told&& told) {
     each(first, last, [&](auto i) {
         left.e[i] = error[i];
         each(i, last, [&](auto j) { left.A.entry[i][j] = P.entry[i][j]; });

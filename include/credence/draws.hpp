@@ -147,7 +147,8 @@ private:
                                    std::uint64_t{static_cast<std::uint32_t>(source)} << 16 |
                                    static_cast<std::uint64_t>(index);
         const Bits<Real> none{};
-        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(pose), none + what}};
+        return {
+            {trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(pose), none + what}};
     }
 
     PhiloxBlock<Bits<Real>> block(Source source, int pose, int index, std::uint32_t attempt_number) const {

@@ -35,8 +35,8 @@ Real log(Real x) {
     return fma(e, Real(ln2_high), large + small);
 }
 
-/// Square root of a normal positive number or 0 from below: at most 0.2 % of it too little, never too much. Cheaper than
-/// sqrt where a bound is enough.
+/// Square root of a normal positive number or 0 from below: at most 0.2 % of it too little, never too much. Cheaper
+/// than sqrt where a bound is enough.
 ///
 /// One step of Newton's iteration for 1/sqrt(x), which comes from below whatever it starts from: here the well-known
 /// shift, within 3.5 %.

@@ -55,8 +55,8 @@ struct Sighting {
     Real sigma{};     ///< true standard deviation of each axis
 };
 
-/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas for every feature. The draws are consumed whether or not a feature
-/// is in sight. `sightings` [M].
+/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas for every feature. The draws are consumed whether or not a
+/// feature is in sight. `sightings` [M].
 template <class Layout, class Real, int capacity, class Noise>
 CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParameters& sensor, const Layout& layout, int k,
                         const Noise& noise, Sighting<Real>* sightings) {

@@ -92,8 +92,8 @@ struct Command {
 /// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
 /// sigma_odom eps.
 template <class Layout, class Real, int capacity, class Noise>
-CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command, int k,
-                const Noise& noise) {
+CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command,
+                              int k, const Noise& noise) {
     constexpr DrawKey keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
     Vector2<Real> move = command.move, draws[2];
     if constexpr (Layout::has_heading) {
