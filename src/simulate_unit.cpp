@@ -139,7 +139,9 @@ auto with_process(const ProblemView& problem, const Use& use) {
         case 5: return use(Simulation<Real, process, 5>{});
         case 6: return use(Simulation<Real, process, 6>{});
 #endif
+#if CREDENCE_WRITTEN_OUT > 0
         case 3: return use(Simulation<Real, process, 3>{});
+#endif
         default: return use(Simulation<Real, process, any_count>{});
     }
 }

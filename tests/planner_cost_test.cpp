@@ -47,7 +47,8 @@ struct Planner {
         return world_move<Layout>(heading, Vector2<double>{v.x, v.y});
     }
     double plain(int i) {
-        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.filter, view.sensor, layout, next);
+        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.filter, view.sensor, layout,
+                              next);
     }
     double cost(int i) { return cost_in_measurement_space(work->space, move(i), view.filter, view.sensor, layout, *room); }
 };
@@ -113,7 +114,7 @@ TEST_CASE("planner: no candidate costs less than its bound") {
                 value_candidates<true>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count,
                                        screening);
             else
-                value_candidates<false>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count, screening);
+                value_candidates<false>(still, planner.heading, view.control, view.filter, view.sensor, layout, parameters, 0, count, screening);
             for (const int reference : {0, count / 3, count - 1}) {  // any reference will do
                 const auto rest = tangent(still, planner.work->space.position + planner.move(reference), view.filter,
                                           view.sensor, layout, parameters.kappa, screening);

@@ -47,8 +47,8 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
     Choice<Real> choice;
     for (int first = 0; first < control.candidate_count; first += screening_chunk) {
         const int left = control.candidate_count - first, count = left < screening_chunk ? left : screening_chunk;
-        const Real reference =
-            value_candidates<ranged>(still, heading, control, sensor, layout, parameters, first, count, screening);
+        const Real reference = value_candidates<ranged>(still, heading, control, filter, sensor, layout, parameters,
+                                                        first, count, screening);
         Command<Real> command;
         for (int lane = 0; lane < lanes<Real>; ++lane)
             fetch(control, static_cast<int>(lane_of(reference, lane)), lane, command);

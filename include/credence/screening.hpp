@@ -57,18 +57,31 @@ Real greatest_value(const ValueParameters& parameters, Real squared) {
     return Real(1 + 1e-12) / fma(sigma, sigma, Real(parameters.kappa));
 }
 
-/// Values of the candidates first ... first + count - 1; returns, lane by lane, the number of the one that sees most.
+/// What a move costs the reference, in units of v per |u|^2: a move lets the heading's variance into the position's.
+/// How much of trace(P) one v is worth is guessed: any reference will do, a good one leaves fewer candidates to decide.
+template <class Layout, class Real, int capacity>
+Real price_of_moving(const Belief<Real, capacity>& still, const FilterParameters& filter, const Layout& layout,
+                     double kappa) {
+    if (!Layout::has_heading || kappa == 0) return Real(0);
+    const Real heading = still.covariance.entry[0][0] + Real(filter.variance_heading);
+    return heading * Real(layout.features() / kappa) / trace(still.covariance, layout.size());
+}
+
+/// Values of the candidates first ... first + count - 1; returns, lane by lane, the number of the one that sees most,
+/// less the price of its move.
 template <bool ranged, class Layout, class Real, int capacity>
 CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const Rotation<Real>& heading,
-                                    const ControlParameters& control, const SensorParameters& sensor,
-                                    const Layout& layout, const ValueParameters& parameters, int first, int count,
+                                    const ControlParameters& control, const FilterParameters& filter,
+                                    const SensorParameters& sensor, const Layout& layout,
+                                    const ValueParameters& parameters, int first, int count,
                                     ScreeningWorkspace<Layout, Real>& work) {
-    Real most = Real(-1), reference = Real(first);
+    Real most = Real(-std::numeric_limits<double>::infinity()), reference = Real(first);
+    const Real price = price_of_moving(still, filter, layout, parameters.kappa);
     const Vector2<Real> position = point_at(still.mean, Layout::position);
     for (int i = 0; i < count; ++i) {
         const Vector2<Real> move = broadcast<Real>(control.candidates[first + i].move);
-        const Vector2<Real> there = position + world_move<Layout>(heading, move);
-        Real sum = Real(0);
+        const Vector2<Real> u = world_move<Layout>(heading, move), there = position + u;
+        Real sum = Layout::has_heading ? -(price * squared_norm(u)) : Real(0);
         each(zero, layout.features(), [&](auto j) {
             const Real squared = squared_range(there, point_at(still.mean, Layout::feature(j)));
             const Real value = greatest_value<ranged>(parameters, squared);
