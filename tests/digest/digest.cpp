@@ -16,6 +16,7 @@
 namespace credence {
 
 // The lane widths without an instruction set of their own: what Lane<W> is on any processor.
+#ifdef CREDENCE_DIGEST_WIDTHS
 namespace w2 {
 void simulate(const ProblemView&, const Batch&);
 std::size_t workspace_size(const ProblemView&);
@@ -28,6 +29,7 @@ namespace w8 {
 void simulate(const ProblemView&, const Batch&);
 std::size_t workspace_size(const ProblemView&);
 }  // namespace w8
+#endif
 
 namespace digest {
 namespace {
@@ -61,9 +63,11 @@ private:
 
 std::vector<Unit> all_units() {
     std::vector<Unit> units = runnable_units();
+#ifdef CREDENCE_DIGEST_WIDTHS
     units.push_back({"w2", 2, w2::simulate, w2::workspace_size});
     units.push_back({"w4", 4, w4::simulate, w4::workspace_size});
     units.push_back({"w8", 8, w8::simulate, w8::workspace_size});
+#endif
     return units;
 }
 
