@@ -111,7 +111,7 @@ TEST_CASE("planner: no candidate costs less than its bound") {
             const ValueParameters parameters = value_parameters(view.sensor, view.filter);
             const auto& still = planner.work->still;
             if (view.sensor.noise == RangeNoise::ranged)
-                value_candidates<true>(still, planner.heading, view.control, view.sensor, layout, parameters, 0, count,
+                value_candidates<true>(still, planner.heading, view.control, view.filter, view.sensor, layout, parameters, 0, count,
                                        screening);
             else
                 value_candidates<false>(still, planner.heading, view.control, view.filter, view.sensor, layout, parameters, 0, count, screening);
