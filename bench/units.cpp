@@ -5,10 +5,7 @@
 namespace credence {
 
 #ifdef CREDENCE_X86_UNITS
-namespace one_lane {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}  // namespace one_lane
+CREDENCE_DECLARE_UNIT(one_lane)
 #endif
 
 namespace bench {
@@ -17,7 +14,7 @@ std::vector<Unit> measured_units() {
     std::vector<Unit> units = runnable_units();
 #ifdef CREDENCE_X86_UNITS
     const auto v3 = std::find_if(units.begin(), units.end(), [](const Unit& unit) { return unit.name == "v3"; });
-    if (v3 != units.end()) units.insert(v3 + 1, {"one_lane", 1, one_lane::simulate, one_lane::workspace_size});
+    if (v3 != units.end()) units.insert(v3 + 1, CREDENCE_LIST_UNIT(one_lane, 1));
 #endif
     return units;
 }

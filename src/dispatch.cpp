@@ -10,19 +10,10 @@
 
 namespace credence {
 
-inline namespace portable {  // CREDENCE_UNIT by default, hence inline here too
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}
+inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_UNIT by default, hence inline here too
 #ifdef CREDENCE_X86_UNITS
-namespace v3 {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}
-namespace v4 {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}
+CREDENCE_DECLARE_UNIT(v3)
+CREDENCE_DECLARE_UNIT(v4)
 #endif
 
 namespace {
@@ -58,10 +49,10 @@ struct BuiltUnit {
 std::vector<BuiltUnit> built_units() {
     return {
 #ifdef CREDENCE_X86_UNITS
-        {{"v4", 8, v4::simulate, v4::workspace_size}, runs_v4()},
-        {{"v3", 4, v3::simulate, v3::workspace_size}, runs_v3()},
+        {CREDENCE_LIST_UNIT(v4, 8), runs_v4()},
+        {CREDENCE_LIST_UNIT(v3, 4), runs_v3()},
 #endif
-        {{"portable", 1, portable::simulate, portable::workspace_size}, true}};
+        {CREDENCE_LIST_UNIT(portable, 1), true}};
 }
 
 /// The unit of this name; throws InputError where there is none that runs.

@@ -67,7 +67,8 @@ void fold(Unfolded<Real>& unfolded, const ProblemView& problem, const Batch& bat
                 double *to = batch.sums + cell * octet + place, *to_square = batch.square_sums + cell * octet + place;
                 Real sum = load<Real>(to), square_sum = load<Real>(to_square);
                 for (int pack = start, i = 0; pack < unfolded.packs; pack += stride, ++i) {
-                    const Real value = select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
+                    const Real value =
+                        select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
                     sum = sum + value;
                     square_sum = fma(value, value, square_sum);
                     run_sum[i] = run_sum[i] + value;

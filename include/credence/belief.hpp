@@ -56,11 +56,17 @@ Inverse2<Real> inverse(Real xx, Real xy, Real yy, Mask<Real> used) {
             either(both(xx > Real(0), determinant > Real(0)), negated(used))};
 }
 
+/// S^-1 b
+template <class Real>
+Vector2<Real> times(const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
+    return {fma(S_inverse.xy, b.y, S_inverse.xx * b.x), fma(S_inverse.yy, b.y, S_inverse.xy * b.x)};
+}
+
 /// a' S^-1 b
 template <class Real>
 Real between(const Vector2<Real>& a, const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
-    const Real x = fma(S_inverse.xy, b.y, S_inverse.xx * b.x), y = fma(S_inverse.yy, b.y, S_inverse.xy * b.x);
-    return fma(y, a.y, x * a.x);
+    const Vector2<Real> weighted = times(S_inverse, b);
+    return fma(weighted.y, a.y, weighted.x * a.x);
 }
 
 /// A matrix and a vector that are being eliminated, from the last row up.
@@ -77,8 +83,7 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& l
     const Inverse2<Real> pivot = inverse(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
     const Vector2<Real> e{left.e[i], left.e[i + one]};
     each(first, i, [&](auto k) {
-        const Vector2<Real> c{A[k][i], A[k][i + one]};
-        const Vector2<Real> scaled{fma(pivot.xy, c.y, pivot.xx * c.x), fma(pivot.yy, c.y, pivot.xy * c.x)};
+        const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
         left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, left.e[k]));
         each(first, k + one, [&](auto m) {
             A[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));

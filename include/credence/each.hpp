@@ -28,7 +28,6 @@ using Known = std::integral_constant<int, value>;
 inline constexpr Known<0> zero{};
 inline constexpr Known<1> one{};
 inline constexpr Known<2> two{};
-inline constexpr Known<-1> minus_one{};
 
 inline namespace CREDENCE_UNIT {
 

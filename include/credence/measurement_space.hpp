@@ -40,8 +40,9 @@ Matrix2<Real> transposed(const Matrix2<Real>& m) { return {m.xx, m.yx, m.xy, m.y
 /// s' S^-1
 template <class Real>
 Matrix2<Real> divided(const Matrix2<Real>& s, const Inverse2<Real>& S_inverse) {
-    return {fma(s.yx, S_inverse.xy, s.xx * S_inverse.xx), fma(s.yx, S_inverse.yy, s.xx * S_inverse.xy),
-            fma(s.yy, S_inverse.xy, s.xy * S_inverse.xx), fma(s.yy, S_inverse.yy, s.xy * S_inverse.xy)};
+    const Vector2<Real> x = times(S_inverse, Vector2<Real>{s.xx, s.yx}),
+                        y = times(S_inverse, Vector2<Real>{s.xy, s.yy});
+    return {x.x, x.y, y.x, y.y};
 }
 
 template <class Real>

@@ -49,9 +49,7 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
         const int left = control.candidate_count - first, count = left < screening_chunk ? left : screening_chunk;
         const Real reference = value_candidates<ranged>(still, heading, control, filter, sensor, layout, parameters,
                                                         first, count, screening);
-        Command<Real> command;
-        for (int lane = 0; lane < lanes<Real>; ++lane)
-            fetch(control, static_cast<int>(lane_of(reference, lane)), lane, command);
+        Command<Real> command = fetch_each(control, reference);
         const TurnedTrace<Real> rest = tangent(still, space.position + world_move<Layout>(heading, command.move),
                                                filter, sensor, layout, parameters.kappa, screening);
         const Real known = cost(command);
@@ -74,11 +72,7 @@ Command<Real> plan_by_visible_sets(const ControlParameters& control, const Filte
     enter_measurement_space(work.still, filter, layout, work.space);
     gather_sets(work.still, control, sensor, layout, work.sets);
     price_sets(work.space, filter, sensor, layout, work.elimination, work.sets);
-    const Real winner = last_of_best(1 << layout.features(), work.sets);
-    Command<Real> command;
-    for (int lane = 0; lane < lanes<Real>; ++lane)
-        if (lane_of(winner, lane) >= 0) fetch(control, static_cast<int>(lane_of(winner, lane)), lane, command);
-    return command;
+    return fetch_each(control, last_of_best(1 << layout.features(), work.sets));
 }
 
 /// Greedy control from pose k - 1 to k, given the belief at pose k - 1.

@@ -36,6 +36,14 @@ struct Unit {
     std::size_t (*workspace_size)(const ProblemView&) = nullptr;
 };
 
+/// What a unit compiled from src/simulate_unit.cpp offers under its name, and its entry in a list of units.
+#define CREDENCE_DECLARE_UNIT(name)                    \
+    namespace name {                                   \
+    void simulate(const ProblemView&, const Batch&);   \
+    std::size_t workspace_size(const ProblemView&);    \
+    }
+#define CREDENCE_LIST_UNIT(name, lanes) Unit{#name, lanes, name::simulate, name::workspace_size}
+
 /// Environment variable that names the unit to run, for tests.
 inline constexpr const char* force_unit_variable = "CREDENCE_FORCE_UNIT";
 

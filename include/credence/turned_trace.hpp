@@ -48,5 +48,15 @@ void fetch(const ControlParameters& control, int candidate, int lane, Command<Re
     set_lane(command.move.y, lane, control.candidates[candidate].move.y);
 }
 
+/// The controls of the candidates numbered in each lane; none, where the number is negative, stands still.
+template <class Real>
+Command<Real> fetch_each(const ControlParameters& control, const Real& candidates) {
+    Command<Real> command;
+    for (int lane = 0; lane < lanes<Real>; ++lane)
+        if (lane_of(candidates, lane) >= 0)
+            fetch(control, static_cast<int>(lane_of(candidates, lane)), lane, command);
+    return command;
+}
+
 }  // namespace CREDENCE_UNIT
 }  // namespace credence

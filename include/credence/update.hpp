@@ -75,8 +75,7 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
     const Inverse2<Real> S_inverse = inverse(HWx.x + N, HWx.y, HWy.y + N, used);
     reload_memory();
     each(zero, n, [&](auto i) {
-        const Vector2<Real> K{fma(W[i].y, S_inverse.xy, W[i].x * S_inverse.xx),
-                              fma(W[i].y, S_inverse.yy, W[i].x * S_inverse.xy)};
+        const Vector2<Real> K = times(S_inverse, W[i]);
         gained(i, K);
         each(i, n, [&](auto j) { P.entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, P.entry[i][j])); });
     });
@@ -151,7 +150,7 @@ void take_in_edges(Belief<Real, capacity>& belief, const FilterParameters& filte
         pull[edge.to] = pull[edge.to] + nu;
         unexplained = unexplained + squared_norm(nu);
     }
-    each(zero, layout.features() + minus_one, [&](auto c) {
+    each(zero, layout.features() - one, [&](auto c) {
         const Contrast& contrast = filter.contrasts[c];
         if (contrast.scale == 0) return;
         const Vector2<Real> w = pull[c];

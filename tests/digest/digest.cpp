@@ -17,18 +17,9 @@ namespace credence {
 
 // The lane widths without an instruction set of their own: what Lane<W> is on any processor.
 #ifdef CREDENCE_DIGEST_WIDTHS
-namespace w2 {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}  // namespace w2
-namespace w4 {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}  // namespace w4
-namespace w8 {
-void simulate(const ProblemView&, const Batch&);
-std::size_t workspace_size(const ProblemView&);
-}  // namespace w8
+CREDENCE_DECLARE_UNIT(w2)
+CREDENCE_DECLARE_UNIT(w4)
+CREDENCE_DECLARE_UNIT(w8)
 #endif
 
 namespace digest {
@@ -64,9 +55,9 @@ private:
 std::vector<Unit> all_units() {
     std::vector<Unit> units = runnable_units();
 #ifdef CREDENCE_DIGEST_WIDTHS
-    units.push_back({"w2", 2, w2::simulate, w2::workspace_size});
-    units.push_back({"w4", 4, w4::simulate, w4::workspace_size});
-    units.push_back({"w8", 8, w8::simulate, w8::workspace_size});
+    units.push_back(CREDENCE_LIST_UNIT(w2, 2));
+    units.push_back(CREDENCE_LIST_UNIT(w4, 4));
+    units.push_back(CREDENCE_LIST_UNIT(w8, 8));
 #endif
     return units;
 }
