@@ -1,7 +1,10 @@
 #include <credence/block.hpp>
 
+#include <credence/chi_square.hpp>
+
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -51,20 +54,94 @@ void store_columns(const std::vector<Column>& declared, const std::vector<double
     }
 }
 
-ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t first_trial,
-                 int trials, const Unit& unit) {
+/// What a unit fills, eight trials next to each other.
+struct Octets {
+    std::size_t trials, padded, steps, figures, blocks, components, lags;
+    std::vector<double> columns, sums, square_sums, run_square_sums, covered, nees;
+    std::vector<double> errors, product_sums, product_square_sums, product_counts;
+
+    Octets(const ProblemView& problem, std::size_t count, bool detail)
+        : trials(count),
+          padded((count + octet - 1) / octet * octet),
+          steps(static_cast<std::size_t>(problem.poses - 1)),
+          figures(static_cast<std::size_t>(problem.figure_count)),
+          blocks(static_cast<std::size_t>(problem.block_count)),
+          components(static_cast<std::size_t>(problem.state_size)),
+          lags(static_cast<std::size_t>(lag_count(problem.poses))),
+          columns(padded * column_count),
+          sums(figures * steps * octet),
+          square_sums(sums.size()),
+          run_square_sums(figures * octet),
+          covered(blocks * steps * coverage_level_count * octet),
+          nees(steps * padded) {
+        if (!detail) return;
+        errors.resize(components * steps * padded);
+        for (auto* products : {&product_sums, &product_square_sums, &product_counts}) products->resize(lags * octet);
+    }
+
+    Batch batch(Controller controller, std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
+        const bool detail = !errors.empty();
+        Batch batch{controller, root_seed, first_trial, static_cast<int>(trials)};
+        batch.columns = columns.data();
+        batch.sums = sums.data();
+        batch.square_sums = square_sums.data();
+        batch.run_square_sums = run_square_sums.data();
+        batch.covered = covered.data();
+        batch.nees = nees.data();
+        batch.errors = detail ? errors.data() : nullptr;
+        batch.product_sums = product_sums.data();
+        batch.product_square_sums = product_square_sums.data();
+        batch.product_counts = product_counts.data();
+        batch.workspace = workspace;
+        return batch;
+    }
+};
+
+bool failed_trial(const ArmBlock& arm, std::size_t trials, std::size_t trial) {
+    return failed(static_cast<Status>(static_cast<int>(arm.columns[column_status * trials + trial])));
+}
+
+/// The cell of every NEES.
+void store_cells(const Octets& from, const EquiprobableCells& cells, ArmBlock& arm) {
+    for (std::size_t k = 0; k < from.steps; ++k)
+        for (std::size_t trial = 0; trial < from.trials; ++trial)
+            arm.cells.push_back(failed_trial(arm, from.trials, trial)
+                                    ? no_cell
+                                    : static_cast<std::uint16_t>(cells.cell(from.nees[k * from.padded + trial])));
+}
+
+/// Errors and NEES by trial, rounded to single precision.
+void store_details(const Octets& from, ArmBlock& arm) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t trial = 0; trial < from.trials; ++trial) {
+        const bool failed = failed_trial(arm, from.trials, trial);
+        for (std::size_t k = 0; k < from.steps; ++k) {
+            arm.nees.push_back(failed ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
+            for (std::size_t i = 0; i < from.components; ++i)
+                arm.errors.push_back(
+                    failed ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
+        }
+    }
+    arm.product_sums = added_up(from.product_sums);
+    arm.product_square_sums = added_up(from.product_square_sums);
+    arm.product_counts = added_up(from.product_counts);
+}
+
+ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t index, int trials,
+                 const Unit& unit) {
     const ProblemView& view = problem.view();
-    const std::size_t figures = static_cast<std::size_t>(view.figure_count),
-                      cells = figures * static_cast<std::size_t>(view.poses - 1),
-                      all = static_cast<std::size_t>(trials);
-    std::vector<double> columns((all + octet - 1) / octet * column_count * octet);
-    std::vector<double> sums(cells * octet), square_sums(cells * octet), run_square_sums(figures * octet);
+    Octets octets(view, static_cast<std::size_t>(trials), detailed(view, index));
     thread_local WorkRoom room;
-    unit.simulate(view, {controller, root_seed, first_trial, trials, columns.data(), sums.data(), square_sums.data(),
-                         run_square_sums.data(), room.of_size(unit.workspace_size(view))});
-    ArmBlock arm{std::vector<double>(column_count * all), added_up(sums), added_up(square_sums),
-                 added_up(run_square_sums), 0};
-    store_columns(trial_columns(problem.scenario()), columns, all, arm);
+    unit.simulate(view, octets.batch(controller, root_seed, index * block_size, room.of_size(unit.workspace_size(view))));
+    ArmBlock arm;
+    arm.columns.resize(column_count * octets.trials);
+    arm.sums = added_up(octets.sums);
+    arm.square_sums = added_up(octets.square_sums);
+    arm.run_square_sums = added_up(octets.run_square_sums);
+    for (const double count : added_up(octets.covered)) arm.covered.push_back(static_cast<std::int32_t>(count));
+    store_columns(trial_columns(problem.scenario()), octets.columns, octets.trials, arm);
+    store_cells(octets, *equiprobable_cells(view.state_size), arm);
+    if (detailed(view, index)) store_details(octets, arm);
     return arm;
 }
 
@@ -76,11 +153,16 @@ int trials_in_block(std::int64_t trials, std::int64_t index) {
     return static_cast<int>(std::min<std::int64_t>(block_size, trials - index * block_size));
 }
 
+bool detailed(const ProblemView& problem, std::int64_t index) {
+    static_assert(block_size == 256, "detailed_trials counts whole blocks");
+    return index < detailed_trials(problem.poses - 1, problem.state_size) / block_size;
+}
+
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
                 const Unit& unit) {
     Block block{index, trials, {}};
     for (const Arm& arm : arms_of(problem.scenario()))
-        block.arms.push_back(run_arm(problem, arm.controller, root_seed, index * block_size, trials, unit));
+        block.arms.push_back(run_arm(problem, arm.controller, root_seed, index, trials, unit));
     return block;
 }
 

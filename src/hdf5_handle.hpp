@@ -69,6 +69,8 @@ Type type_of();
 template <>
 inline Type type_of<double>() { return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE}; }
 template <>
+inline Type type_of<float>() { return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT}; }
+template <>
 inline Type type_of<std::int8_t>() { return {H5T_STD_I8LE, H5T_NATIVE_INT8}; }
 template <>
 inline Type type_of<std::int32_t>() { return {H5T_STD_I32LE, H5T_NATIVE_INT32}; }

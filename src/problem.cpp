@@ -1,5 +1,7 @@
 #include <credence/problem.hpp>
 
+#include <credence/chi_square.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -116,7 +118,12 @@ Problem::Problem(const Scenario& resolved_scenario)
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
-    view_.block_count = static_cast<int>(state_blocks(scenario_).size());
+    const std::vector<StateBlock> blocks = state_blocks(scenario_);
+    view_.block_count = static_cast<int>(blocks.size());
+    for (const StateBlock& block : blocks)
+        for (const double level : coverage_levels)
+            coverage_bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    view_.coverage_bounds = coverage_bounds_.data();
     view_.figure_count = static_cast<int>(step_figures(scenario_).size());
     fill_world();
     fill_filter();

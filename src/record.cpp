@@ -1,5 +1,6 @@
 #include <credence/record.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace credence {
@@ -8,11 +9,21 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Figure nees_figure(const StateBlock& block) {
-    const bool whole = block.name == "all";
-    return {whole ? "nees" : "nees_" + block.name,
-            "normalised estimation error squared of " + (whole ? std::string("the whole state") : block.name),
-            "1", FigureRole::nees, block.count, false};
+const std::string& described(const StateBlock& block) {
+    static const std::string whole = "the whole state";
+    return block.name == "all" ? whole : block.name;
+}
+
+/// `name`, or `name_BLOCK` for a part of the state.
+std::string of_block(const std::string& name, const StateBlock& block) {
+    return block.name == "all" ? name : name + "_" + block.name;
+}
+
+/// rad^2 for the heading, length^2, or the sum of both.
+std::string squared_error_unit(const Scenario& scenario, const StateBlock& block) {
+    if (block.name == "heading") return "rad^2";
+    const bool angles = scenario.process == Process::heading && block.first == 0;
+    return angles ? trace_unit(scenario) : scenario.length_unit + "^2";
 }
 
 }  // namespace
@@ -56,8 +67,16 @@ std::vector<Column> trial_columns(const Scenario& scenario) {
              ColumnType::real, nan},
             {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
             {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
+            {"mean_trace_P", "mean over the steps of the trace of the covariance", trace_unit(scenario),
+             ColumnType::real, nan},
             {"status", "how the trial ended", "1", ColumnType::status, 0},
             {"status_pose", "pose at which the status arose, -1 for none", "1", ColumnType::integer, -1}};
+}
+
+int detailed_trials(int steps, int state_size) {
+    constexpr int most = 4096, numbers = 1 << 24, block = 256;
+    const int room = numbers / steps / (state_size + 1) / block * block;
+    return std::clamp(room, block, most);
 }
 
 bool fill_failed(const std::vector<Column>& columns, double* values) {
@@ -68,18 +87,34 @@ bool fill_failed(const std::vector<Column>& columns, double* values) {
 }
 
 std::vector<Figure> step_figures(const Scenario& scenario) {
+    const std::vector<StateBlock> blocks = state_blocks(scenario);
+    const int edge_rows = 2 * static_cast<int>(edge_list(scenario).size());
     std::vector<Figure> figures;
-    for (const StateBlock& block : state_blocks(scenario)) figures.push_back(nees_figure(block));
-    figures.push_back({"nis", "normalised innovation squared over all rows", "1", FigureRole::nis, 0, false});
-    figures.push_back({"nis_rows", "measurement rows", "1", FigureRole::rows, 0, true});
-    figures.push_back({"unseen_features", "features not seen", "1", FigureRole::other, 0, true});
-    figures.push_back({"trace_P_step", "trace of the covariance after the update", trace_unit(scenario),
-                       FigureRole::other, 0, false});
-    figures.push_back({"squared_pose_error", "squared error of the estimated pose", trace_unit(scenario),
-                       FigureRole::other, 0, false});
+    for (const StateBlock& block : blocks)
+        figures.push_back({of_block("nees", block), "normalised estimation error squared of " + described(block), "1",
+                           FigureRole::nees, block.count, false, block.name, "", 0});
+    const auto nis = [&](const std::string& name, const std::string& of, const std::string& part,
+                         const std::string& rows, int more_rows) {
+        figures.push_back({name, "normalised innovation squared of " + of, "1", FigureRole::nis, 0, false, part, rows,
+                           more_rows});
+    };
+    nis("nis", "all rows", "all", "nis_rows", 0);
+    figures.push_back({"nis_rows", "measurement rows", "1", FigureRole::rows, 0, true, "all", "", 0});
+    nis("nis_features", "the features' rows", "features", "nis_rows", -edge_rows);
+    nis("nis_edges", "the edges' rows", "edges", "", edge_rows);
+    figures.push_back({"unseen_features", "features not seen", "1", FigureRole::other, 0, true, "", "", 0});
+    for (const StateBlock& block : blocks)
+        figures.push_back({of_block("squared_error", block), "squared error of " + described(block),
+                           squared_error_unit(scenario, block), FigureRole::squared_error, block.count, false,
+                           block.name, "", 0});
+    for (const StateBlock& block : blocks)
+        figures.push_back({block.name == "all" ? "trace_P_step" : of_block("variance", block),
+                           "trace of the covariance of " + described(block) + " after the update",
+                           squared_error_unit(scenario, block), FigureRole::variance, block.count, false, block.name,
+                           "", 0});
     for (const std::string& name : component_names(scenario))
         figures.push_back({"standardised_error_" + name, "error of " + name + " over its predicted standard deviation",
-                           "1", FigureRole::standardised_error, 1, false});
+                           "1", FigureRole::standardised_error, 1, false, name, "", 0});
     return figures;
 }
 

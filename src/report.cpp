@@ -1,25 +1,14 @@
 #include <credence/report.hpp>
 
+#include <credence/bootstrap.hpp>
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
-
-/// A column's values with failed trials as NaN, whatever their fill.
-std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
-    std::vector<double> values = arm.columns[column];
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
-            values[i] = std::numeric_limits<double>::quiet_NaN();
-    return values;
-}
 
 const std::vector<PublishedFigure>* published_of(const Scenario& scenario, const std::string& column) {
     if (column == "trace_P") return &scenario.published.trace_P;
@@ -36,51 +25,43 @@ std::optional<PublishedPlace> place_of(const Scenario& scenario, const std::stri
     return std::nullopt;
 }
 
-ArmReport arm_report(const ScenarioResults& results, const ArmResults& arm, double margin) {
-    ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, judge(results, arm, margin)};
-    for (const double status : arm.columns[column_status]) {
-        report.failed += failed(static_cast<Status>(static_cast<int>(status)));
-        report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
-    }
-    for (std::size_t c = 0; c < results.columns.size(); ++c) {
-        const Column& column = results.columns[c];
-        if (!is_figure(column)) continue;
-        const std::vector<double> values = figure_values(arm, c);
-        report.figures.push_back({column.name, column.unit, summarise(values),
-                                  place_of(results.scenario, column.name, arm.name, values)});
-    }
-    return report;
-}
+/// NEES and NIS ratios are judged by tests of their own.
+bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
-PairReport pair_report(const ScenarioResults& results, const ArmResults& planned, const ArmResults& fixed) {
-    PairReport report{results.scenario.name, planned.name + " - " + fixed.name, {}};
-    for (std::size_t c = 0; c < results.columns.size(); ++c)
-        if (is_figure(results.columns[c]))
-            report.figures.push_back({results.columns[c].name, results.columns[c].unit,
-                                      summarise(paired_differences(figure_values(planned, c),
-                                                                   figure_values(fixed, c))), {}});
+FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
+                           std::uint64_t root_seed) {
+    const Column& column = results.columns[c];
+    std::vector<double> values = figure_values(arm, c);
+    FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
+                        place_of(results.scenario, column.name, arm.name, values)};
+    if (has_bootstrap(column.name))
+        report.bootstrap95 = bootstrap_mean_interval(
+            values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
     return report;
-}
-
-/// `greedy.X` has its partner in `fixed.X`.
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
-    const std::size_t dot = arm.name.find('.');
-    if (arm.name.substr(0, dot) != "greedy") return nullptr;
-    for (const ArmResults& other : results.arms)
-        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
-    return nullptr;
 }
 
 }  // namespace
 
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
+    ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
+    report.consistency = judge(report.evidence, margin);
+    for (const double status : arm.columns[column_status]) {
+        report.failed += failed(static_cast<Status>(static_cast<int>(status)));
+        report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
+    }
+    for (std::size_t c = 0; c < results.columns.size(); ++c)
+        if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
+    return report;
+}
+
 Report make_report(const Study& study, double margin) {
-    Report report{study_hash(study), study.root_seed, study.complete, margin, {}, {}, {}};
+    Report report{"study " + study_hash(study), study.root_seed, study.complete, margin, {}, {}, planned_against_fixed(study)};
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
-        for (const ArmResults& arm : results.arms) report.arms.push_back(arm_report(results, arm, margin));
         for (const ArmResults& arm : results.arms)
-            if (const ArmResults* partner = fixed_partner(results, arm))
-                report.pairs.push_back(pair_report(results, arm, *partner));
+            report.arms.push_back(report_arm(results, arm, study.root_seed, margin));
     }
     return report;
 }

@@ -4,41 +4,42 @@
 
 #include <credence/text.hpp>
 
-#include <nlohmann/json.hpp>
+#include "report_json.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace credence {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
+Json summary_json(const Summary& summary) {
+    return {{"mean", summary.mean},
+            {"se", summary.standard_error},
+            {"ci95", interval_json(summary.ci95)},
+            {"median", summary.median},
+            {"sd", summary.standard_deviation},
+            {"n", summary.count}};
+}
 
 Json figure_json(const FigureReport& figure) {
-    Json json{{"mean", figure.summary.mean},
-              {"se", figure.summary.standard_error},
-              {"ci95", interval_json(figure.summary.ci95)},
-              {"median", figure.summary.median},
-              {"sd", figure.summary.standard_deviation},
-              {"n", figure.summary.count},
-              {"unit", figure.unit}};
+    Json json = summary_json(figure.summary);
+    json["unit"] = figure.unit;
+    for (std::size_t q = 0; q < figure.quantiles.size(); ++q)
+        json["quantiles"][to_text(reported_quantiles[q])] = figure.quantiles[q];
+    if (figure.bootstrap95) json["bootstrap95"] = interval_json(*figure.bootstrap95);
     if (figure.published)
         json["published"] = {{"value", figure.published->value}, {"percentile", figure.published->percentile}};
     return json;
 }
 
-Json consistency_json(const Consistency& consistency) {
-    Json blocks = Json::array(), findings = Json::array();
-    for (const BlockConsistency& block : consistency.blocks)
-        blocks.push_back({{"block", block.block}, {"dimension", block.dimension}, {"nees_ratio", block.ratio},
-                          {"se", block.standard_error}, {"ci95", interval_json(block.ci95)}});
-    for (const Finding& finding : consistency.findings)
-        findings.push_back({{"what", finding.what}, {"where", finding.where}, {"when", finding.when},
-                            {"value", finding.value}, {"interval", interval_json(finding.interval)},
-                            {"text", sentence(finding)}});
-    return {{"blocks", blocks}, {"findings", findings}};
+Json findings_json(const std::vector<Finding>& findings) {
+    Json json = Json::array();
+    for (const Finding& finding : findings)
+        json.push_back({{"what", finding.what}, {"where", finding.where}, {"when", finding.when},
+                        {"value", finding.value}, {"interval", interval_json(finding.interval)},
+                        {"text", sentence(finding)}});
+    return json;
 }
 
 Json arm_json(const Report& report, const ArmReport& arm) {
@@ -48,29 +49,46 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["verdict"] = verdict_name(arm.consistency.verdict);
     json["margin"] = arm.consistency.margin;
     if (arm.consistency.trials_to_decide > 0) json["trials_to_decide"] = arm.consistency.trials_to_decide;
-    json.update(consistency_json(arm.consistency));
-    for (const PairReport& pair : report.pairs) {
-        if (pair.scenario != arm.scenario || !pair.name.starts_with(arm.arm + " - ")) continue;
-        Json differences{{"pair", pair.name}};
-        for (const FigureReport& figure : pair.figures) differences[figure.name] = figure_json(figure);
-        json["paired_difference"] = differences;
-    }
-    json["study"] = report.study_hash;
-    json["root_seed"] = report.root_seed;
+    json["findings"] = findings_json(arm.consistency.findings);
+    json["cautions"] = findings_json(arm.consistency.cautions);
+    json.update(evidence_json(arm.evidence));
+    for (const Comparison& pair : report.pairs)
+        if (pair.scenario == arm.scenario && pair.a == arm.arm) json["paired_difference"] = comparison_json(pair);
+    json["source"] = report.source;
+    json["root_seed"] = report.root_seed ? Json(*report.root_seed) : Json();
     json["complete"] = report.complete;
     return json;
 }
 
-std::string csv_row(const std::string& scenario, const std::string& arm, const std::string& trials,
-                    const std::string& failed, const FigureReport& figure, const std::string& verdict) {
-    const Summary& s = figure.summary;
-    std::vector<std::string> cells{scenario, arm, trials, failed, figure.name, figure.unit};
-    for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, s.median, s.standard_deviation})
+/// One row; cells that are NaN stay empty.
+std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
+                    const std::optional<PublishedPlace>& published, const std::string& verdict) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const Interval resampled = bootstrap.value_or(Interval{nan, nan});
+    const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
+    for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
+                               s.standard_deviation, place.value, place.percentile})
         cells.push_back(std::isnan(value) ? "" : to_text(value));
-    cells.push_back(figure.published ? to_text(figure.published->value) : "");
-    cells.push_back(figure.published ? to_text(figure.published->percentile) : "");
     cells.push_back(verdict);
     return joined(cells, ",") + "\n";
+}
+
+/// What a consistent filter has at 1, by block: a figure like the others, but for its interval's level.
+std::string evidence_rows(const ArmReport& arm) {
+    std::string text;
+    const auto row = [&](const std::string& figure, double mean, double se, const Interval& interval, double sd) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure, "1"},
+                        {arm.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt,
+                        verdict_name(arm.consistency.verdict));
+    };
+    for (const BlockEvidence& block : arm.evidence.blocks) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        row("nees_per_dimension:" + block.block, block.run.mean, block.run.standard_error, over_steps95(block),
+            block.run.standard_deviation);
+        row("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95, nan);
+    }
+    return text;
 }
 
 }  // namespace
@@ -83,14 +101,20 @@ std::string report_json(const Report& report) {
 
 std::string report_csv(const Report& report) {
     std::string text =
-        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,median,sd,published,percentile,verdict\n";
-    for (const ArmReport& arm : report.arms)
+        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
+        "published,percentile,verdict\n";
+    for (const ArmReport& arm : report.arms) {
         for (const FigureReport& figure : arm.figures)
-            text += csv_row(arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure,
+            text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure.name,
+                             figure.unit},
+                            figure.summary, figure.bootstrap95, figure.published,
                             verdict_name(arm.consistency.verdict));
-    for (const PairReport& pair : report.pairs)
-        for (const FigureReport& figure : pair.figures)
-            text += csv_row(pair.scenario, pair.name, std::to_string(figure.summary.count), "", figure, "");
+        text += evidence_rows(arm);
+    }
+    for (const Comparison& pair : report.pairs)
+        for (const ComparedFigure& figure : pair.figures)
+            text += csv_row({pair.scenario, pair.name(), std::to_string(figure.paired.pairs), "", figure.name, figure.unit},
+                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt, "");
     return text;
 }
 

@@ -1,93 +1,17 @@
-#include <credence/report.hpp>
+// The report for people: verdicts first, then why, then where (report_text_detail.cpp).
 
+#include <credence/report.hpp>
 #include <credence/text.hpp>
+
+#include "report_format.hpp"
+#include "report_text_detail.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace credence {
 
 namespace {
-
-/// Left- or right-pads to a width counted in characters, not bytes.
-std::string padded(const std::string& text, int width, bool right = true) {
-    int characters = 0;
-    for (const char c : text) characters += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-    const std::string space(static_cast<std::size_t>(std::max(1, width - characters)), ' ');  // never glued together
-    return right ? space + text : text + space;
-}
-
-std::string number(double value, int digits) {
-    if (std::isnan(value)) return "-";
-    char buffer[64];
-    if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-    else std::snprintf(buffer, sizeof buffer, "%.4g", value);
-    return buffer;
-}
-
-/// Decimals that show two digits of the uncertainty, at most 6.
-int decimals_for(double uncertainty) {
-    if (!(uncertainty > 0) || std::isinf(uncertainty)) return 4;
-    return std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty))), 0, 6);
-}
-
-std::string with_interval(const Summary& summary) {
-    const double half = (summary.ci95.high - summary.ci95.low) / 2;
-    const int digits = decimals_for(half);
-    return std::isnan(half) ? number(summary.mean, digits)
-                            : number(summary.mean, digits) + " ± " + number(half, digits);
-}
-
-std::string title_of(const std::string& figure, const std::string& unit) {
-    const std::string name = figure == "trace_P" ? "trace(P)" : figure == "pose_error" ? "pose error" : figure;
-    return unit == "1" ? name : name + " [" + unit + "]";
-}
-
-std::string published_text(const PublishedPlace& published) {
-    return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
-}
-
-std::string figure_row(const std::string& label, const FigureReport& figure) {
-    const Summary& s = figure.summary;
-    const int digits = decimals_for((s.ci95.high - s.ci95.low) / 2);
-    return "    " + padded(label, 24, false) + padded(with_interval(s), 22) + padded(number(s.median, digits), 12) +
-           padded(number(s.standard_deviation, digits), 12) +
-           (figure.published ? padded(published_text(*figure.published), 20) : "") + "\n";
-}
-
-const FigureReport& figure_of(const std::vector<FigureReport>& figures, const std::string& name) {
-    for (const FigureReport& figure : figures)
-        if (figure.name == name) return figure;
-    return figures.front();
-}
-
-/// A part with the arms and their differences, one row each.
-std::string figure_part(const Report& report, const std::string& scenario, const std::string& name) {
-    std::string text;
-    for (const ArmReport& arm : report.arms) {
-        if (arm.scenario != scenario) continue;
-        const FigureReport& figure = figure_of(arm.figures, name);
-        if (text.empty()) text = "  " + title_of(name, figure.unit) + "\n";
-        text += figure_row(arm.arm, figure);
-    }
-    for (const PairReport& pair : report.pairs)
-        if (pair.scenario == scenario) text += figure_row("greedy - fixed", figure_of(pair.figures, name));
-    return text;
-}
-
-std::string consistency_part(const Report& report, const std::string& scenario) {
-    std::string text =
-        "  consistency" + padded("NEES/n", 31) + padded("NIS/m", 22) + padded("failed", 10) + "   verdict\n";
-    for (const ArmReport& arm : report.arms) {
-        if (arm.scenario != scenario) continue;
-        text += "    " + padded(arm.arm, 18, false) +
-                padded(with_interval(figure_of(arm.figures, "nees_ratio").summary), 22) +
-                padded(with_interval(figure_of(arm.figures, "nis_ratio").summary), 22) +
-                padded(std::to_string(arm.failed), 10) + "   " + verdict_name(arm.consistency.verdict) + "\n";
-    }
-    return text;
-}
 
 /// How far a finding is from what a consistent filter gives.
 double distance_off(const Finding& finding) {
@@ -96,7 +20,7 @@ double distance_off(const Finding& finding) {
 
 /// The findings of one kind: each block or component at its worst, the farthest off first.
 std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what) {
-    constexpr std::size_t most = 4;
+    constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
         if (finding.what != what) continue;
@@ -114,50 +38,44 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
     return parts;
 }
 
-/// `head` and the parts between commas, wrapped.
-std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts) {
-    constexpr std::size_t width = 96;
-    std::string text = head;
-    std::size_t column = head.size();
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (column + parts[i].size() > width) {
-            text += "\n" + std::string(18, ' ');
-            column = 2;
-        }
-        text += (i > 0 && text.back() == ' ' ? "" : " ") + parts[i] + (i + 1 < parts.size() ? "," : "");
-        column += parts[i].size() + 2;
-    }
-    return text;
-}
-
 /// Why an arm has its verdict; JSON has every finding with its interval.
-std::string findings_part(const ArmReport& arm) {
+std::string why(const ArmReport& arm) {
+    constexpr std::size_t indent = 6;
+    const Consistency& verdict = arm.consistency;
     std::string text;
-    const auto add = [&](const std::string& line) {
-        text += "    " + padded(text.empty() ? arm.arm : "", 12, false) + line + "\n";
+    const auto add = [&](const std::string& line) { text += std::string(indent, ' ') + line + "\n"; };
+    const auto list = [&](const std::string& what, const std::string& measure) {
+        if (const auto parts = findings_parts(verdict.findings, what); !parts.empty())
+            add(wrapped_list(what + " (" + measure + "):", parts, indent));
     };
-    for (const char* what : {"optimistic", "pessimistic", "biased"})
-        if (const auto parts = findings_parts(arm.consistency.findings, what); !parts.empty())
-            add(wrapped_list(std::string(what) + (std::string(what) == "biased" ? " (error/sigma):" : " (NEES/dim):"),
-                             parts));
-    if (arm.consistency.verdict == Verdict::undecided && arm.consistency.trials_to_decide > 0)
-        add("undecided: about " + number(arm.consistency.trials_to_decide, 0) + " trials would decide");
+    list("optimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list("biased", "mean error/sigma");
+    list("correlated", "whitened innovations");
+    for (const Finding& caution : verdict.cautions) add("note, " + sentence(caution));
+    if (verdict.verdict == Verdict::undecided && verdict.trials_to_decide > 0)
+        add("about " + number(verdict.trials_to_decide, 0) + " trials would decide");
+    else if (verdict.verdict == Verdict::undecided && arm.evidence.trials < 2)
+        add(arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
+                                     : "the innovations of one trial do not decide: give more trials or steps");
     return text;
 }
 
-bool has_published(const Scenario& scenario) {
-    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() &&
-             scenario.published.pose_error.empty());
-}
-
-std::string scenario_part(const Report& report, const Scenario& scenario) {
-    std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";
-    text += padded("mean ± 95 %", 50) + padded("median", 12) + padded("sd", 12) +
-            (has_published(scenario) ? padded("published (pctl.)", 20) : "") + "\n";
-    for (const char* name : {"trace_P", "unseen", "pose_error"}) text += figure_part(report, scenario.name, name);
-    text += consistency_part(report, scenario.name);
+std::string verdicts_part(const Report& report) {
+    int width = 16;
     for (const ArmReport& arm : report.arms)
-        if (arm.scenario == scenario.name) text += findings_part(arm);
+        width = std::max(width, static_cast<int>(arm.scenario.size() + arm.arm.size()) + 3);
+    std::string text = "  " + padded("", width, false) + padded("verdict", 12, false) + padded("NEES/n", 19) +
+                       padded("NIS/m", 19) + padded("failed", 9) + "\n";
+    for (const ArmReport& arm : report.arms) {
+        text += "  " + padded(arm.scenario + "/" + arm.arm, width, false) +
+                padded(verdict_name(arm.consistency.verdict), 12, false);
+        for (const char* figure : {"nees_ratio", "nis_ratio"}) {
+            const Summary& summary = figure_named(arm.figures, figure).summary;
+            text += padded(with_interval(summary.mean, summary.ci95), 19);
+        }
+        text += padded(std::to_string(arm.failed), 9) + "\n" + why(arm);
+    }
     return text;
 }
 
@@ -182,11 +100,12 @@ std::string warnings_part(const Report& report) {
 std::string report_text(const Report& report) {
     std::string text = warnings_part(report);
     const std::int64_t trials = report.arms.empty() ? 0 : report.arms.front().trials;
-    text += "study " + report.study_hash + ": " + std::to_string(trials) + " trials of each arm, root seed " +
-            std::to_string(report.root_seed) + ". NEES/n and NIS/m are 1 for a consistent filter;\n" +
-            "the verdict holds every block of the state, at every step, against 1 ± " + to_text(report.margin) +
-            ". Intervals are two-sided 95 %.\n";
-    for (const Scenario& scenario : report.scenarios) text += scenario_part(report, scenario);
+    text += report.source + ": " + std::to_string(trials) + " trials of each arm" +
+            (report.root_seed ? ", root seed " + std::to_string(*report.root_seed) : "") +
+            ". A consistent filter has NEES/dim 1 in every\nblock of the state and at every step; the verdict holds all "
+            "of them against 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
+    text += verdicts_part(report);
+    for (const Scenario& scenario : report.scenarios) text += scenario_detail(report, scenario);
     return text;
 }
 

@@ -1,26 +1,65 @@
 #include <credence/results.hpp>
 
+#include <credence/chi_square.hpp>
+
 #include <algorithm>
 
 namespace credence {
 
 namespace {
 
-void add_scaled_totals(ScenarioResults& results, const Block& block, double sign) {
+void add_figure(FigureTotals& totals, const Figure& figure, const ArmBlock& from, std::size_t f, std::size_t steps,
+                double sign) {
+    totals.run_square_sum.add(sign * from.run_square_sums[f]);
+    for (std::size_t k = 0; k < steps; ++k) {
+        totals.sum[k].add(sign * from.sums[f * steps + k]);
+        if (!figure.integer) totals.square_sum[k].add(sign * from.square_sums[f * steps + k]);
+    }
+}
+
+void add_coverage(FigureTotals& totals, const std::int32_t* covered, std::int64_t sign) {
+    for (std::size_t i = 0; i < totals.covered.size(); ++i) totals.covered[i] += sign * covered[i];
+}
+
+void add_cells(ArmResults& to, const ArmBlock& from, std::size_t trials, std::int64_t sign) {
+    for (std::size_t i = 0; i < from.cells.size(); ++i)
+        if (from.cells[i] != no_cell) to.cells[i / trials * shape_cells + from.cells[i]] += sign;
+}
+
+void add_products(ProductTotals& to, const ArmBlock& from, double sign) {
+    for (std::size_t lag = 0; lag < from.product_sums.size(); ++lag) {
+        to.sum[lag].add(sign * from.product_sums[lag]);
+        to.square_sum[lag].add(sign * from.product_square_sums[lag]);
+        to.count[lag] += static_cast<std::int64_t>(sign * from.product_counts[lag]);
+    }
+}
+
+void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
     const std::size_t steps = static_cast<std::size_t>(results.steps());
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         const ArmBlock& from = block.arms[a];
         ArmResults& to = results.arms[a];
-        to.counted += static_cast<std::int64_t>(sign) * from.counted;
+        to.counted += sign * from.counted;
+        const std::int32_t* covered = from.covered.data();
         for (std::size_t f = 0; f < results.figures.size(); ++f) {
-            FigureTotals& totals = to.totals[f];
-            totals.run_square_sum.add(sign * from.run_square_sums[f]);
-            for (std::size_t k = 0; k < steps; ++k) {
-                totals.sum[k].add(sign * from.sums[f * steps + k]);
-                if (!results.figures[f].integer) totals.square_sum[k].add(sign * from.square_sums[f * steps + k]);
-            }
+            add_figure(to.totals[f], results.figures[f], from, f, steps, sign);
+            add_coverage(to.totals[f], covered, sign);
+            covered += to.totals[f].covered.size();
         }
+        add_cells(to, from, static_cast<std::size_t>(block.trials), sign);
+        add_products(to.products, from, sign);
     }
+}
+
+/// Detailed trials of a block, at their places.
+void store_details(const ArmBlock& from, std::int64_t first_trial, ArmResults& to) {
+    const std::size_t trials = from.columns.size() / column_count;
+    const auto put = [&](const std::vector<float>& values, std::vector<double>& all) {
+        const auto row = static_cast<std::int64_t>(values.size() / trials);
+        std::copy(values.begin(), values.end(), all.begin() + first_trial * row);
+    };
+    put(from.errors, to.errors);
+    put(from.nees, to.nees);
 }
 
 }  // namespace
@@ -28,27 +67,40 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, double sign
 ScenarioResults empty_results(const Scenario& scenario) {
     ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, 0};
     const std::size_t steps = static_cast<std::size_t>(results.steps());
+    const std::size_t lags = static_cast<std::size_t>(lag_count(scenario.poses));
     for (const Arm& arm : arms_of(scenario)) {
-        ArmResults one{arm_name(arm), std::vector<std::vector<double>>(results.columns.size()), {}, 0};
+        ArmResults one;
+        one.name = arm_name(arm);
+        one.columns.resize(results.columns.size());
         for (const Figure& figure : results.figures)
-            one.totals.push_back({std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}});
+            one.totals.push_back(
+                {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
+                 std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
+        one.cells.resize(steps * shape_cells);
+        one.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
         results.arms.push_back(std::move(one));
     }
     return results;
 }
 
 void extend(ScenarioResults& results, std::int64_t trials) {
-    for (ArmResults& arm : results.arms)
-        for (std::vector<double>& column : arm.columns) column.resize(static_cast<std::size_t>(trials));
     results.trials = trials;
+    const std::size_t rows = static_cast<std::size_t>(results.detailed()) * static_cast<std::size_t>(results.steps());
+    for (ArmResults& arm : results.arms) {
+        for (std::vector<double>& column : arm.columns) column.resize(static_cast<std::size_t>(trials));
+        arm.nees.resize(rows);
+        arm.errors.resize(rows * static_cast<std::size_t>(results.state_size()));
+    }
 }
 
 void store_columns(ScenarioResults& results, const Block& block) {
-    for (std::size_t a = 0; a < results.arms.size(); ++a)
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        if (!block.arms[a].nees.empty()) store_details(block.arms[a], block.index * block_size, results.arms[a]);
         for (std::size_t c = 0; c < results.columns.size(); ++c) {
             const auto from = block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c) * block.trials;
             std::copy(from, from + block.trials, results.arms[a].columns[c].begin() + block.index * block_size);
         }
+    }
 }
 
 void add_totals(ScenarioResults& results, const Block& block) { add_scaled_totals(results, block, 1); }

@@ -2,9 +2,9 @@
 // CREDENCE_LANES saying how many trials run at once. Nothing here may emit a symbol outside that namespace: no
 // containers, no library calls.
 
+#include <credence/detail.hpp>
 #include <credence/lane.hpp>
 #include <credence/simulate.hpp>
-#include <credence/trial.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
@@ -53,34 +53,59 @@ struct Unfolded {
     bool full() const { return packs == capacity; }
 };
 
+/// Adds one figure's unfolded values to its running sums.
+template <class Real>
+void fold_figure(const Unfolded<Real>& unfolded, int f, int start, int steps, const Batch& batch) {
+    constexpr int stride = Unfolded<Real>::packs_per_octet;
+    const int place = start * lanes<Real>;
+    Real run_sum[fold_octets];
+    for (Real& sum : run_sum) sum = Real(0);
+    for (int cell = f * steps; cell < (f + 1) * steps; ++cell) {
+        double *to = batch.sums + cell * octet + place, *to_square = batch.square_sums + cell * octet + place;
+        Real sum = load<Real>(to), square_sum = load<Real>(to_square);
+        for (int pack = start, i = 0; pack < unfolded.packs; pack += stride, ++i) {
+            const Real value = select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
+            sum = sum + value;
+            square_sum = fma(value, value, square_sum);
+            run_sum[i] = run_sum[i] + value;
+        }
+        store(sum, to);
+        store(square_sum, to_square);
+    }
+    double* to = batch.run_square_sums + f * octet + place;
+    Real run_square_sum = load<Real>(to);
+    for (int i = 0; i < fold_octets; ++i) run_square_sum = fma(run_sum[i], run_sum[i], run_square_sum);
+    store(run_square_sum, to);
+}
+
+/// Counts the trials whose NEES of block b lies below each coverage bound.
+template <class Real>
+void fold_coverage(const Unfolded<Real>& unfolded, int b, int start, int steps, const double* bounds,
+                   const Batch& batch) {
+    constexpr int stride = Unfolded<Real>::packs_per_octet;
+    for (int cell = b * steps; cell < (b + 1) * steps; ++cell) {
+        double* to = batch.covered + cell * coverage_level_count * octet + start * lanes<Real>;
+        Real count[coverage_level_count];
+        for (int level = 0; level < coverage_level_count; ++level) count[level] = load<Real>(to + level * octet);
+        for (int pack = start; pack < unfolded.packs; pack += stride) {
+            const Real value = unfolded.figures[pack * unfolded.cells + cell];
+            for (int level = 0; level < coverage_level_count; ++level)
+                count[level] = count[level] + select(both(unfolded.counts[pack], value < Real(bounds[level])), Real(1),
+                                                     Real(0));
+        }
+        for (int level = 0; level < coverage_level_count; ++level) store(count[level], to + level * octet);
+    }
+}
+
 /// Adds what is unfolded to the running sums, in trial order. Trials that do not count add zeros.
 template <class Real>
 void fold(Unfolded<Real>& unfolded, const ProblemView& problem, const Batch& batch) {
-    constexpr int stride = Unfolded<Real>::packs_per_octet;
     const int steps = problem.poses - 1;
-    for (int f = 0; f < problem.figure_count; ++f)
-        for (int start = 0; start < stride; ++start) {
-            const int place = start * lanes<Real>;
-            Real run_sum[fold_octets];
-            for (Real& sum : run_sum) sum = Real(0);
-            for (int cell = f * steps; cell < (f + 1) * steps; ++cell) {
-                double *to = batch.sums + cell * octet + place, *to_square = batch.square_sums + cell * octet + place;
-                Real sum = load<Real>(to), square_sum = load<Real>(to_square);
-                for (int pack = start, i = 0; pack < unfolded.packs; pack += stride, ++i) {
-                    const Real value =
-                        select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
-                    sum = sum + value;
-                    square_sum = fma(value, value, square_sum);
-                    run_sum[i] = run_sum[i] + value;
-                }
-                store(sum, to);
-                store(square_sum, to_square);
-            }
-            double* to = batch.run_square_sums + f * octet + place;
-            Real run_square_sum = load<Real>(to);
-            for (int i = 0; i < fold_octets; ++i) run_square_sum = fma(run_sum[i], run_sum[i], run_square_sum);
-            store(run_square_sum, to);
-        }
+    for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start) {
+        for (int f = 0; f < problem.figure_count; ++f) fold_figure(unfolded, f, start, steps, batch);
+        for (int b = 0; b < problem.block_count; ++b)
+            fold_coverage(unfolded, b, start, steps, problem.coverage_bounds + b * coverage_level_count, batch);
+    }
     unfolded.packs = 0;
 }
 
@@ -101,26 +126,64 @@ template <class Real, Process process, int compiled_features>
 struct Simulation {
     using Layout = credence::Layout<process, compiled_features>;
 
+    /// What a thread needs beside the unfolded figures.
+    struct Room {
+        Workspace<Layout, Real> trial;
+        Detail<Layout, Real> detail;
+    };
+
+    /// Numbers behind the Room: the unfolded figures, and the errors of one pack [n, K - 1].
+    static std::size_t error_cells(const ProblemView& problem) {
+        return static_cast<std::size_t>(problem.state_size) * static_cast<std::size_t>(problem.poses - 1);
+    }
     static std::size_t workspace_size(const ProblemView& problem) {
         const Unfolded<Real> unfolded(nullptr, problem);
-        const std::int64_t figures = unfolded.cells * unfolded.capacity;
-        return sizeof(Workspace<Layout, Real>) + static_cast<std::size_t>(figures) * sizeof(Real);
+        const std::size_t figures = static_cast<std::size_t>(unfolded.cells * unfolded.capacity);
+        return sizeof(Room) + (figures + error_cells(problem)) * sizeof(Real);
     }
 
     static void simulate(const ProblemView& problem, const Batch& batch) {
-        auto& work = *static_cast<Workspace<Layout, Real>*>(batch.workspace);
-        Unfolded<Real> unfolded(reinterpret_cast<Real*>(&work + 1), problem);
+        auto& room = *static_cast<Room*>(batch.workspace);
+        Real* errors = reinterpret_cast<Real*>(&room + 1);
+        Unfolded<Real> unfolded(errors + error_cells(problem), problem);
+        Detail<Layout, Real>& detail = room.detail;
+        detail.on = batch.errors != nullptr;
+        detail.problem = &problem;
+        detail.errors = errors;
         for (int i = 0; i < batch.trials; i += lanes<Real>) {
             const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i),
                                          problem.world.truncate);
-            NoObserver nobody;
             Real columns[column_count];
-            run_trial(problem, batch.controller, draws, nobody, work, columns, unfolded.next());
+            Real* figures = unfolded.next();
+            run_trial(problem, batch.controller, draws, detail, room.trial, columns, figures);
+            const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
+            const Mask<Real> counts = both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i));
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
             for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
-            const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
-            unfolded.keep(both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i)));
+            copy_out(figures, problem.poses - 1, i, batch, batch.nees);
+            if (detail.on) keep_detail(problem, detail, counts, i, batch);
+            unfolded.keep(counts);
             if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
+        }
+    }
+
+    /// A pack's numbers [cells] to their places in [cells, octets, 8].
+    static void copy_out(const Real* from, int cells, int trial, const Batch& batch, double* to) {
+        const int padded = (batch.trials + octet - 1) / octet * octet;
+        for (int cell = 0; cell < cells; ++cell) store(from[cell], to + cell * padded + trial);
+    }
+
+    static void keep_detail(const ProblemView& problem, const Detail<Layout, Real>& detail, Mask<Real> counts,
+                            int trial, const Batch& batch) {
+        copy_out(detail.errors, problem.state_size * (problem.poses - 1), trial, batch, batch.errors);
+        for (int lag = 0; lag < lag_count(problem.poses); ++lag) {
+            const Real sum = select(counts, detail.product_sum[lag], Real(0));
+            const int place = lag * octet + trial % octet;
+            double *sums = batch.product_sums + place, *squares = batch.product_square_sums + place;
+            double* counted = batch.product_counts + place;
+            store(load<Real>(sums) + sum, sums);
+            store(fma(sum, sum, load<Real>(squares)), squares);
+            store(load<Real>(counted) + select(counts, detail.product_count[lag], Real(0)), counted);
         }
     }
 };

@@ -4,7 +4,9 @@
 #include <credence/text.hpp>
 
 #include "hdf5_read.hpp"
+#include "store_evidence.hpp"
 #include "store_format.hpp"
+#include "store_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,9 +44,7 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
 
 template <class T>
 std::vector<double> read_values(const Handle& group, const std::string& name, const Extents& extents) {
-    const Dataset dataset(group, name);
-    dataset.require_extents(extents);
-    const std::vector<T> values = dataset.read<T>();
+    const std::vector<T> values = read_as<T>(group, name, extents);
     return {values.begin(), values.end()};
 }
 
@@ -61,34 +61,6 @@ std::vector<double> read_column(const Handle& group, const Column& column, hsize
     return values;
 }
 
-/// Rows of exact parts as sums. A sum has one form only: anything else was not written by this program.
-std::vector<ExactSum> read_sums(const Handle& group, const std::string& name, const Extents& extents) {
-    const std::vector<double> rows = read_values<double>(group, name, extents);
-    const auto width = static_cast<std::ptrdiff_t>(extents.back());
-    std::vector<ExactSum> sums;
-    for (auto row = rows.begin(); row != rows.end(); row += width) {
-        sums.push_back(ExactSum::from_parts({row, row + width}));
-        std::vector<double> parts = sums.back().parts();
-        parts.resize(std::max<std::size_t>(parts.size(), extents.back()));
-        const auto same = [](double a, double b) { return a == b || (a != a && b != b); };
-        if (!std::equal(parts.begin(), parts.end(), row, row + width, same))
-            throw Error(hdf5::place_of(group, name), "its parts do not follow from each other");
-    }
-    return sums;
-}
-
-std::vector<ExactSum> read_whole_sums(const Handle& group, const std::string& name, hsize_t steps) {
-    const Dataset dataset(group, name);
-    dataset.require_extents({steps});
-    std::vector<ExactSum> sums;
-    for (const std::int64_t value : dataset.read<std::int64_t>()) {
-        constexpr std::int64_t half = std::int64_t{1} << 32;
-        const std::int64_t low = value % half;  // both it and the rest are exact as doubles
-        sums.push_back(ExactSum::from_parts({static_cast<double>(value - low), static_cast<double>(low)}));
-    }
-    return sums;
-}
-
 /// Names of the datasets that an arm's group holds.
 std::vector<std::string> arm_links(const ScenarioResults& results) {
     std::vector<std::string> names{"trial", "step", "part"};
@@ -98,6 +70,8 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
         if (!figure.integer) names.push_back(figure.name + "_square_total");
         names.push_back(figure.name + "_run_square_total");
     }
+    const std::vector<std::string> evidence = evidence_links(results);
+    names.insert(names.end(), evidence.begin(), evidence.end());
     return names;
 }
 
@@ -127,7 +101,9 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     Dataset(group, "step").require_extents({static_cast<hsize_t>(results.steps())});
     if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
 
-    ArmResults arm{name, {}, {}, hdf5::read_number<std::int64_t>(group, "counted_trials")};
+    ArmResults arm;
+    arm.name = name;
+    arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
     for (const Column& column : results.columns) arm.columns.push_back(read_column(group, column, trials));
     for (const Figure& figure : results.figures) {
         const std::string total = figure.name + "_total", square = figure.name + "_square_total";
@@ -138,6 +114,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
         arm.totals.push_back(std::move(totals));
     }
     check_counted(group, results, arm);
+    read_evidence(group, results, parts, arm);
     return arm;
 }
 

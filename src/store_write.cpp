@@ -2,7 +2,9 @@
 
 #include <credence/text.hpp>
 
+#include "store_evidence.hpp"
 #include "store_format.hpp"
+#include "store_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +54,8 @@ std::string role_name(FigureRole role) {
         case FigureRole::standardised_error: return "standardised_error";
         case FigureRole::nis: return "nis";
         case FigureRole::rows: return "rows";
+        case FigureRole::squared_error: return "squared_error";
+        case FigureRole::variance: return "variance";
         case FigureRole::other: break;
     }
     return "other";
@@ -63,38 +67,23 @@ std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : 
 void write_role(const Handle& variable, const Figure& figure) {
     hdf5::write_text(variable, "figure", figure.name);
     hdf5::write_text(variable, "role", role_name(figure.role));
-    if (figure.role == FigureRole::nees) hdf5::write_number<std::int32_t>(variable, "dimension", figure.dimension);
+    if (!figure.part.empty()) hdf5::write_text(variable, "part_of", figure.part);
+    if (figure.dimension > 0) hdf5::write_number<std::int32_t>(variable, "dimension", figure.dimension);
+    if (figure.role != FigureRole::nis) return;
+    hdf5::write_text(variable, "rows", figure.rows);
+    hdf5::write_number<std::int32_t>(variable, "more_rows", figure.more_rows);
 }
 
-/// The exact parts of sums, one sum a row, padded with zeros.
-std::vector<double> parts_of(const std::vector<ExactSum>& sums, std::size_t width) {
-    std::vector<double> rows;
-    for (const ExactSum& sum : sums) {
-        std::vector<double> parts = sum.parts();
-        parts.resize(width);
-        std::transform(parts.begin(), parts.end(), std::back_inserter(rows), one_nan);
-    }
-    return rows;
-}
-
-std::int64_t whole_number(const ExactSum& sum, const std::string& name) {
-    std::int64_t total = 0;
-    for (const double part : sum.parts()) {
-        if (!(std::abs(part) < 0x1p62) || part != std::nearbyint(part))
-            throw hdf5::Error(name, "its total is not a whole number");
-        total += static_cast<std::int64_t>(part);
-    }
-    return total;
-}
-
-std::size_t largest_part_count(const std::vector<FigureTotals>& figures) {
+std::size_t largest_part_count(const ArmResults& arm) {
     std::size_t largest = 1;
     const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
-    for (const FigureTotals& totals : figures) {
+    for (const FigureTotals& totals : arm.totals) {
         std::for_each(totals.sum.begin(), totals.sum.end(), note);
         std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
         note(totals.run_square_sum);
     }
+    std::for_each(arm.products.sum.begin(), arm.products.sum.end(), note);
+    std::for_each(arm.products.square_sum.begin(), arm.products.square_sum.end(), note);
     return largest;
 }
 
@@ -126,12 +115,13 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
                                                    "trial, counted over the whole study");
     const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
                                                   "pose that the step leads to");
-    const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm.totals),
+    const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
                                                   "part of an exact total: 0 the total, the others what rounding left");
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         write_column(group, trial, results.columns[c], arm.columns[c]);
     for (std::size_t f = 0; f < results.figures.size(); ++f)
         write_figure(group, step, part, results.figures[f], arm.totals[f]);
+    write_evidence(group, {step, part}, results, arm);
 }
 
 void write_study(const Handle& root, const Study& study, const RunFacts& run) {

@@ -1,5 +1,6 @@
 #include <credence/study.hpp>
 
+#include <credence/chi_square.hpp>
 #include <credence/error.hpp>
 
 #include <omp.h>
@@ -128,9 +129,12 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
         for (const Column& column : results.columns)
             column_bytes += column.type == ColumnType::real ? 8 : column.type == ColumnType::integer ? 4 : 1;
         const std::int64_t cells = figures * results.steps();
-        total.file += arms * (trials * column_bytes + cells * 2 * 2 * 8 + (figures + 20) * 1500);
+        const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
+        const std::int64_t detail = kept * results.steps() * (results.state_size() + 1) * 4;
+        const std::int64_t shape = std::int64_t{results.steps()} * shape_cells * 8;
+        total.file += arms * (trials * column_bytes + cells * 2 * 2 * 8 + (figures + 20) * 1500 + detail + shape);
         const auto in_memory = static_cast<std::int64_t>(results.columns.size() * sizeof(double));
-        total.memory += arms * (trials * in_memory + cells * 2 * 64);
+        total.memory += arms * (trials * in_memory + cells * 2 * 64 + 2 * detail + shape);
     }
     total.memory += 2 * total.file + static_cast<std::int64_t>(threads) *
                                          (8 << 20);  // the file's image and the library's, the threads' stacks

@@ -55,7 +55,7 @@ TEST_CASE("cli: the table names every arm, its differences and the published fig
     const Workplace here;
     const Outcome run = here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 -o r.h5");
     REQUIRE(run.exit_code == 0);
-    for (const char* part : {"kf-circle-constant: Kalman filter", "trace(P) [dm^2]", "fixed.kf", "greedy.kf", "greedy - fixed", "0.1061 (",
+    for (const char* part : {"kf-circle-constant: Kalman filter", "trace(P), last step [dm^2]", "fixed.kf", "greedy.kf", "greedy - fixed", "0.1061 (",
                              "47 (", "NEES/n", "NIS/m", "failed", "pessimistic", "mean ± 95 %", "median", "sd"})
         CHECK_THAT(run.out, Contains(part));
     const Outcome report = here.credence("report r.h5");
@@ -73,7 +73,7 @@ TEST_CASE("cli: report as CSV has a row per arm and figure, and -o writes a file
     CHECK(here.credence("report credence.h5 >/dev/full").exit_code == 1);
     CHECK(here.credence("show >/dev/full").exit_code == 1);
     const Outcome rows = here.shell("grep -c '^ekf-straight-constant,' t.csv");
-    CHECK(rows.out == "15\n");  // 2 arms and their pair, 5 figures each
+    CHECK(rows.out == "50\n");  // 2 arms and their pair, 6 figures each, and 2 for each arm's 8 blocks
 }
 
 TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives", "[long]") {

@@ -29,14 +29,15 @@ ScenarioResults simulated(const Scenario& scenario, std::int64_t trials) {
     return study.scenarios.front();
 }
 
+Evidence evidence_of_first_arm(const ScenarioResults& results) { return evidence_of(results, results.arms.front()); }
+
 Consistency verdict_of(const Scenario& scenario, std::int64_t trials, double margin = 0.05) {
-    const ScenarioResults results = simulated(scenario, trials);
-    return judge(results, results.arms.front(), margin);
+    return judge(evidence_of_first_arm(simulated(scenario, trials)), margin);
 }
 
-double ratio(const Consistency& consistency, const std::string& block) {
-    for (const BlockConsistency& b : consistency.blocks)
-        if (b.block == block) return b.ratio;
+double ratio(const Evidence& evidence, const std::string& block) {
+    for (const BlockEvidence& b : evidence.blocks)
+        if (b.block == block) return b.run.mean;
     FAIL("no block " << block);
     return 0;
 }
@@ -49,11 +50,12 @@ bool has(const Consistency& consistency, const std::string& what, const std::str
 }  // namespace
 
 TEST_CASE("consistency: the matched linear filter is consistent", "[long]") {
-    const Consistency c = verdict_of(matched(), 20000);
+    const Evidence evidence = evidence_of_first_arm(simulated(matched(), 20000));
+    const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "consistent");
     CHECK(c.findings.empty());
     // model.md: 0.9989 +- 0.0039 of 3,000 trials; 20,000 trials have a standard error of 0.0015. 4 sigma: 6e-5.
-    CHECK(ratio(c, "all") == Approx(1).margin(0.006));
+    CHECK(ratio(evidence, "all") == Approx(1).margin(0.006));
 }
 
 TEST_CASE("consistency: the same filter is undecided with few trials, and the trials that decide are named") {
@@ -70,7 +72,7 @@ TEST_CASE("consistency: few trials do not make a consistent filter look inconsis
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
             Study study = new_study({resolved(matched())}, seed);
             run_study(study, {trials, 1, {}});
-            const Verdict verdict = judge(study.scenarios.front(), study.scenarios.front().arms.front(), 0.05).verdict;
+            const Verdict verdict = judge(evidence_of_first_arm(study.scenarios.front()), 0.05).verdict;
             wrong += verdict != Verdict::undecided && verdict != Verdict::consistent;
         }
         CAPTURE(trials);
@@ -82,7 +84,7 @@ TEST_CASE("consistency: one block outside is enough to decide, so the trials tha
     ScenarioResults results = simulated(matched(), 60);
     FigureTotals& pose = results.arms.front().totals[1];
     for (ExactSum& step : pose.sum) step.add(0.12 * step.rounded());  // the pose outside the margin, the others inside
-    const Consistency c = judge(results, results.arms.front(), 0.05);
+    const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     REQUIRE(verdict_name(c.verdict) == "undecided");
     CHECK(c.trials_to_decide > 60);
     CHECK(c.trials_to_decide < 3000);  // (3.7 sd / 0.07)^2 for an sd of 0.5 to 1; to bring the others inside takes more
@@ -91,12 +93,13 @@ TEST_CASE("consistency: one block outside is enough to decide, so the trials tha
 TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
     Scenario s = matched();
     s.filter.measurement = 0.8;
-    const Consistency c = verdict_of(s, 4000);
+    const Evidence evidence = evidence_of_first_arm(simulated(s, 4000));
+    const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "optimistic");
     // model.md: 1.382 (all), 0.98 (pose), 1.16 to 1.17 (each feature), 1,500 trials, +- 0.006, 0.02, 0.015.
-    CHECK(ratio(c, "all") == Approx(1.382).margin(0.02));
-    CHECK(ratio(c, "pose") == Approx(0.99).margin(0.05));
-    CHECK(ratio(c, "feature_1") == Approx(1.165).margin(0.04));
+    CHECK(ratio(evidence, "all") == Approx(1.382).margin(0.02));
+    CHECK(ratio(evidence, "pose") == Approx(0.99).margin(0.05));
+    CHECK(ratio(evidence, "feature_1") == Approx(1.165).margin(0.04));
     CHECK(has(c, "optimistic", "all"));
     CHECK_FALSE(has(c, "optimistic", "pose"));
 }
@@ -104,9 +107,10 @@ TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic
 TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic", "[long]") {
     Scenario s = matched();
     s.filter.covariance = 1.1;
-    const Consistency c = verdict_of(s, 20000);
+    const Evidence evidence = evidence_of_first_arm(simulated(s, 20000));
+    const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "pessimistic");
-    CHECK(ratio(c, "all") == Approx(1 / 1.1).margin(0.006));
+    CHECK(ratio(evidence, "all") == Approx(1 / 1.1).margin(0.006));
     CHECK(has(c, "pessimistic", "all"));
 }
 
@@ -115,22 +119,23 @@ TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") 
     Scenario s;
     s.noise.heading = 0.042;
     s.arms.controllers = {Controller::fixed};
-    const Consistency c = verdict_of(s, 10000);
+    const Evidence evidence = evidence_of_first_arm(simulated(s, 10000));
+    const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "mixed");
-    CHECK(ratio(c, "all") == Approx(0.97).margin(0.04));
+    CHECK(ratio(evidence, "all") == Approx(0.97).margin(0.04));
     CHECK(has(c, "optimistic", "pose"));
     CHECK(has(c, "pessimistic", "features"));
 }
 
 TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent", "[long]") {
     ScenarioResults results = simulated(matched(), 20000);
-    REQUIRE(judge(results, results.arms.front(), 0.05).verdict == Verdict::consistent);
+    REQUIRE(judge(evidence_of_first_arm(results), 0.05).verdict == Verdict::consistent);
     const auto bias = std::find_if(results.figures.begin(), results.figures.end(),
                                    [](const Figure& f) { return f.name == "standardised_error_f1_x"; });
     REQUIRE(bias != results.figures.end());
     FigureTotals& totals = results.arms.front().totals[static_cast<std::size_t>(bias - results.figures.begin())];
     totals.sum[6].add(20000 * 0.05);  // a mean of 0.05 sigma at step 7, 7 standard errors
-    const Consistency c = judge(results, results.arms.front(), 0.05);
+    const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     CHECK(verdict_name(c.verdict) == "undecided");
     REQUIRE(c.findings.size() == 1);
     CHECK(c.findings.front().what == "biased");
@@ -145,7 +150,7 @@ TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
         whole.sum[k].add(0.1 * whole.sum[k].rounded());
         whole.square_sum[k].add(0.21 * whole.square_sum[k].rounded());
     }
-    const Consistency c = judge(results, results.arms.front(), 0.05);
+    const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     CHECK(verdict_name(c.verdict) == "optimistic");
     REQUIRE(c.findings.size() == 1);
     CHECK(c.findings.front().where == "all");

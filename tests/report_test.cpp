@@ -43,8 +43,8 @@ TEST_CASE("report: its means are the means of the columns") {
     double mean = 0, difference = 0;
     for (std::size_t i = 0; i < 300; ++i) mean += planned[i] / 300, difference += (planned[i] - fixed[i]) / 300;
     CHECK(report.arms[3].figures[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
-    CHECK(report.pairs[1].figures[column_trace_P].summary.mean == Approx(difference).epsilon(1e-12));
-    CHECK(report.pairs[1].name == "greedy.kf - fixed.kf");
+    CHECK(report.pairs[1].figures[column_trace_P].paired.difference.mean == Approx(difference).epsilon(1e-12));
+    CHECK(report.pairs[1].name() == "greedy.kf - fixed.kf");
 }
 
 TEST_CASE("report: failed trials are counted and shown, and figures are given without them") {
@@ -54,7 +54,7 @@ TEST_CASE("report: failed trials are counted and shown, and figures are given wi
     CHECK(report.arms.front().failed == 30);
     CHECK(report.arms.front().figures[column_unseen].summary.count == 270);
     CHECK(report.arms.front().figures[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
-    CHECK(report.pairs.front().figures[column_trace_P].summary.count == 270);
+    CHECK(report.pairs.front().figures[column_trace_P].paired.pairs == 270);
     CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
     CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
 }
@@ -95,8 +95,8 @@ TEST_CASE("report: JSON has every figure with NaN as null, CSV a row for each") 
     CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].figures[column_trace_P].summary.mean);
     CHECK(arms[1]["blocks"].size() == 8);  // all, pose, heading, position, features, 3 features
     const std::string csv = report_csv(report);
-    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 5 * (4 + 2));
-    CHECK_THAT(csv, Contains("heading-straight,fixed.ekf,300,300,trace_P,dm^2 + rad^2,,,,,,,"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6 * (4 + 2) + 2 * (8 + 8 + 6 + 6));  // ... and NEES and RMSE of every block
+    CHECK_THAT(csv, Contains("heading-straight,fixed.ekf,300,300,trace_P,dm^2 + rad^2,,,,,,,,,"));
 }
 
 TEST_CASE("report: requiring consistency names the arms that are not") {

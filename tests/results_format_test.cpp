@@ -27,8 +27,13 @@ void collect_names(const hdf5::Handle& object, std::set<std::string>& names) {
             const std::string figure = hdf5::read_text(child, "figure");
             names.insert("F" + name.substr(figure.size()));
             const auto is = [&](const std::string& start) { return figure.starts_with(start); };
-            names.insert(is("nees_feature_") ? "nees_feature_J"
-                         : is("standardised_error_") ? "standardised_error_COMPONENT" : figure);
+            names.insert(is("nees_feature_")            ? "nees_feature_J"
+                         : is("squared_error_feature_") ? "squared_error_feature_J"
+                         : is("variance_feature_")      ? "variance_feature_J"
+                         : is("standardised_error_")    ? "standardised_error_COMPONENT"
+                                                        : figure);
+        } else if (name.ends_with("_covered")) {
+            names.insert("F_covered");
         } else {
             names.insert(name);
         }
@@ -71,7 +76,14 @@ TEST_CASE("store: every variable has a long name, units and dimension scales in 
         CHECK(!hdf5::read_text(dataset, "long_name").empty());
         CHECK(!hdf5::read_text(dataset, "units").empty());
         if (H5DSis_scale(dataset.id()) > 0) continue;
-        const std::vector<std::string> expected = name.ends_with("_run_square_total") ? std::vector<std::string>{"part"}
+        using Names = std::vector<std::string>;
+        const std::vector<std::string> expected = name == "whiteness_count"            ? Names{"lag"}
+                                                  : name.starts_with("whiteness_")     ? Names{"lag", "part"}
+                                                  : name == "detailed_nees"            ? Names{"detailed_trial", "step"}
+                                                  : name == "detailed_error"   ? Names{"detailed_trial", "step", "component"}
+                                                  : name == "nees_cells"       ? Names{"step", "cell"}
+                                                  : name.ends_with("_covered") ? Names{"step", "level"}
+                                                  : name.ends_with("_run_square_total") ? std::vector<std::string>{"part"}
                                                   : name.ends_with("_total") ? std::vector<std::string>{"step", "part"}
                                                                              : std::vector<std::string>{"trial"};
         for (unsigned axis = 0; axis < hdf5::Dataset(group, name).extents().size(); ++axis) {

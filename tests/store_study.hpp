@@ -1,6 +1,7 @@
 #pragma once
 // Small studies, folders and damaged files for the tests of the store.
 
+#include <credence/chi_square.hpp>
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
 #include <credence/store.hpp>
@@ -98,7 +99,18 @@ inline Study made_up_study() {
                 }
                 for (ExactSum& sum : arm.totals[f].square_sum) sum = awkward_sum(next++);
                 arm.totals[f].run_square_sum = awkward_sum(next++);
+                for (std::size_t i = 0; i < arm.totals[f].covered.size(); ++i)
+                    arm.totals[f].covered[i] = static_cast<std::int64_t>(1 + i % 4);
             }
+            for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k)
+                arm.cells[k * shape_cells + 17 * k] = arm.counted;
+            for (std::size_t lag = 0; lag < arm.products.sum.size(); ++lag) {
+                arm.products.sum[lag] = awkward_sum(next++);
+                arm.products.square_sum[lag] = awkward_sum(next++);
+                arm.products.count[lag] = static_cast<std::int64_t>(lag) << 40;
+            }
+            for (std::size_t i = 0; i < arm.errors.size(); ++i) arm.errors[i] = i % 7 == 3 ? -NAN : 0.25 * static_cast<double>(i);
+            for (std::size_t i = 0; i < arm.nees.size(); ++i) arm.nees[i] = i % 5 == 2 ? NAN : 0.125 * static_cast<double>(i);
         }
     }
     return study;

@@ -34,7 +34,14 @@ void require_same(const ArmResults& found, const ArmResults& expected) {
         CHECK(same(found.totals[f].sum, expected.totals[f].sum));
         CHECK(same(found.totals[f].square_sum, expected.totals[f].square_sum));
         CHECK(same(found.totals[f].run_square_sum.parts(), expected.totals[f].run_square_sum.parts()));
+        CHECK(found.totals[f].covered == expected.totals[f].covered);
     }
+    CHECK(found.cells == expected.cells);
+    CHECK(same(found.products.sum, expected.products.sum));
+    CHECK(same(found.products.square_sum, expected.products.square_sum));
+    CHECK(found.products.count == expected.products.count);
+    CHECK(same(found.errors, expected.errors));
+    CHECK(same(found.nees, expected.nees));
 }
 
 void require_same(const Study& found, const Study& expected) {

@@ -29,7 +29,11 @@ bool same_arm(const ArmResults& a, const ArmResults& b) {
         if (!same_sums(a.totals[f].sum, b.totals[f].sum) || !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
             !same_bits(a.totals[f].run_square_sum.parts(), b.totals[f].run_square_sum.parts()))
             return false;
-    return true;
+    for (std::size_t f = 0; f < a.totals.size(); ++f)
+        if (a.totals[f].covered != b.totals[f].covered) return false;
+    return a.cells == b.cells && same_sums(a.products.sum, b.products.sum) &&
+           same_sums(a.products.square_sum, b.products.square_sum) && a.products.count == b.products.count &&
+           same_bits(a.errors, b.errors) && same_bits(a.nees, b.nees);
 }
 
 }  // namespace

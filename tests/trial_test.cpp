@@ -140,7 +140,7 @@ TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     CHECK(run.columns[column_unseen] == 2);
     CHECK(run.columns[column_pose_error] == Approx(2 * 0.09 * 5).epsilon(1e-14));
     CHECK(run.figures.cols() == 1);
-    CHECK(run.figure("squared_pose_error", 1) == Approx(0.09 * 5).epsilon(1e-14));
+    CHECK(run.figure("squared_error_pose", 1) == Approx(0.09 * 5).epsilon(1e-14));
     CHECK(std::isnan(run.columns[column_nis_ratio]));  // there never was a row
 }
 

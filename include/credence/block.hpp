@@ -19,8 +19,18 @@ struct ArmBlock {
     std::vector<double> sums;               ///< [figure_count, K - 1]
     std::vector<double> square_sums;        ///< [figure_count, K - 1]
     std::vector<double> run_square_sums;    ///< [figure_count], of each trial's sum over its steps
+    std::vector<std::int32_t> covered;      ///< [blocks of the state, K - 1, levels] trials below each coverage bound
+    std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
     int counted = 0;                        ///< trials that did not fail
+
+    // Of detailed trials only, else empty.
+    std::vector<float> errors;              ///< [trials, K - 1, n], NaN if failed
+    std::vector<float> nees;                ///< [trials, K - 1] of the whole state, NaN if failed
+    std::vector<double> product_sums;       ///< [lags] of products of whitened innovations, a lag apart
+    std::vector<double> product_square_sums;///< [lags] of each trial's sum, squared
+    std::vector<double> product_counts;     ///< [lags]
 };
+inline constexpr std::uint16_t no_cell = 0xffff;
 
 struct Block {
     std::int64_t index = 0;
@@ -31,6 +41,9 @@ struct Block {
 /// Number of blocks that hold `trials` trials, and the number of trials in block `index` of them.
 std::int64_t block_count(std::int64_t trials);
 int trials_in_block(std::int64_t trials, std::int64_t index);
+
+/// Whether the trials of a block are detailed ones. A block is so as a whole.
+bool detailed(const ProblemView& problem, std::int64_t index);
 
 /// Simulates the first `trials` trials of a block. Thread-safe.
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,

@@ -25,6 +25,7 @@ struct Outcome {
 template <class Real>
 struct Sums {
     Real unseen = Real(0), pose_error = Real(0), nees = Real(0), nis = Real(0), rows = Real(0), trace = Real(0);
+    Real traces = Real(0);  ///< over the steps
 };
 
 /// x^ - x, heading wrapped. Shape [n].
@@ -127,6 +128,31 @@ CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const La
     });
 }
 
+/// Squares of a state's components, added up by block: told(block, sum) in the order of Layout's blocks.
+template <class Layout, class Real, class Told>
+CREDENCE_INLINE void add_by_block(const Layout& layout, const Real* square, Told&& told) {
+    constexpr auto r = Layout::position;
+    const Real position = square[r] + square[r + 1];
+    Real pose = position;
+    if constexpr (Layout::has_heading) pose = square[Layout::heading] + position;
+    Real features = Real(0);
+    each(zero, layout.features(), [&](auto j) {
+        const auto f = Layout::feature(j);
+        features = features + (square[f] + square[f + one]);
+    });
+    told(pose + features);
+    told(pose);
+    if constexpr (Layout::has_heading) {
+        told(square[Layout::heading]);
+        told(position);
+    }
+    told(features);
+    each(zero, layout.features(), [&](auto j) {
+        const auto f = Layout::feature(j);
+        told(square[f] + square[f + one]);
+    });
+}
+
 /// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
 CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
@@ -152,9 +178,14 @@ CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
     each(zero, layout.block_count(), [&](auto b) { write(judgement.nees[b] * Real(1 / reported)); });
     write(update.nis);
     write(update.rows);
+    write(update.nis_features);
+    write(update.nis_edges);
     write(update.unseen);
-    write(trace_P);
-    write(squared_error);
+    Real square[state_capacity];
+    each(zero, n, [&](auto i) { square[i] = error[i] * error[i]; });
+    add_by_block(layout, square, write);
+    each(zero, n, [&](auto i) { square[i] = Real(reported) * belief.covariance.entry[i][i]; });
+    add_by_block(layout, square, write);
     const Real inverse_root = Real(1 / __builtin_sqrt(reported));
     each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
 
@@ -164,6 +195,7 @@ CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
     sums.unseen = sums.unseen + update.unseen;
     sums.pose_error = sums.pose_error + squared_error;
     sums.trace = trace_P;
+    sums.traces = sums.traces + trace_P;
     if (trouble(belief, layout, whole + update.nis, positive_definite))
         note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
 }
@@ -176,6 +208,7 @@ void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int n, 
     columns[column_pose_error] = sums.pose_error;
     columns[column_nees_ratio] = sums.nees / Real(steps * n);
     columns[column_nis_ratio] = sums.nis / sums.rows;
+    columns[column_mean_trace_P] = sums.traces / Real(steps);
     columns[column_status] = outcome.status;
     columns[column_status_pose] = outcome.pose;
 }

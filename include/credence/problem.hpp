@@ -16,6 +16,7 @@ struct ProblemView {
     ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
+    const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
 };
 
 /// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
@@ -41,6 +42,7 @@ private:
     std::vector<Control> fixed_, candidates_;
     std::vector<double> contrast_coefficients_;
     std::vector<Contrast> contrasts_;
+    std::vector<double> coverage_bounds_;
     ProblemView view_;
 };
 

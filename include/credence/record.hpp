@@ -36,8 +36,10 @@ struct Column {
 enum class FigureRole {
     nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
     standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
-    nis,                 ///< normalised innovation squared
-    rows,                ///< number of measurement rows of that step's NIS
+    nis,                 ///< normalised innovation squared, chi-square with as many degrees as it has rows
+    rows,                ///< number of measurement rows
+    squared_error,       ///< |e|^2 of one block of the state
+    variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
     other,
 };
 
@@ -45,9 +47,23 @@ enum class FigureRole {
 struct Figure {
     std::string name, long_name, unit;
     FigureRole role = FigureRole::other;
-    int dimension = 0;                     ///< of a nees
+    int dimension = 0;                     ///< of a block of the state
     bool integer = false;
+    std::string part;                      ///< block or component of the state, or group of rows, that it is of
+    std::string rows;                      ///< of a nis: the figure that counts its rows; empty where there is none
+    int more_rows = 0;                     ///< of a nis: rows beside those
 };
+
+/// Levels at which the coverage of a NEES is counted: the share of trials below that quantile of chi-square.
+inline constexpr double coverage_levels[] = {0.5, 0.9, 0.95, 0.99};
+inline constexpr int coverage_level_count = 4;
+
+/// Number of first trials of which more is kept: their errors, and how far their innovations are correlated in time. Whole
+/// blocks; 4096, or as many as keep 2^24 numbers an arm.
+int detailed_trials(int steps, int state_size);
+
+/// Lags at which innovations are correlated, 1 ... lag_count.
+inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
 
 /// A contiguous part of the state that is judged by itself.
 struct StateBlock {
@@ -66,7 +82,7 @@ std::string trace_unit(const Scenario& scenario);
 
 /// Positions in the list of `trial_columns`.
 enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
-                   column_status, column_status_pose, column_count };
+                   column_mean_trace_P, column_status, column_status_pose, column_count };
 
 /// The per-trial columns, in the order of ColumnIndex.
 std::vector<Column> trial_columns(const Scenario& scenario);

@@ -1,8 +1,8 @@
 #pragma once
 // Room 13: what people read. A report is computed once from a study and then rendered as text, JSON or CSV.
 
+#include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
-#include <credence/store.hpp>
 
 #include <optional>
 #include <string>
@@ -15,10 +15,15 @@ struct PublishedPlace {
     double value = 0, percentile = 0;
 };
 
+/// Quantiles that a report gives beside the median.
+inline constexpr double reported_quantiles[] = {0.05, 0.25, 0.75, 0.95};
+
 /// One per-trial figure of one arm.
 struct FigureReport {
     std::string name, unit;
     Summary summary;
+    std::vector<double> quantiles;          ///< of type 7, at reported_quantiles
+    std::optional<Interval> bootstrap95;    ///< of the mean; not of figures that have their own tests
     std::optional<PublishedPlace> published;
 };
 
@@ -26,28 +31,27 @@ struct ArmReport {
     std::string scenario, arm;
     std::int64_t trials = 0, failed = 0, diverged = 0;
     std::vector<FigureReport> figures;      ///< the real and integer columns, in their order, status columns left out
+    Evidence evidence;
     Consistency consistency;
 };
 
-/// Planned against fixed: greedy - fixed of the same estimator, by trial.
-struct PairReport {
-    std::string scenario, name;             ///< such as `greedy.ekf - fixed.ekf`
-    std::vector<FigureReport> figures;      ///< of the differences
-};
-
 struct Report {
-    std::string study_hash;
-    std::uint64_t root_seed = 0;
+    std::string source;                     ///< `study UUID`, or `record FILE`
+    std::optional<std::uint64_t> root_seed; ///< none for a record
     bool complete = true;
     double margin = 0;
     std::vector<Scenario> scenarios;
     std::vector<ArmReport> arms;
-    std::vector<PairReport> pairs;
+    std::vector<Comparison> pairs;          ///< planned against fixed: greedy - fixed of the same estimator, by trial
 };
 
 /// Figures of failed trials are left out (they are NaN); their number is given beside.
 Report make_report(const Study& study, double margin);
 
+/// One arm's part of a report.
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin);
+
+/// For people: the verdicts, why, and where.
 std::string report_text(const Report& report);
 /// An array with an object per scenario and arm; NaN is null.
 std::string report_json(const Report& report);

@@ -5,6 +5,7 @@
 #include <credence/exact_sum.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,15 @@ struct FigureTotals {
     std::vector<ExactSum> sum;         ///< [K - 1] over the trials that did not fail
     std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer figures
     ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
+    std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`
+    std::vector<std::int64_t> covered; ///< [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty
+};
+
+/// Totals over the detailed trials of products of whitened innovations, by lag from 1 up.
+struct ProductTotals {
+    std::vector<ExactSum> sum;
+    std::vector<ExactSum> square_sum;  ///< of each trial's sum, squared
+    std::vector<std::int64_t> count;   ///< products
 };
 
 /// One arm of a scenario: per-trial columns and per-step totals.
@@ -23,6 +33,16 @@ struct ArmResults {
     std::vector<std::vector<double>> columns;  ///< [column_count][trials]; NaN or fill where a trial failed
     std::vector<FigureTotals> totals;          ///< [figure_count]
     std::int64_t counted = 0;                  ///< trials in the totals: those that did not fail
+    std::vector<std::int64_t> cells;           ///< [K - 1, shape_cells] trials by cell of the first nees figure
+    ProductTotals products;
+    std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
+    std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees figure, NaN likewise
+
+    // Of a record only: runs may differ in length there, and its values are at hand.
+    std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all that are counted
+    std::vector<double> shape_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
+
+    std::int64_t counted_at(std::size_t step) const { return present.empty() ? counted : present[step]; }
 };
 
 struct ScenarioResults {
@@ -33,6 +53,13 @@ struct ScenarioResults {
     std::int64_t trials = 0;                   ///< 0 ... trials - 1 are there
 
     int steps() const { return scenario.poses - 1; }
+    /// Trials whose errors are kept.
+    std::int64_t detailed() const {
+        const int most = detailed_trials(steps(), state_size());
+        return trials < most ? trials : most;
+    }
+    /// n
+    int state_size() const { return figures.front().dimension; }
 };
 
 /// An empty result of a resolved scenario.

@@ -23,6 +23,13 @@ struct Batch {
     double* sums = nullptr;             ///< [figure_count, K - 1, 8], added to
     double* square_sums = nullptr;      ///< [figure_count, K - 1, 8], added to
     double* run_square_sums = nullptr;  ///< [figure_count, 8], added to: of each trial's sum over its steps
+    double* covered = nullptr;          ///< [blocks, K - 1, levels, 8], added to: trials below the coverage bounds
+    double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
+    // Of detailed trials only; null for others.
+    double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too
+    double* product_sums = nullptr;     ///< [lags, 8], added to: sums of products of whitened innovations
+    double* product_square_sums = nullptr;  ///< [lags, 8], added to: of each trial's sum, squared
+    double* product_counts = nullptr;   ///< [lags, 8], added to
     void* workspace = nullptr;          ///< workspace_size bytes from a 64-byte boundary on
 };
 

@@ -11,7 +11,7 @@
 namespace credence {
 
 /// Version of columns, figures, draws and file layout. Results of different versions never mix.
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 /// A study and what has been computed of it.
 struct Study {

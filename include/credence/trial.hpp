@@ -9,17 +9,8 @@
 namespace credence {
 inline namespace CREDENCE_UNIT {
 
-/// Watches a trial without touching it; the engine's watches nothing, replay's writes the trajectory.
-struct NoObserver {
-    template <class... Anything>
-    void started(const Anything&...) {}
-    template <class... Anything>
-    void planned(const Anything&...) {}
-    template <class... Anything>
-    void predicted(const Anything&...) {}
-    template <class... Anything>
-    void updated(const Anything&...) {}
-};
+// An observer watches a trial without touching it: the engine's (detail.hpp), replay's, which writes the trajectory, and
+// those of the tests. Its face: started, planned, predicted and updated, as called below.
 
 /// What one trial needs room for. Sixty-four features in lanes would not fit a thread's stack.
 template <class Layout, class Real>

@@ -2,6 +2,7 @@
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
+#include <credence/store.hpp>
 
 namespace credence::cli {
 

@@ -1,10 +1,9 @@
-#include "command.hpp"
 #include "progress.hpp"
+#include "run_until.hpp"
 #include "version.hpp"
 
-#include <credence/error.hpp>
 #include <credence/report.hpp>
-#include <credence/scenario_keys.hpp>
+#include <credence/store.hpp>
 #include <credence/text.hpp>
 
 #include <omp.h>
@@ -29,6 +28,11 @@ const Command& run_command() {
          {"seed", "N", "root seed, from 0 up (default 1)"},
          {"threads", "N", "threads (default: all processors)"},
          set_option(),
+         {"until", "METRIC=HALFWIDTH",
+          "stop at the first look (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
+          "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
+          "all must be met",
+          true},
          {"resume", "",
           "run what is missing in the results file, also to a larger --trials; start where there is none"},
          {"overwrite", "", "replace a results file that exists"},
@@ -39,77 +43,17 @@ const Command& run_command() {
 
 namespace {
 
-struct RunRequest {
-    std::vector<Scenario> scenarios;
-    std::string output;
-    std::uint64_t root_seed = 1;
-    RunOptions options;
-    bool resume = false, overwrite = false, quiet = false;
-};
-
-RunRequest read_request(const Parsed& parsed) {
-    if (parsed.arguments.empty()) throw InputError("no scenario given. Name one or more SCENARIO.ini.");
-    RunRequest request;
-    request.output = parsed.text("output").value_or("credence.h5");
-    request.options.trials = parsed.integer("trials", 10000, 1, 1'000'000'000'000);
-    request.root_seed =
-        static_cast<std::uint64_t>(parsed.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-    request.options.threads = static_cast<int>(parsed.integer("threads", omp_get_max_threads(), 1, 4096));
-    request.resume = parsed.has("resume");
-    request.overwrite = parsed.has("overwrite");
-    request.quiet = parsed.has("quiet");
-    if (request.resume && request.overwrite)
-        throw InputError("--resume and --overwrite contradict each other. Give one of them.");
-    for (const std::string& path : parsed.arguments)
-        request.scenarios.push_back(read_scenario(path, parsed.overrides()));
-    return request;
-}
-
-/// The first key in which two resolved scenarios differ, with both values.
-std::string first_difference(const Scenario& stored, const Scenario& asked) {
-    for (const ScenarioKey& key : scenario_keys())
-        if (key.get(stored) != key.get(asked))
-            return key.name + " is " + key.get(stored) + " there and " + key.get(asked) + " here";
-    return "";
-}
-
-/// Refuses to go on with another study, saying what differs.
-void check_same_study(const Study& stored, const Study& asked, const std::string& path) {
-    if (study_hash(stored) == study_hash(asked)) return;
-    std::string why = "it has other scenarios";
-    if (stored.root_seed != asked.root_seed)
-        why = "its root seed is " + std::to_string(stored.root_seed) + ", not " + std::to_string(asked.root_seed);
-    else if (stored.scenarios.size() != asked.scenarios.size())
-        why = "it has " + std::to_string(stored.scenarios.size()) + " scenarios, not " +
-              std::to_string(asked.scenarios.size());
-    else
-        for (std::size_t s = 0; s < stored.scenarios.size(); ++s) {
-            const std::string difference = first_difference(stored.scenarios[s].scenario, asked.scenarios[s].scenario);
-            if (!difference.empty()) {
-                why = "scenario " + stored.scenarios[s].scenario.name + ": " + difference;
-                break;
-            }
-        }
-    throw InputError("cannot resume " + path + " (it holds another study: " + why + "). Name another output.");
-}
-
-/// The study to go on with: new, or what the results file holds.
-Study starting_study(const RunRequest& request) {
-    Study study = new_study(request.scenarios, request.root_seed);
-    check_output(request.output, request.overwrite || request.resume, "Give another name, --resume or --overwrite");
-    std::error_code none;
-    if (request.resume && std::filesystem::exists(request.output, none)) {
-        Study stored = read_results(request.output).study;
-        check_same_study(stored, study, request.output);
-        study = std::move(stored);
-    }
-    return study;
-}
-
 bool nothing_missing(const Study& study, std::int64_t trials) {
     for (const ScenarioResults& results : study.scenarios)
         if (results.trials < trials) return false;
     return study.complete;
+}
+
+/// Of all scenarios together.
+std::int64_t trials_of(const Study& study) {
+    std::int64_t trials = 0;
+    for (const ScenarioResults& results : study.scenarios) trials += results.trials;
+    return trials;
 }
 
 std::string now_text() {
@@ -144,8 +88,48 @@ int dry_run(const RunRequest& request, const Study& study) {
     std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
               << ", threads: " << request.options.threads << ". About "
               << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
-              << " of memory, " << bytes_text(size.file) << " in " << request.output << "\n";
+              << " of memory, " << bytes_text(size.file) << " in " << request.output
+              << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
     return 0;
+}
+
+/// What a run did to its study.
+struct Work {
+    bool changed = true;
+    double seconds = 0;
+    std::optional<Look> last_look;  ///< with --until
+};
+
+/// Runs what is missing of what was asked for.
+Work work_on(Study& study, const RunRequest& request) {
+    const bool was_complete = study.complete;
+    const std::int64_t had = trials_of(study);
+    const auto start = std::chrono::steady_clock::now();
+    Work work;
+    if (!request.goals.empty()) {
+        work.last_look = grow_until_precise(study, request);
+    } else if (!nothing_missing(study, request.options.trials)) {
+        RunOptions options = request.options;
+        ProgressLine progress(request.quiet);
+        options.progress = [&](const Progress& now) { progress(now); };
+        run_study(study, options);
+        progress.finish();
+    }
+    work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    work.changed = !was_complete || trials_of(study) != had;
+    return work;
+}
+
+void print_table(const Study& study, const RunRequest& request, const Work& work) {
+    std::cout << report_text(make_report(study, 0.05)) << "\n";
+    if (work.last_look) std::cout << stopping_text(*work.last_look);
+    std::cout << request.output;
+    if (work.changed)
+        std::cout << ": " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
+                  << ", computed in " << duration_text(work.seconds) << " on " << request.options.threads
+                  << " threads\n";
+    else
+        std::cout << " has these trials already\n";
 }
 
 }  // namespace
@@ -154,33 +138,19 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const RunRequest request = read_request(parsed);
     Study study = starting_study(request);
     if (parsed.has("dry-run")) return dry_run(request, study);
-    if (nothing_missing(study, request.options.trials)) {
-        if (!request.quiet)
-            std::cout << report_text(make_report(study, 0.05)) << "\n"
-                      << request.output << " has these trials already\n";
-        return 0;
-    }
 
     RunFacts facts = build_facts();
     facts.emplace_back("started", now_text());
-    RunOptions options = request.options;
-    ProgressLine progress(request.quiet);
-    options.progress = [&](const Progress& now) { progress(now); };
-    const auto start = std::chrono::steady_clock::now();
-    run_study(study, options);
-    progress.finish();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    facts.emplace_back("threads", std::to_string(options.threads));
-    facts.emplace_back("wall_seconds", to_text(seconds));
-    facts.emplace_back("command_line", command_line);
-    write_results(request.output, study, facts);
-
-    if (!request.quiet) {
-        std::cout << report_text(make_report(study, 0.05)) << "\n"
-                  << request.output << ": "
-                  << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
-                  << ", computed in " << duration_text(seconds) << " on " << options.threads << " threads\n";
+    const Work work = work_on(study, request);
+    if (work.changed) {
+        facts.emplace_back("threads", std::to_string(request.options.threads));
+        facts.emplace_back("wall_seconds", to_text(work.seconds));
+        facts.emplace_back("command_line", command_line);
+        write_results(request.output, study, facts);
     }
+    if (work.last_look && !work.last_look->met)
+        std::cerr << "credence run: " << imprecision_text(*work.last_look, request.rule()) << "\n";
+    if (!request.quiet) print_table(study, request, work);
     return 0;
 }
 

@@ -30,6 +30,8 @@ namespace {
 constexpr std::uint64_t root_seed = 0x9e3779b97f4a7c15u;
 constexpr std::int64_t block_index = 20'000'003;
 constexpr int trials = 37;
+// Of the first block, whose trials are looked at in more detail.
+constexpr int detailed_count = 11;
 
 /// FNV-1a over the bytes of 64-bit words, lowest byte first on any processor.
 class Digest {
@@ -42,9 +44,10 @@ public:
     void add(double value) {
         add(value == value ? std::bit_cast<std::uint64_t>(value) : std::uint64_t{0x7ff8000000000000u});
     }
-    void add(const std::vector<double>& values) {
+    template <class Number>
+    void add(const std::vector<Number>& values) {
         add(std::uint64_t{values.size()});
-        for (const double value : values) add(value);
+        for (const Number value : values) add(static_cast<double>(value));
     }
     std::uint64_t value() const { return state_; }
 
@@ -94,12 +97,20 @@ Scenario scenario_of(const World& world) {
 /// The lines of one world, an arm each.
 std::vector<std::string> lines(const Problem& problem, const Unit& unit) {
     const Block block = run_block(problem, root_seed, block_index, trials, unit);
+    const Block details = run_block(problem, root_seed, 0, detailed_count, unit);
     const std::vector<Arm> arms = arms_of(problem.scenario());
     std::vector<std::string> lines;
     for (std::size_t a = 0; a < arms.size(); ++a) {
         const ArmBlock& arm = block.arms[a];
         Digest digest;
         for (const auto* values : {&arm.columns, &arm.sums, &arm.square_sums, &arm.run_square_sums})
+            digest.add(*values);
+        digest.add(arm.covered);
+        digest.add(arm.cells);
+        const ArmBlock& detail = details.arms[a];
+        digest.add(detail.errors);
+        digest.add(detail.nees);
+        for (const auto* values : {&detail.product_sums, &detail.product_square_sums, &detail.product_counts})
             digest.add(*values);
         char text[100];
         std::snprintf(text, sizeof text, " %d %016llx", arm.counted, static_cast<unsigned long long>(digest.value()));

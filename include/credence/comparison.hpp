@@ -1,0 +1,50 @@
+#pragma once
+// Room 10: arms compared by trial: planned against fixed, one estimator against another, one study against another that
+// shares its draws [docs/statistics.md, Comparison].
+
+#include <credence/paired.hpp>
+#include <credence/study.hpp>
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// One per-trial figure of both arms.
+struct ComparedFigure {
+    std::string name, unit;
+    PairedComparison paired;
+    double holm_p = 0;      ///< Wilcoxon's p, corrected for everything that was compared beside it
+};
+
+/// Arm a minus arm b, over the trials that both have.
+struct Comparison {
+    std::string scenario, a, b;
+    std::vector<ComparedFigure> figures;    ///< the columns that are figures, in their order
+
+    std::string name() const { return a + " - " + b; }
+};
+
+/// An arm and what it is called beside the other.
+struct ComparedArm {
+    const ScenarioResults& results;
+    const ArmResults& arm;
+    std::string label;
+};
+
+/// Whether a column is a figure of the trial, not its status.
+bool is_figure(const Column& column);
+
+/// A column's values, failed trials as NaN whatever their fill.
+std::vector<double> figure_values(const ArmResults& arm, std::size_t column);
+
+/// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap.
+Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed);
+
+/// Fills in holm_p over all figures of all comparisons.
+void correct_together(std::vector<Comparison>& comparisons);
+
+/// greedy - fixed of the same estimator, for every scenario that has both.
+std::vector<Comparison> planned_against_fixed(const Study& study);
+
+}  // namespace credence

@@ -1,0 +1,138 @@
+#pragma once
+// Room 6: conditioning a belief on two rows of a measurement [model.md, Filter: Update].
+//
+//   H  rows of a measurement, N  its noise variance, nu  innovation, W = P H', S = H W + N, K = W S^-1
+// Every measurement comes as two rows with isotropic noise:
+//   a sighting, rotated into the world by R(theta^), which leaves its noise as it is: rows [-J d, -I, +I] at
+//   (theta, r, f_j), d = f_j - r [docs/model.md, Rotated sightings];
+//   a contrast, one of the M - 1 combinations of features (or fewer) that say all that the edges do
+//   [docs/model.md, Contrasts].
+// Updating with two rows after two, each innovation taken about what the rows before it have moved (the running
+// correction), is the joint update of model.md, and the parts of nu' S^-1 nu add up to the joint one.
+
+#include <credence/filter.hpp>
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+/// Rows of the sighting of feature j. `lever` = (d_y, -d_x), what the heading moves: used where there is a heading.
+template <class Layout, class Real, class Index>
+struct SightingRows {
+    Index j;
+    Vector2<Real> lever;
+
+    /// H applied to a state-sized column, given as column(i).
+    template <class Column>
+    Vector2<Real> operator()(const Column& column) const {
+        constexpr auto r = Layout::position;
+        const auto f = Layout::feature(j);
+        const Vector2<Real> difference{column(f) - column(r), column(f + one) - column(r + one)};
+        if constexpr (Layout::has_heading)
+            return add_scaled(difference, column(Layout::heading), lever);
+        else
+            return difference;
+    }
+};
+
+/// Rows of a contrast: the sum over the features j >= first of coefficient[j] f_j.
+template <class Layout, class Real, class First>
+struct ContrastRows {
+    Layout layout;
+    First first;                ///< feature of the first coefficient that is not 0: it is 1
+    const double* coefficient;  ///< [M]
+
+    template <class Column>
+    Vector2<Real> operator()(const Column& column) const {
+        const auto start = Layout::feature(first);
+        Vector2<Real> sum{column(start), column(start + one)};
+        each(first + one, layout.features(), [&](auto j) {
+            const auto f = Layout::feature(j);
+            if (coefficient[j] != 0)
+                sum = add_scaled(sum, Real(coefficient[j]), Vector2<Real>{column(f), column(f + one)});
+        });
+        return sum;
+    }
+};
+
+/// What an update has come to: the correction K nu so far, nis = nu' S^-1 nu over `rows` rows; the same of the features'
+/// rows alone and of the edges' rows alone, each with its own part of S.
+template <class Real, int capacity>
+struct Update {
+    Real correction[capacity];
+    Real nis{}, nis_features{}, nis_edges{}, rows{}, unseen{};
+    Mask<Real> positive_definite{};  ///< every S was
+    Elimination<Real, capacity> alone;  ///< room for nis_edges
+};
+
+/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes keep theirs. `gained(i, K_i)` is told
+/// the gain, row by row. Returns S^-1, zero where masked.
+template <class Layout, class Rows, class Real, int capacity, class Gained>
+Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
+                         Gained&& gained) {
+    const auto n = layout.size();
+    Vector2<Real> W[capacity];
+    each(zero, n, [&](auto i) { W[i] = rows([&](auto s) { return P.at(i, s); }); });
+    const Vector2<Real> HWx = rows([&](auto s) { return W[s].x; });
+    const Vector2<Real> HWy = rows([&](auto s) { return W[s].y; });
+    const Inverse2<Real> S_inverse = inverse(HWx.x + N, HWx.y, HWy.y + N, used);
+    reload_memory();
+    each(zero, n, [&](auto i) {
+        const Vector2<Real> K = times(S_inverse, W[i]);
+        gained(i, K);
+        each(i, n, [&](auto j) { P.entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, P.entry[i][j])); });
+    });
+    return S_inverse;
+}
+
+/// The same for a covariance alone: what a planner asks.
+template <class Layout, class Rows, class Real, int capacity>
+void condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used) {
+    condition(P, layout, rows, N, used, [](auto, const Vector2<Real>&) {});
+}
+
+/// Conditions P on two rows whose innovation about the predicted mean is nu: adds K (nu - H correction) to the running
+/// correction and nu' S^-1 nu of these rows to the NIS.
+template <class Layout, class Rows, class Real, int capacity>
+void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
+             const Vector2<Real>& nu, Update<Real, capacity>& update) {
+    const Vector2<Real> fresh = nu - rows([&](auto s) { return update.correction[s]; });
+    const auto correct = [&](auto i, const Vector2<Real>& K) {
+        update.correction[i] = fma(K.y, fresh.y, fma(K.x, fresh.x, update.correction[i]));
+    };
+    const Inverse2<Real> S_inverse = condition(P, layout, rows, N, used, correct);
+    update.nis = update.nis + between(fresh, S_inverse, fresh);
+    update.positive_definite = both(update.positive_definite, S_inverse.positive_definite);
+}
+
+template <class Real>
+Vector2<Real> point_at(const Real* mean, int index) {
+    return {mean[index], mean[index + 1]};
+}
+
+/// d = f_j - r at the mean x, world frame: what a sighting rotated into the world is expected to be.
+template <class Layout, class Real>
+Vector2<Real> predicted_difference(const Real* mean, int j) {
+    return point_at(mean, Layout::feature(j)) - point_at(mean, Layout::position);
+}
+
+/// Rows of a sighting of feature j, in the world frame, at the mean x.
+template <class Layout, class Real, class Index>
+SightingRows<Layout, Real, Index> sighting_rows(const Real* mean, Index j) {
+    const Vector2<Real> d = predicted_difference<Layout>(mean, j);
+    return {j, {d.y, -d.x}};
+}
+
+/// Believed noise variance of a sighting with true standard deviation sigma.
+template <class Real>
+Real believed_variance(const FilterParameters& filter, Real sigma) {
+    const Real believed = Real(filter.measurement_factor) * sigma;
+    return believed * believed;
+}
+
+template <class Real, class Layout, class Index>
+ContrastRows<Layout, Real, Index> contrast_rows(const FilterParameters& filter, const Layout& layout, Index c) {
+    return {layout, c, filter.contrasts[c].coefficient};
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,101 @@
+#pragma once
+// Room 10: what one arm's totals say of its filter: every figure of docs/statistics.md but the verdict. Lists by step
+// have K - 1 entries, for the steps 1 ... K - 1. NaN where there are too few trials.
+
+#include <credence/credibility.hpp>
+#include <credence/results.hpp>
+#include <credence/statistics.hpp>
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// A ratio that is 1 for a consistent filter, step by step, beside the chi-square bounds that hold it 95 % of the time.
+struct BandedRatio {
+    std::vector<double> degrees;               ///< of freedom of the total, 0 where nothing was observed
+    std::vector<double> ratio;                 ///< total / degrees
+    std::vector<Interval> band;                ///< for each step by itself
+    std::vector<Interval> simultaneous_band;   ///< for all steps together (Bonferroni)
+    int observed = 0;                          ///< steps with degrees
+    int outside = 0, outside_simultaneous = 0; ///< steps outside their bands
+};
+
+/// Share of trials whose NEES lies below a quantile of chi-square.
+struct Coverage {
+    double level = 0;
+    std::vector<double> share;
+    std::vector<Interval> interval;            ///< Wilson
+    double over_steps = 0;                     ///< mean share over the steps: no interval, steps are not independent
+};
+
+/// Error against predicted standard deviation: root mean squares over trials, and over the components of the block.
+struct Accuracy {
+    std::vector<double> rmse, predicted;       ///< by step: sqrt(mean |e|^2), sqrt(mean trace P)
+    double over_steps = 0;                     ///< RMSE over all trials and steps
+    double ratio = 0;                          ///< the same over its prediction; 1 for a consistent filter
+    Interval ratio_ci95;                       ///< from the spread of |e|^2 alone
+    std::string unit;                          ///< of the squares
+};
+
+/// One block of the state.
+struct BlockEvidence {
+    std::string block;
+    int dimension = 0;
+    Moments run;                               ///< of NEES/dim, averaged over each trial's steps
+    std::vector<Moments> step;                 ///< of NEES/dim
+    BandedRatio anees;
+    std::vector<Coverage> coverage;
+    std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
+    Accuracy accuracy;
+};
+
+/// The innovations of a group of rows: all, features or edges.
+struct NisEvidence {
+    std::string part;
+    BandedRatio nis;
+    double degrees = 0, ratio = 0;             ///< over all steps
+    Interval scale95;                          ///< of the factor by which S is too small, were the innovations white
+};
+
+/// Correlation of whitened innovations a lag apart.
+struct Whiteness {
+    int lag = 0;
+    std::int64_t count = 0;                    ///< products
+    double correlation = 0;                    ///< their mean
+    double bound = 0, simultaneous_bound = 0;  ///< z/sqrt(count), for this lag and for all of them
+};
+
+/// Mean standardised error of one component.
+struct BiasEvidence {
+    std::string component;
+    std::vector<Moments> step;
+};
+
+/// Distance of the NEES of the whole state from chi-square(n), step by step.
+struct ShapeEvidence {
+    std::vector<double> distance, p;           ///< Kolmogorov-Smirnov
+    bool exact = false;                        ///< else on equiprobable cells: low by at most 1/4096
+};
+
+/// On the detailed trials.
+struct CredibilityEvidence {
+    std::vector<Credibility> step;
+    double nci = 0, inclination = 0;           ///< means over the steps
+};
+
+struct Evidence {
+    std::int64_t trials = 0;                   ///< that did not fail
+    int steps = 0;
+    std::vector<BlockEvidence> blocks;         ///< the whole state first
+    std::vector<NisEvidence> nis;              ///< all rows first; groups without rows are left out
+    std::vector<Whiteness> whiteness;
+    std::vector<BiasEvidence> bias;
+    ShapeEvidence shape;
+    CredibilityEvidence credibility;
+};
+
+/// Reads the evidence off an arm's totals. It knows figures by their roles only.
+Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm);
+
+}  // namespace credence

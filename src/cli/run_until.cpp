@@ -1,0 +1,106 @@
+#include "run_until.hpp"
+
+#include "progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+namespace credence::cli {
+
+namespace {
+
+const char* const unreachable = "no number of trials is expected to do";
+
+std::string formatted(const char* format, int digits, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, digits, value);
+    return text;
+}
+
+/// Two significant digits.
+std::string width_text(double width) { return std::isnan(width) ? "unknown" : formatted("%.*g", 2, width); }
+
+/// `0.1984 ± 0.0081`: as many decimals as show two digits of the half-width.
+std::string interval_text(const GoalState& state) {
+    if (std::isnan(state.half_width)) return "unknown (" + std::to_string(state.count) + " values)";
+    const double size = state.half_width > 0 ? std::log10(state.half_width) : -3;
+    const int decimals = std::clamp(1 - static_cast<int>(std::floor(size)), 0, 12);
+    return formatted("%.*f", decimals, state.mean) + " ± " + formatted("%.*f", decimals, state.half_width);
+}
+
+std::string prediction_text(const Look& look, const StoppingRule& rule) {
+    const std::optional<std::int64_t> trials = predicted_trials(look, rule);
+    if (!trials) return unreachable;
+    return "about " + std::to_string(*trials) + " trials are needed" +
+           (*trials > rule.ceiling ? ", more than the ceiling of " + std::to_string(rule.ceiling) : "");
+}
+
+std::string look_text(const Look& look, const StoppingRule& rule) {
+    const GoalState& state = widest(look);
+    return "look " + std::to_string(look.number) + ", " + std::to_string(look.trials) + " trials: " + state.name + " " +
+           interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " +
+           (look.met ? "precise enough" : prediction_text(look, rule));
+}
+
+/// Progress over all looks: trials that have been run, of those that the last look predicted.
+class LookProgress {
+public:
+    LookProgress(bool quiet, const StoppingRule& rule) : quiet_(quiet), rule_(rule), line_(quiet) {}
+
+    void operator()(const Progress& now) {
+        now_ = now;
+        line_({before_.done + now.done, before_.done + std::max(now.total, expected_), before_.seconds + now.seconds});
+    }
+
+    void look_done(const Look& look, std::size_t scenarios) {
+        before_.done += now_.done;
+        before_.seconds += now_.seconds;
+        now_ = {};
+        const std::int64_t most = std::min(predicted_trials(look, rule_).value_or(rule_.ceiling), rule_.ceiling);
+        expected_ = (most - look.trials) * static_cast<std::int64_t>(scenarios);
+        line_.finish();
+        if (!quiet_) std::cerr << look_text(look, rule_) << "\n" << std::flush;
+    }
+
+private:
+    bool quiet_;
+    const StoppingRule& rule_;
+    ProgressLine line_;
+    Progress before_, now_;      ///< of earlier looks, and of the one under way
+    std::int64_t expected_ = 0;  ///< trials still to run, as the last look predicted
+};
+
+}  // namespace
+
+Look grow_until_precise(Study& study, const RunRequest& request) {
+    const StoppingRule rule = request.rule();
+    LookProgress progress(request.quiet, rule);
+    RunOptions options = request.options;
+    options.progress = [&](const Progress& now) { progress(now); };
+    return run_until(study, rule, options,
+                     [&](const Look& look) { progress.look_done(look, study.scenarios.size()); });
+}
+
+std::string stopping_text(const Look& look) {
+    std::string text = "stopped at look " + std::to_string(look.number) + ", " + std::to_string(look.trials) +
+                       " trials: " + (look.met ? "" : "not ") + "as precise as asked. Intervals at " +
+                       formatted("%.*g", 6, 100 * (1 - look.alpha)) + " %, so that all looks together keep 95 %:\n";
+    std::size_t width = 0;
+    for (const GoalState& state : look.states) width = std::max(width, state.name.size());
+    for (const GoalState& state : look.states)
+        text += "  " + state.name + std::string(width - state.name.size() + 2, ' ') + interval_text(state) +
+                ", asked ± " + width_text(state.allowed) + (state.met() ? "" : ": not met") + "\n";
+    return text;
+}
+
+std::string imprecision_text(const Look& look, const StoppingRule& rule) {
+    const GoalState& state = widest(look);
+    const std::optional<std::int64_t> trials = predicted_trials(look, rule);
+    const std::string needed = trials ? "it needs about " + std::to_string(*trials) + " trials" : unreachable;
+    return "not as precise as asked at the ceiling of " + std::to_string(rule.ceiling) + " trials: " + state.name +
+           " is " + interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " + needed + ".";
+}
+
+}  // namespace credence::cli

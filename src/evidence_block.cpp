@@ -1,0 +1,136 @@
+// The evidence of one block of the state: NEES, its coverage, and errors against what was predicted.
+
+#include <credence/goodness.hpp>
+
+#include "evidence_parts.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace credence {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Moments scaled(Moments moments, double scale) {
+    moments.mean *= scale;
+    moments.standard_deviation *= scale;
+    moments.standard_error *= scale;
+    return moments;
+}
+
+/// The sum over the steps of one trial, over all trials.
+double run_total(const FigureTotals& totals) {
+    if (totals.run_sum) return totals.run_sum->rounded();
+    ExactSum sum;
+    for (const ExactSum& step : totals.sum) sum.add(step);
+    return sum.rounded();
+}
+
+/// Of each trial's mean over its steps.
+Moments run_moments(const ArmResults& arm, const FigureTotals& totals, int steps, double scale) {
+    return scaled(moments_from_sums(arm.counted, run_total(totals), totals.run_square_sum.rounded()), scale / steps);
+}
+
+std::vector<Coverage> coverage_of(const ArmResults& arm, const FigureTotals& totals) {
+    std::vector<Coverage> coverage;
+    for (std::size_t level = 0; level < coverage_level_count; ++level) {
+        Coverage one{coverage_levels[level], {}, {}, 0};
+        double known = 0;
+        for (std::size_t k = 0; k < totals.sum.size(); ++k) {
+            const double trials = static_cast<double>(arm.counted_at(k)),
+                         covered = static_cast<double>(totals.covered[k * coverage_level_count + level]);
+            one.share.push_back(trials > 0 ? covered / trials : nan);
+            one.interval.push_back(wilson_interval(covered, trials));
+            if (trials == 0) continue;
+            ++known;
+            one.over_steps += one.share.back();
+        }
+        one.over_steps /= known;
+        coverage.push_back(std::move(one));
+    }
+    return coverage;
+}
+
+const FigureTotals* totals_of(const ScenarioResults& results, const ArmResults& arm, FigureRole role,
+                              const std::string& part, std::string& unit) {
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        if (results.figures[f].role == role && results.figures[f].part == part) {
+            unit = results.figures[f].unit;
+            return &arm.totals[f];
+        }
+    return nullptr;
+}
+
+/// RMSE and its prediction. The ratio's interval takes the error of the mean square only, to first order: the
+/// prediction varies far less from trial to trial.
+Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& block) {
+    Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
+    const FigureTotals* error = totals_of(results, arm, FigureRole::squared_error, block, accuracy.unit);
+    const FigureTotals* variance = totals_of(results, arm, FigureRole::variance, block, accuracy.unit);
+    if (error == nullptr || variance == nullptr) return accuracy;
+    for (std::size_t k = 0; k < error->sum.size(); ++k) {
+        accuracy.rmse.push_back(std::sqrt(moments_at(arm, *error, k, 1).mean));
+        accuracy.predicted.push_back(std::sqrt(moments_at(arm, *variance, k, 1).mean));
+    }
+    const Moments square = run_moments(arm, *error, results.steps(), 1);
+    const double predicted = run_moments(arm, *variance, results.steps(), 1).mean;
+    accuracy.over_steps = std::sqrt(square.mean);
+    accuracy.ratio = std::sqrt(square.mean / predicted);
+    const double half = t_quantile(0.05, square.count - 1) * square.standard_error;
+    accuracy.ratio_ci95 = {std::sqrt(std::max(0.0, square.mean - half) / predicted),
+                           std::sqrt((square.mean + half) / predicted)};
+    return accuracy;
+}
+
+bool within(double value, const Interval& interval) { return value >= interval.low && value <= interval.high; }
+
+}  // namespace
+
+Moments moments_at(const ArmResults& arm, const FigureTotals& totals, std::size_t k, double scale) {
+    const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
+    return scaled(moments_from_sums(arm.counted_at(k), totals.sum[k].rounded(), square), scale);
+}
+
+void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
+    for (const double degrees : ratio.degrees) ratio.observed += degrees > 0;
+    double previous = 0;
+    Interval band, simultaneous;
+    for (std::size_t k = 0; k < totals.size(); ++k) {
+        const double degrees = ratio.degrees[k];
+        if (degrees != previous) {  // mostly they stay as they are, and quantiles take their time
+            band = degrees > 0 ? chi_square_band(degrees, 0.05) : Interval{nan, nan};
+            simultaneous = degrees > 0 ? chi_square_band(degrees, 0.05 / ratio.observed) : Interval{nan, nan};
+            previous = degrees;
+        }
+        ratio.ratio.push_back(degrees > 0 ? totals[k] / degrees : nan);
+        ratio.band.push_back(degrees > 0 ? band : Interval{nan, nan});
+        ratio.simultaneous_band.push_back(degrees > 0 ? simultaneous : Interval{nan, nan});
+        ratio.outside += degrees > 0 && !within(ratio.ratio.back(), band);
+        ratio.outside_simultaneous += degrees > 0 && !within(ratio.ratio.back(), simultaneous);
+    }
+}
+
+BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+    const Figure& figure = results.figures[f];
+    const FigureTotals& totals = arm.totals[f];
+    BlockEvidence evidence;
+    evidence.block = figure.part;
+    evidence.dimension = figure.dimension;
+    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / figure.dimension);
+    std::vector<double> sums;
+    for (std::size_t k = 0; k < totals.sum.size(); ++k) {
+        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / figure.dimension));
+        const double deviation = evidence.step.back().standard_deviation * figure.dimension;
+        evidence.variance_ratio.push_back(deviation * deviation / (2 * figure.dimension));
+        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * figure.dimension);
+        sums.push_back(totals.sum[k].rounded());
+    }
+    fill_bands(sums, evidence.anees);
+    evidence.coverage = coverage_of(arm, totals);
+    evidence.accuracy = accuracy_of(results, arm, figure.part);
+    return evidence;
+}
+
+}  // namespace credence

@@ -1,0 +1,17 @@
+#pragma once
+// Room 10: what the two files of the evidence share.
+
+#include <credence/evidence.hpp>
+
+namespace credence {
+
+/// Moments of a figure over trials at step k + 1, times `scale`.
+Moments moments_at(const ArmResults& arm, const FigureTotals& totals, std::size_t k, double scale);
+
+/// Ratios and bands of totals whose degrees of freedom are filled in.
+void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
+
+/// The block of the state that the nees figure f is of.
+BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+
+}  // namespace credence

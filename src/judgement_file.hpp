@@ -1,0 +1,70 @@
+#pragma once
+// Room 12: the datasets of a record for `judge`: their extents checked against each other, and read part by part.
+
+#include <credence/record.hpp>
+
+#include "hdf5_slab.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// What a record holds.
+struct RecordShape {
+    std::int64_t trials = 0;
+    int steps = 0;
+    int n = 0;                       ///< components of the state
+    int m = 0;                       ///< rows of an innovation; 0 without innovations
+    std::vector<StateBlock> blocks;  ///< all, and those of the attribute `blocks`
+    double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
+
+    bool has_innovations() const { return m > 0; }
+};
+
+/// A part that is read at once: whole trials, or some steps of one.
+struct RecordPart {
+    std::int64_t first_trial = 0, trials = 0;
+    int first_step = 0, steps = 0;
+};
+
+/// Values of a part, row-major; innovations are empty where there are none.
+struct RecordValues {
+    std::vector<double> error;                  ///< [trials, steps, n]
+    std::vector<double> covariance;             ///< [trials, steps, n, n]
+    std::vector<double> innovation;             ///< [trials, steps, m]
+    std::vector<double> innovation_covariance;  ///< [trials, steps, m, m]
+};
+
+/// All functions throw hdf5::Error.
+class RecordFile {
+public:
+    explicit RecordFile(const hdf5::Handle& root);
+
+    const RecordShape& shape() const { return shape_; }
+
+    /// The part that starts at trial `trial` and step `step`, as large as 64 MiB of doubles hold, but at least a step.
+    RecordPart part_at(std::int64_t trial, int step) const;
+    void read(const RecordPart& part, RecordValues& values) const;
+
+private:
+    void read(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
+
+    hdf5::RealDataset error_, covariance_;
+    std::optional<hdf5::RealDataset> innovation_, innovation_covariance_;
+    bool single_ = false;            ///< one trial, without a dimension for it
+    RecordShape shape_;
+};
+
+/// Whether names of scenarios and blocks may hold it: [A-Za-z0-9_-].
+inline bool is_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+/// The whole state as `all`, then the blocks that a text names, such as `pose 0:3, feature_1 3:5`, of a state of n
+/// components. Throws hdf5::Error at `place`.
+std::vector<StateBlock> parse_blocks(const std::string& text, int n, const std::string& place);
+
+}  // namespace credence

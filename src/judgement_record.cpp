@@ -1,0 +1,69 @@
+#include <credence/judgement_record.hpp>
+
+#include "judgement_file.hpp"
+#include "judgement_totals.hpp"
+
+#include <chrono>
+#include <fstream>
+
+namespace credence {
+
+namespace {
+
+/// A workspace that MATLAB saved is HDF5 behind a header of its own; its variables have no attribute on the root.
+void refuse_workspace(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string start(6, '\0');
+    if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == "MATLAB")
+        throw InputError(path + ": the file: is a MATLAB workspace. Write the record with h5create, h5write and "
+                                "h5writeatt.");
+}
+
+void add_part(const RecordPart& part, const RecordShape& shape, const RecordValues& values, RecordTotals& totals) {
+    const auto n = static_cast<std::size_t>(shape.n), m = static_cast<std::size_t>(shape.m);
+    std::size_t i = 0;
+    for (std::int64_t trial = part.first_trial; trial < part.first_trial + part.trials; ++trial)
+        for (int k = part.first_step; k < part.first_step + part.steps; ++k, ++i) {
+            RecordStep step{trial, k, &values.error[i * n], &values.covariance[i * n * n]};
+            if (shape.has_innovations()) {
+                step.innovation = &values.innovation[i * m];
+                step.innovation_covariance = &values.innovation_covariance[i * m * m];
+            }
+            totals.add(step);
+        }
+}
+
+JudgedRecord read_parts(const RecordFile& file, const std::string& path,
+                        const std::function<void(const Progress&)>& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const RecordShape& shape = file.shape();
+    RecordTotals totals(shape, path);
+    RecordValues values;
+    for (std::int64_t trial = 0; trial < shape.trials;) {
+        std::int64_t trials = 1;
+        for (int step = 0; step < shape.steps;) {
+            const RecordPart part = file.part_at(trial, step);
+            file.read(part, values);
+            add_part(part, shape, values, totals);
+            step += part.steps;
+            trials = part.trials;
+        }
+        trial += trials;
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        if (progress) progress({trial, shape.trials, seconds.count()});
+    }
+    return totals.finish();
+}
+
+}  // namespace
+
+JudgedRecord read_judgement_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
+    refuse_workspace(path);
+    return hdf5::read_file(path,
+                           "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
+                           "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
+                           "name parts of the state in the attribute `blocks`, such as `pose 0:3, feature_1 3:5`",
+                           [&](const hdf5::Handle& root) { return read_parts(RecordFile(root), path, progress); });
+}
+
+}  // namespace credence

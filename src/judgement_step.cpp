@@ -1,0 +1,115 @@
+#include "judgement_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace credence {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+enum class Definiteness { positive, singular, indefinite };
+
+/// The smallest eigenvalue of the correlation matrix tells, whatever the units: rounding alone, of values with the
+/// relative spacing `epsilon`, makes up to 2 n epsilon of a 0.
+Definiteness definiteness(const Eigen::MatrixXd& S, double epsilon) {
+    const Eigen::VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
+    const Eigen::VectorXd scale = (size.array() > 0).select(size.cwiseInverse(), 1.0);
+    const Eigen::MatrixXd correlation = scale.asDiagonal() * S * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
+    const double smallest = solver.eigenvalues().minCoeff(), zero = 2 * static_cast<double>(S.rows()) * epsilon;
+    if (smallest > zero) return Definiteness::positive;
+    return smallest < -zero ? Definiteness::indefinite : Definiteness::singular;
+}
+
+/// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
+std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, Eigen::LLT<Eigen::MatrixXd>& factor) {
+    factor.compute(S);
+    const bool factored = factor.info() == Eigen::Success;
+    if (factored) {
+        const auto pivots = factor.matrixLLT().diagonal().array().square();
+        if ((pivots > 10 * std::sqrt(epsilon) * S.diagonal().array()).all()) return {};
+    }
+    const Definiteness found = definiteness(S, epsilon);
+    if (factored && found == Definiteness::positive) return {};
+    return found == Definiteness::singular ? "is singular" : "is not positive definite";
+}
+
+const std::string error_squared = "unit of error squared";
+
+std::string described(const StateBlock& block) { return block.name == "all" ? "the whole state" : block.name; }
+std::string suffix(const StateBlock& block) { return block.name == "all" ? "" : "_" + block.name; }
+
+}  // namespace
+
+RecordFigures::RecordFigures(const RecordShape& shape) {
+    const auto add = [&](const std::string& name, const std::string& long_name, const std::string& unit,
+                         FigureRole role, int dimension, const std::string& part) {
+        list.push_back({name, long_name, unit, role, dimension, false, part, "", 0});
+    };
+    for (const StateBlock& block : shape.blocks)
+        add("nees" + suffix(block), "normalised estimation error squared of " + described(block), "1",
+            FigureRole::nees, block.count, block.name);
+    if (shape.has_innovations()) {
+        nis = list.size();
+        add("nis", "normalised innovation squared of all rows", "1", FigureRole::nis, 0, "all");
+        list.back().rows = "nis_rows";
+        rows = list.size();
+        add("nis_rows", "measurement rows", "1", FigureRole::rows, 0, "all");
+        list.back().integer = true;
+    }
+    squared_error = list.size();
+    for (const StateBlock& block : shape.blocks)
+        add("squared_error" + suffix(block), "squared error of " + described(block), error_squared,
+            FigureRole::squared_error, block.count, block.name);
+    variance = list.size();
+    for (const StateBlock& block : shape.blocks)
+        add(block.name == "all" ? "trace_P_step" : "variance" + suffix(block),
+            "trace of the covariance of " + described(block), error_squared, FigureRole::variance, block.count,
+            block.name);
+    standardised_error = list.size();
+    for (int j = 0; j < shape.n; ++j) {
+        const std::string name = "x" + std::to_string(j);
+        add("standardised_error_" + name, "error of component " + std::to_string(j) +
+                                              " over its predicted standard deviation",
+            "1", FigureRole::standardised_error, 1, name);
+    }
+}
+
+StepJudge::StepJudge(const RecordShape& shape, const RecordFigures& figures)
+    : shape_(shape), places_(figures), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
+
+std::string StepJudge::judge(const CheckedStep& step, double* figures, double* whitened) {
+    for (std::size_t b = 0; b < shape_.blocks.size(); ++b) {
+        const StateBlock& block = shape_.blocks[b];
+        const auto P = step.P.block(block.first, block.first, block.count, block.count);
+        const auto e = step.e.segment(block.first, block.count);
+        const std::string wrong = factor(P, shape_.covariance_epsilon, factors_[b]);
+        if (!wrong.empty()) return "covariance " + wrong;
+        solved_[b] = e;
+        factors_[b].matrixL().solveInPlace(solved_[b]);
+        figures[b] = solved_[b].squaredNorm();
+        figures[places_.squared_error + b] = e.squaredNorm();
+        figures[places_.variance + b] = P.trace();
+    }
+    for (int j = 0; j < shape_.n; ++j)
+        figures[places_.standardised_error + static_cast<std::size_t>(j)] = step.e(j) / std::sqrt(step.P(j, j));
+    if (!shape_.has_innovations()) return {};
+
+    std::fill(whitened, whitened + shape_.m, nan);
+    figures[places_.nis] = 0;
+    figures[places_.rows] = static_cast<double>(step.rows.size());
+    if (step.rows.empty()) return {};
+    const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_);
+    if (!wrong.empty()) return "innovation covariance " + wrong;
+    white_ = step.nu;
+    innovation_factor_.matrixL().solveInPlace(white_);
+    figures[places_.nis] = white_.squaredNorm();
+    for (std::size_t i = 0; i < step.rows.size(); ++i)
+        whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
+    return {};
+}
+
+}  // namespace credence

@@ -1,0 +1,179 @@
+#include "judgement_totals.hpp"
+
+#include <credence/chi_square.hpp>
+#include <credence/goodness.hpp>
+
+#include "judgement_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace credence {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< of NEES that are kept, and of cells
+constexpr double largest_figure = 1e140;                     ///< its square, over all steps, still adds up
+constexpr std::size_t most_troubles = 20;
+
+std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
+
+}  // namespace
+
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
+    : shape_(shape), figures_(shape_), judge_(shape_, figures_) {
+    record_.results = empty_record_results(shape_, figures_.list, path);
+    record_.has_innovations = shape.has_innovations();
+    const std::size_t lags = size(lag_count(record_.results.scenario.poses));
+    keeps_nees_ = shape.trials <= most_values / shape.steps;
+    keeps_cells_ = std::int64_t{shape.steps} * shape_cells <= most_values;
+    if (keeps_nees_) nees_.resize(size(shape.steps));
+    if (keeps_cells_) arm().cells.resize(size(shape.steps) * shape_cells);
+    for (const StateBlock& block : shape.blocks)
+        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    values_.resize(size(shape.steps) * figures_.list.size());
+    whitened_.assign(lags + 1, std::vector<double>(size(shape.m)));
+    product_sum_.resize(lags);
+    product_count_.resize(lags);
+}
+
+void RecordTotals::add(const RecordStep& step) {
+    if (step.step == 0) start_trial();
+    const bool exists = check_step(step, shape_, checked_);
+    if (exists && !failed(status_)) add_figures(step, checked_);
+    if (!exists) std::fill(whitened_[size(step.step) % whitened_.size()].begin(),
+                           whitened_[size(step.step) % whitened_.size()].end(), nan);
+    if (step.step + 1 < shape_.steps) return;
+    if (present_.empty() && !failed(status_))
+        fail({step.trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    end_trial(step.trial);
+}
+
+void RecordTotals::start_trial() {
+    status_ = Status::completed;
+    status_pose_ = -1;
+    present_.clear();
+    std::fill(product_sum_.begin(), product_sum_.end(), 0.0);
+    std::fill(product_count_.begin(), product_count_.end(), 0.0);
+}
+
+void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
+    const std::size_t k = size(step.step);
+    double* values = &figure(0, k);
+    const std::string trouble = judge_.judge(checked, values, whitened_[k % whitened_.size()].data());
+    if (!trouble.empty()) return fail(step, Status::covariance_not_positive_definite, trouble);
+    if (!std::all_of(values, values + figures_.list.size(), [](double v) { return std::abs(v) <= largest_figure; }))
+        return fail(step, Status::non_finite, "a figure of this step is beyond 1e140");
+    present_.push_back(k);
+    keep_details(step.trial, k, checked);
+    correlate(k);
+}
+
+void RecordTotals::fail(const RecordStep& step, Status status, const std::string& what) {
+    status_ = status;
+    status_pose_ = step.step + 1;
+    ++record_.trouble_count;
+    if (record_.troubles.size() < most_troubles) record_.troubles.push_back({step.trial, step.step, what});
+}
+
+void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
+    if (trial >= record_.results.detailed()) return;
+    const std::size_t at = size(trial) * size(shape_.steps) + k;
+    arm().nees[at] = figure(0, k);
+    std::copy(checked.e.begin(), checked.e.end(), arm().errors.begin() + static_cast<std::ptrdiff_t>(at) * shape_.n);
+}
+
+/// Products of whitened rows that were observed at this step and a lag before it. (NaN: at one of them it was not.)
+void RecordTotals::correlate(std::size_t k) {
+    if (!shape_.has_innovations()) return;
+    const std::vector<double>& now = whitened_[k % whitened_.size()];
+    for (std::size_t lag = 1; lag < whitened_.size() && lag <= k; ++lag) {
+        const std::vector<double>& before = whitened_[(k - lag) % whitened_.size()];
+        for (std::size_t row = 0; row < now.size(); ++row) {
+            const double product = now[row] * before[row];
+            if (std::isnan(product)) continue;
+            product_sum_[lag - 1] += product;
+            product_count_[lag - 1] += 1;
+        }
+    }
+}
+
+void RecordTotals::end_trial(std::int64_t trial) {
+    add_columns(trial);
+    if (!failed(status_)) return add_totals();
+    if (trial >= record_.results.detailed()) return;
+    const auto forget = [&](std::vector<double>& values, std::size_t row) {
+        const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
+        std::fill(first, first + static_cast<std::ptrdiff_t>(row), nan);
+    };
+    forget(arm().nees, size(shape_.steps));
+    forget(arm().errors, size(shape_.steps) * size(shape_.n));
+}
+
+void RecordTotals::add_columns(std::int64_t trial) {
+    double row[column_count];
+    const auto over_steps = [&](std::size_t f) {
+        double sum = 0;
+        for (const std::size_t k : present_) sum += figure(f, k);
+        return sum;
+    };
+    const double count = static_cast<double>(present_.size());
+    row[column_status] = static_cast<double>(status_);
+    row[column_status_pose] = status_pose_;
+    row[column_unseen] = -1;
+    if (!fill_failed(record_.results.columns, row)) {
+        row[column_trace_P] = figure(figures_.variance, present_.back());
+        row[column_mean_trace_P] = over_steps(figures_.variance) / count;
+        row[column_pose_error] = over_steps(figures_.squared_error + pose_block(shape_));
+        row[column_nees_ratio] = over_steps(0) / count / shape_.n;
+        row[column_nis_ratio] = record_.has_innovations ? over_steps(figures_.nis) / over_steps(figures_.rows) : nan;
+    }
+    for (std::size_t c = 0; c < column_count; ++c) arm().columns[c][size(trial)] = row[c];
+}
+
+void RecordTotals::add_totals() {
+    ++arm().counted;
+    const double count = static_cast<double>(present_.size()), steps = shape_.steps;
+    for (std::size_t f = 0; f < figures_.list.size(); ++f) {
+        FigureTotals& totals = arm().totals[f];
+        const bool innovations = record_.has_innovations && (f == figures_.nis || f == figures_.rows);
+        double run = 0;
+        for (const std::size_t k : present_) {
+            const double value = figure(f, k);
+            run += value;
+            totals.sum[k].add(value);
+            if (!figures_.list[f].integer) totals.square_sum[k].add(value * value);
+            for (std::size_t l = 0; f < shape_.blocks.size() && l < coverage_level_count; ++l)
+                totals.covered[k * coverage_level_count + l] += value < bounds_[f * coverage_level_count + l];
+        }
+        if (!innovations) run *= steps / count;
+        totals.run_sum->add(run);
+        totals.run_square_sum.add(run * run);
+    }
+    add_shape();
+    for (std::size_t lag = 0; lag < product_sum_.size(); ++lag) {
+        arm().products.sum[lag].add(product_sum_[lag]);
+        arm().products.square_sum[lag].add(product_sum_[lag] * product_sum_[lag]);
+        arm().products.count[lag] += static_cast<std::int64_t>(product_count_[lag]);
+    }
+}
+
+void RecordTotals::add_shape() {
+    const auto cells = equiprobable_cells(shape_.n);
+    for (const std::size_t k : present_) {
+        ++arm().present[k];
+        if (keeps_cells_) ++arm().cells[k * shape_cells + size(cells->cell(figure(0, k)))];
+        if (keeps_nees_) nees_[k].push_back(figure(0, k));
+    }
+}
+
+JudgedRecord RecordTotals::finish() {
+    if (keeps_nees_ || !keeps_cells_) arm().shape_distance.assign(size(shape_.steps), nan);
+    for (std::size_t k = 0; k < nees_.size(); ++k)
+        arm().shape_distance[k] = chi_square_distance(std::move(nees_[k]), shape_.n);
+    return std::move(record_);
+}
+
+}  // namespace credence

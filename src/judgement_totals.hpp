@@ -1,0 +1,61 @@
+#pragma once
+// Room 12: what the trials of a record add up to.
+
+#include <credence/judgement_record.hpp>
+
+#include "judgement_step.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Takes a record's steps one after the other, and makes results of them.
+class RecordTotals {
+public:
+    /// `path` names the scenario.
+    RecordTotals(const RecordShape& shape, const std::string& path);
+    RecordTotals(const RecordTotals&) = delete;
+    RecordTotals& operator=(const RecordTotals&) = delete;
+
+    /// Adds a step; every step of every trial comes once, in order. Throws hdf5::Error for bad input.
+    void add(const RecordStep& step);
+
+    /// The results, after the last step.
+    JudgedRecord finish();
+
+private:
+    ArmResults& arm() { return record_.results.arms.front(); }
+    double& figure(std::size_t f, std::size_t k) { return values_[k * figures_.list.size() + f]; }
+
+    void start_trial();
+    void add_figures(const RecordStep& step, const CheckedStep& checked);
+    void fail(const RecordStep& step, Status status, const std::string& what);
+    void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
+    void correlate(std::size_t k);
+    void end_trial(std::int64_t trial);
+    void add_columns(std::int64_t trial);
+    void add_totals();
+    void add_shape();
+
+    RecordShape shape_;
+    RecordFigures figures_;
+    StepJudge judge_;
+    JudgedRecord record_;
+    bool keeps_nees_ = false, keeps_cells_ = false;
+    std::vector<std::vector<double>> nees_;      ///< [steps] of the whole state, all trials; for the exact distance
+    std::vector<double> bounds_;                 ///< [blocks, levels] NEES below them counts as covered
+
+    // Of the trial under way.
+    CheckedStep checked_;
+    Status status_ = Status::completed;
+    int status_pose_ = -1;
+    std::vector<std::size_t> present_;           ///< steps that exist, in order
+    std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
+    double pose_error_ = 0;
+    std::vector<std::vector<double>> whitened_;  ///< [lags + 1][m] by step, modulo its length; NaN where not observed
+    std::vector<double> product_sum_, product_count_;  ///< [lags]
+};
+
+}  // namespace credence

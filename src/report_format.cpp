@@ -1,0 +1,52 @@
+#include "report_format.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace credence {
+
+std::string padded(const std::string& text, int width, bool right) {
+    int characters = 0;
+    for (const char c : text) characters += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+    const std::string space(static_cast<std::size_t>(std::max(1, width - characters)), ' ');  // never glued together
+    return right ? space + text : text + space;
+}
+
+std::string number(double value, int digits) {
+    if (std::isnan(value)) return "-";
+    char buffer[64];
+    if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+    else std::snprintf(buffer, sizeof buffer, "%.4g", value);
+    return buffer;
+}
+
+int decimals_for(double uncertainty) {
+    if (!(uncertainty > 0) || std::isinf(uncertainty)) return 4;
+    return std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty))), 0, 6);
+}
+
+std::string with_interval(double mean, const Interval& interval) {
+    const double half = (interval.high - interval.low) / 2;
+    const int digits = decimals_for(half);
+    return std::isnan(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
+}
+
+std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
+    constexpr std::size_t width = 118;
+    std::string text = head;
+    std::size_t column = indent + head.size();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
+        if (column + 1 + part.size() > width && i > 0) {
+            text += "\n" + std::string(indent + 2, ' ') + part;
+            column = indent + 2 + part.size();
+        } else {
+            text += " " + part;
+            column += 1 + part.size();
+        }
+    }
+    return text;
+}
+
+}  // namespace credence

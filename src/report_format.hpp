@@ -1,0 +1,26 @@
+#pragma once
+// Room 13: how the text report writes numbers and tables.
+
+#include <credence/statistics.hpp>
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Left- or right-pads to a width counted in characters, not bytes.
+std::string padded(const std::string& text, int width, bool right = true);
+
+/// `-` for NaN.
+std::string number(double value, int digits);
+
+/// Decimals that show two digits of the uncertainty, at most 6.
+int decimals_for(double uncertainty);
+
+/// `mean ± half-width`
+std::string with_interval(double mean, const Interval& interval);
+
+/// `head` and the parts between commas, wrapped and indented.
+std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent);
+
+}  // namespace credence

@@ -1,0 +1,158 @@
+#include "report_text_detail.hpp"
+
+#include <credence/text.hpp>
+
+#include "report_format.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+std::string title_of(const std::string& figure, const std::string& unit) {
+    const std::string name = figure == "trace_P"        ? "trace(P), last step"
+                             : figure == "mean_trace_P" ? "trace(P), mean over the steps"
+                             : figure == "pose_error"   ? "pose error"
+                                                        : figure;
+    return unit == "1" ? name : name + " [" + unit + "]";
+}
+
+std::string published_text(const PublishedPlace& published) {
+    return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
+}
+
+std::string bracketed(const Interval& interval, int digits) {
+    return std::isnan(interval.low) ? "-" : "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
+}
+
+std::string figure_row(const std::string& label, const Summary& s, const std::optional<Interval>& bootstrap,
+                       const std::string& last) {
+    const int digits = decimals_for((s.ci95.high - s.ci95.low) / 2);
+    return "    " + padded(label, 24, false) + padded(with_interval(s.mean, s.ci95), 22) +
+           padded(bootstrap ? bracketed(*bootstrap, digits) : "", 22) + padded(number(s.median, digits), 12) +
+           padded(number(s.standard_deviation, digits), 12) + (last.empty() ? "" : padded(last, 20)) + "\n";
+}
+
+std::string paired_row(const Comparison& pair, const ComparedFigure& figure) {
+    const PairedComparison& paired = figure.paired;
+    const std::string less = number(100 * paired.wins_a, 0) + " % below";
+    const auto controller = [](const std::string& arm) { return arm.substr(0, arm.find('.')); };
+    return figure_row(controller(pair.a) + " - " + controller(pair.b), paired.difference, paired.bootstrap95, less);
+}
+
+/// A part with the arms and their differences, one row each.
+std::string figure_part(const Report& report, const std::string& scenario, const std::string& name) {
+    std::string text;
+    for (const ArmReport& arm : report.arms) {
+        if (arm.scenario != scenario) continue;
+        const FigureReport& figure = figure_named(arm.figures, name);
+        if (figure.summary.count == 0) continue;
+        if (text.empty()) text = "  " + title_of(name, figure.unit) + "\n";
+        text += figure_row(arm.arm, figure.summary, figure.bootstrap95,
+                           figure.published ? published_text(*figure.published) : "");
+    }
+    for (const Comparison& pair : report.pairs) {
+        if (pair.scenario != scenario) continue;
+        for (const ComparedFigure& figure : pair.figures)
+            if (figure.name == name) text += paired_row(pair, figure);
+    }
+    return text;
+}
+
+/// The blocks worth a line: those of several parts, and the features (or whatever comes in numbers) that are farthest
+/// off.
+std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence) {
+    constexpr std::size_t most = 10;
+    std::vector<const BlockEvidence*> blocks;
+    for (const BlockEvidence& block : evidence.blocks) blocks.push_back(&block);
+    if (blocks.size() <= most) return blocks;
+    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const BlockEvidence* a, const BlockEvidence* b) {
+        return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
+    });
+    blocks.resize(most);
+    return blocks;
+}
+
+std::string of_steps(int outside, int steps) { return std::to_string(outside) + " of " + std::to_string(steps); }
+
+std::string block_row(const BlockEvidence& block) {
+    const Coverage& coverage = block.coverage[2];
+    return "    " + padded(block.block, 14, false) + padded(with_interval(block.run.mean, over_steps95(block)), 20) +
+           padded(of_steps(block.anees.outside_simultaneous, block.anees.observed), 12) +
+           padded(number(100 * coverage.over_steps, 1) + " %", 12) +
+           padded(number(block.variance_ratio.back(), 2), 12) +
+           padded(with_interval(block.accuracy.ratio, block.accuracy.ratio_ci95), 20) + "\n";
+}
+
+std::string innovations_part(const Evidence& evidence) {
+    std::vector<std::string> parts;
+    for (const NisEvidence& nis : evidence.nis)
+        parts.push_back(nis.part + " " + number(nis.ratio, 4) + " (outside its band at " +
+                        of_steps(nis.nis.outside_simultaneous, nis.nis.observed) + " steps)");
+    std::string text = parts.empty() ? "" : "    " + wrapped_list("NIS/m:", parts, 4) + "\n";
+    if (!evidence.whiteness.empty()) {
+        const Whiteness& first = evidence.whiteness.front();
+        int outside = 0;
+        for (const Whiteness& lag : evidence.whiteness) outside += std::abs(lag.correlation) > lag.simultaneous_bound;
+        text += "    innovations: correlation " + number(first.correlation, 4) + " at lag 1 (white within ± " +
+                number(first.bound, 4) + "); " + of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
+                " lags outside their joint bounds\n";
+    }
+    return text;
+}
+
+std::string distribution_part(const Evidence& evidence) {
+    std::size_t worst = 0;
+    const ShapeEvidence& shape = evidence.shape;
+    for (std::size_t k = 0; k < shape.distance.size(); ++k)
+        if (shape.distance[k] > shape.distance[worst]) worst = k;
+    std::string text;
+    if (!std::isnan(shape.distance[worst]))
+        text += "    NEES against chi-square: distance " + number(shape.distance[worst], 4) + " at step " +
+                std::to_string(worst + 1) + " (p " + number(shape.p[worst], 4) + ")";
+    if (!std::isnan(evidence.credibility.nci))
+        text += std::string(text.empty() ? "    " : "; ") + "NCI " + number(evidence.credibility.nci, 3) + ", I² " +
+                number(evidence.credibility.inclination, 3) +
+                (evidence.credibility.inclination > 0 ? " (> 0: optimistic)" : " (< 0: pessimistic)");
+    return text.empty() ? text : text + "\n";
+}
+
+std::string consistency_part(const ArmReport& arm) {
+    if (arm.evidence.blocks.empty() || arm.evidence.trials == 0) return "";
+    std::string text = "  " + padded(arm.arm, 16, false) + padded("NEES/dim", 20) + padded("steps out", 12) +
+                       padded("95 % covers", 12) + padded("var/2dim", 12) + padded("RMSE/sigma", 20) + "\n";
+    const auto blocks = shown_blocks(arm.evidence);
+    for (const BlockEvidence* block : blocks) text += block_row(*block);
+    if (blocks.size() < arm.evidence.blocks.size())
+        text += "    (" + std::to_string(arm.evidence.blocks.size() - blocks.size()) +
+                " more blocks are nearer to 1; JSON has all)\n";
+    return text + innovations_part(arm.evidence) + distribution_part(arm.evidence);
+}
+
+bool has_published(const Scenario& scenario) {
+    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() &&
+             scenario.published.pose_error.empty());
+}
+
+}  // namespace
+
+const FigureReport& figure_named(const std::vector<FigureReport>& figures, const std::string& name) {
+    for (const FigureReport& figure : figures)
+        if (figure.name == name) return figure;
+    return figures.front();
+}
+
+std::string scenario_detail(const Report& report, const Scenario& scenario) {
+    std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";
+    text += padded("mean ± 95 %", 50) + padded("bootstrap 95 %", 22) + padded("median", 12) + padded("sd", 12) +
+            (has_published(scenario) ? padded("published (pctl.)", 20) : "") + "\n";
+    for (const char* name : {"trace_P", "mean_trace_P", "unseen", "pose_error"})
+        text += figure_part(report, scenario.name, name);
+    for (const ArmReport& arm : report.arms)
+        if (arm.scenario == scenario.name) text += consistency_part(arm);
+    return text;
+}
+
+}  // namespace credence

@@ -1,0 +1,144 @@
+#include <credence/stopping.hpp>
+
+#include <credence/statistics.hpp>
+
+#include "stopping_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace credence {
+
+namespace {
+
+/// A column's values of the first trials, those of failed trials as NaN, whatever their fill.
+std::vector<double> first_values(const ArmResults& arm, std::size_t column, std::int64_t trials) {
+    const auto begin = arm.columns[column].begin();
+    std::vector<double> values(begin, begin + trials);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
+            values[i] = std::numeric_limits<double>::quiet_NaN();
+    return values;
+}
+
+std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trials) {
+    std::vector<double> values = first_values(*subject.arm, subject.column, trials);
+    if (subject.subtracted == nullptr) return values;
+    return paired_differences(values, first_values(*subject.subtracted, subject.column, trials));
+}
+
+std::string name_of(const StoppingSubject& subject) {
+    const std::string pair = subject.subtracted == nullptr ? "" : " - " + subject.subtracted->name;
+    return subject.results->columns[subject.column].name + " of " + subject.results->scenario.name + "/" +
+           subject.arm->name + pair;
+}
+
+/// t_{1 - alpha_j/2, n - 1} sd / sqrt(n)
+double half_width_of(double standard_deviation, double count, int number) {
+    return t_quantile(look_alpha(number), count - 1) * standard_deviation / std::sqrt(count);
+}
+
+/// How wide a state is for what was asked: 0 for one that does not vary, infinite for one that could not be judged.
+double excess(const GoalState& state) {
+    const double ratio = state.half_width / state.allowed;
+    if (!std::isnan(ratio)) return ratio;
+    return state.met() ? 0 : std::numeric_limits<double>::infinity();
+}
+
+/// predicted_trials of one state that is not met.
+std::optional<std::int64_t> predicted_for(const GoalState& state, const Look& look, const StoppingRule& rule) {
+    const double share = static_cast<double>(state.count) / static_cast<double>(look.trials);
+    const auto enough = [&](std::int64_t trials, int number) {
+        return half_width_of(state.standard_deviation, share * static_cast<double>(trials), number) <= state.allowed;
+    };
+    const auto at_the_ceiling = static_cast<int>(look_trials(rule.ceiling, rule.first_look).size());
+    std::int64_t trials = rule.first_look;
+    for (int number = 1;; ++number) {
+        if (trials >= rule.ceiling && at_the_ceiling > look.number && number == at_the_ceiling &&
+            enough(rule.ceiling, number))
+            return rule.ceiling;
+        if (trials > look.trials && enough(trials, number)) return trials;
+        if (trials > std::numeric_limits<std::int64_t>::max() / 2) return std::nullopt;
+        trials *= 2;
+    }
+}
+
+}  // namespace
+
+double look_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
+
+std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first) {
+    std::vector<std::int64_t> looks;
+    for (std::int64_t trials = first; trials < ceiling; trials = trials > ceiling / 2 ? ceiling : 2 * trials)
+        looks.push_back(trials);
+    looks.push_back(ceiling);
+    return looks;
+}
+
+GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
+    const Summary summary = summarise(values);
+    GoalState state{"", summary.count, summary.mean, summary.standard_deviation, 0, goal.half_width};
+    state.half_width = half_width_of(summary.standard_deviation, static_cast<double>(summary.count), number);
+    if (goal.kind == WidthKind::relative) state.allowed *= std::abs(summary.mean);
+    return state;
+}
+
+Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
+    for (const ScenarioResults& results : study.scenarios)
+        if (results.trials < trials) throw std::logic_error("a look at trials that are not there");
+    Look look{trials, number, look_alpha(number), {}, true};
+    for (const StoppingGoal& goal : goals)
+        for (const StoppingSubject& subject : subjects_of(goal, study)) {
+            look.states.push_back(decide(values_of(subject, trials), goal, number));
+            look.states.back().name = name_of(subject);
+            look.met = look.met && look.states.back().met();
+        }
+    return look;
+}
+
+std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRule& rule) {
+    std::int64_t most = look.trials;
+    for (const GoalState& state : look.states) {
+        if (state.met()) continue;
+        const std::optional<std::int64_t> trials = predicted_for(state, look, rule);
+        if (!trials) return std::nullopt;
+        most = std::max(most, *trials);
+    }
+    return most;
+}
+
+const GoalState& widest(const Look& look) {
+    return *std::max_element(look.states.begin(), look.states.end(),
+                             [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
+}
+
+Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look) {
+    Look last;
+    for (const std::int64_t trials : look_trials(rule.ceiling, rule.first_look)) {
+        last = look(trials, last.number + 1);
+        if (last.met) break;
+    }
+    return last;
+}
+
+Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
+               const std::function<void(const Look&)>& after_look) {
+    check_goals(rule.goals, study);
+    return run_looks(rule, [&](std::int64_t trials, int number) {
+        bool missing = !study.complete;
+        // All scenarios of a study get as many trials: those of the one that has most, where that is more.
+        options.trials = trials;
+        for (const ScenarioResults& results : study.scenarios) {
+            missing = missing || results.trials < trials;
+            options.trials = std::max(options.trials, results.trials);
+        }
+        if (missing) run_study(study, options);
+        Look look = look_at(study, rule.goals, trials, number);
+        if (after_look) after_look(look);
+        return look;
+    });
+}
+
+}  // namespace credence

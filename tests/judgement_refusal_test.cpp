@@ -1,0 +1,212 @@
+// Room 12, records for `judge`: what cannot be judged is refused by dataset, trial and step, in words for the program
+// that wrote it.
+
+#include "judgement_support.hpp"
+
+#include <limits>
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+
+/// Position of [trial, step, 0 ...] in the plain record.
+constexpr std::size_t vector_at(std::size_t trial, std::size_t step) { return (trial * 4 + step) * 2; }
+constexpr std::size_t matrix_at(std::size_t trial, std::size_t step) { return (trial * 4 + step) * 4; }
+
+std::function<void(const Handle&)> value(const std::string& name, std::size_t at, double value) {
+    return [=](const Handle& root) { set_value(root, name, at, value); };
+}
+
+std::function<void(const Handle&)> blocks(const std::string& text) {
+    return [=](const Handle& root) { hdf5::write_text(root, "blocks", text); };
+}
+
+template <class T = double>
+std::function<void(const Handle&)> extents(const std::string& name, const hdf5::Extents& extents,
+                                           const std::string& other = {}, const hdf5::Extents& other_extents = {}) {
+    return [=](const Handle& root) {
+        replace<T>(root, name, extents, {});
+        if (!other.empty()) replace<T>(root, other, other_extents, {});
+    };
+}
+
+/// Chunks that a filter was applied to, which this HDF5 does not have (Zstandard's number).
+void write_with_unknown_filter(const Handle& root) {
+    remove(root, "error");
+    const hsize_t size[] = {3, 4, 2};
+    const Handle space(H5Screate_simple(3, size, nullptr), H5Sclose, "", "");
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "", "");
+    H5Pset_chunk(properties.id(), 3, size);
+    H5Pset_filter(properties.id(), 32015, H5Z_FLAG_OPTIONAL, 0, nullptr);
+    const Handle dataset(H5Dcreate2(root.id(), "error", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(),
+                                    H5P_DEFAULT), H5Dclose, "", "cannot make the dataset");
+    const std::vector<double> values(24, 0.5);
+    H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+}
+
+const std::vector<Damage> value_damages{
+    {"/error: trial 1, step 2 (both counted from 0) holds NaN in some components and numbers in others. A step exists",
+     value("error", vector_at(1, 2) + 1, nan)},
+    {"/error: trial 2, step 0 (both counted from 0) holds an infinite value. Write NaN",
+     value("error", vector_at(2, 0), -infinite)},
+    {"/error: trial 0, step 3 (both counted from 0) holds an infinite value",
+     [](auto& r) {
+         set_value(r, "error", vector_at(0, 3), nan);
+         set_value(r, "error", vector_at(0, 3) + 1, infinite);
+     }},
+    {"/covariance: trial 0, step 1 (both counted from 0) is not symmetric: [0, 1] is 0.25, [1, 0] is 0. Write (P + P')",
+     value("covariance", matrix_at(0, 1) + 1, 0.25)},
+    {"/covariance: trial 1, step 1 (both counted from 0) is not symmetric: [0, 1] is 0, [1, 0] is 2e-09",
+     value("covariance", matrix_at(1, 1) + 2, 2e-9)},
+    {"/covariance: trial 2, step 3 (both counted from 0) holds nan at [1, 1], where the errors",
+     value("covariance", matrix_at(2, 3) + 3, nan)},
+    {"/covariance: trial 2, step 3 (both counted from 0) holds inf at [0, 1], where",
+     value("covariance", matrix_at(2, 3) + 2, infinite)},
+    {"/covariance: trial 2, step 3 (both counted from 0) holds nan at [0, 0], where", [](auto& r) {
+         set_value(r, "covariance", 0, 0);  // failed before
+         set_value(r, "covariance", matrix_at(2, 0), 0);
+         set_value(r, "covariance", matrix_at(2, 3), nan);
+     }},
+    {"/innovation: trial 1, step 0 (both counted from 0) holds an infinite value",
+     value("innovation", vector_at(1, 0), infinite)},
+    {"/innovation_covariance: trial 1, step 3 (both counted from 0) holds nan at [0, 1], where the errors or innovations",
+     value("innovation_covariance", matrix_at(1, 3) + 1, nan)},
+    {"/innovation_covariance: trial 1, step 3 (both counted from 0) is not symmetric: [0, 1] is 0.5, [1, 0] is 0",
+     value("innovation_covariance", matrix_at(1, 3) + 1, 0.5)},
+};
+
+const std::vector<Damage> shape_damages{
+    {"/error: is missing. A record holds `error` [trial, step, n] and", [](auto& r) { remove(r, "error"); }},
+    {"/covariance: is missing. A record holds", [](auto& r) { remove(r, "covariance"); }},
+    {"/innovation: is missing, but /innovation_covariance is there. Write both, or neither",
+     [](auto& r) { remove(r, "innovation"); }},
+    {"/innovation_covariance: is missing, but /innovation is there",
+     [](auto& r) { remove(r, "innovation_covariance"); }},
+    {"/covariance: has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is "
+     "[2, 2, 4, 3] and /error [2, 4, 3], but h5dump must show the trials first. Before you write them, turn them round: "
+     "permute(error, [3 2 1]) and permute(covariance, [4 3 2 1]), and",
+     extents("error", {2, 4, 3}, "covariance", {2, 2, 4, 3})},
+    {"permute(error, [2 1]) and permute(covariance, [3 2 1]), and",
+     extents("error", {2, 4}, "covariance", {2, 2, 4})},
+    {"/innovation_covariance: has the order of its dimensions reversed",
+     extents("innovation", {5, 4, 3}, "innovation_covariance", {5, 5, 4, 3})},
+    {"/covariance: does not fit: it is [3, 4, 2, 3] and /error [3, 4, 2]. Write error as [trial, step, size] and",
+     extents("covariance", {3, 4, 2, 3})},
+    {"/covariance: does not fit: it is [4, 2, 2] and /error [3, 4, 2]", extents("covariance", {4, 2, 2})},
+    {"/covariance: does not fit: it is [12] and /error [12]", extents("error", {12}, "covariance", {12})},
+    {"/error: is [12]. Write it as [trial, step, n]", extents("error", {12}, "covariance", {12, 12})},
+    {"/error: is [1, 3, 4, 2]. Write it", extents("error", {1, 3, 4, 2}, "covariance", {1, 3, 4, 2, 2})},
+    {"/innovation: does not fit: it is [2, 4, 2] and /error [3, 4, 2]. Write it as [trial, step, row], with NaN",
+     extents("innovation", {2, 4, 2}, "innovation_covariance", {2, 4, 2, 2})},
+    {"/innovation: does not fit: it is [4, 2] and /error", extents("innovation", {4, 2}, "innovation_covariance", {4, 2, 2})},
+    {"/error: is [0, 4, 2]: no trials. Write at least one", extents("error", {0, 4, 2}, "covariance", {0, 4, 2, 2})},
+    {"/error: is [3, 0, 2]: no steps", extents("error", {3, 0, 2}, "covariance", {3, 0, 2, 2})},
+    {"/error: is [3, 4, 0]: no components", extents("error", {3, 4, 0}, "covariance", {3, 4, 0, 0})},
+    {"/innovation: is [3, 4, 0]: no rows", extents("innovation", {3, 4, 0}, "innovation_covariance", {3, 4, 0, 0})},
+    {"/error: is [1, 1, 1001]: more than 1000 components. Write fewer",
+     extents<float>("error", {1, 1, 1001}, "covariance", {1, 1, 1001, 1001})},
+    {"/error: is [1, 100000, 1]: more than 99999 steps",
+     extents<float>("error", {1, 100000, 1}, "covariance", {1, 100000, 1, 1})},
+    {"/innovation: is [1, 1, 2001]: more than 2000 rows", [](auto& r) {
+         extents("error", {1, 1, 2}, "covariance", {1, 1, 2, 2})(r);
+         extents<float>("innovation", {1, 1, 2001}, "innovation_covariance", {1, 1, 2001, 2001})(r);
+     }},
+    {"/error: does not hold floating-point numbers. Write it as doubles",
+     extents<std::int32_t>("error", {3, 4, 2})},
+    {"/error: is a group, not a dataset, as Octave's save makes it. Write a dataset", [](auto& r) {
+         remove(r, "error");
+         hdf5::new_group(r, "error");
+     }},
+    {"/error: is compressed by a filter that is not installed, 32015", write_with_unknown_filter},
+    {"/error: [1099511627776] does not fit into the file", [](auto& r) { promise_terabytes(r, "/error"); }},
+    {"/error: keeps its values in other files", [](auto& r) { keep_elsewhere(r, "/error"); }},
+    {"/error: is a link to somewhere else", [](auto& r) {
+         remove(r, "error");
+         H5Lcreate_soft("/innovation", r.id(), "/error", H5P_DEFAULT, H5P_DEFAULT);
+     }},
+};
+
+const std::vector<Damage> block_damages{
+    {"/@blocks: broken entry `pose`. Write the blocks as NAME FIRST:END, counted from 0", blocks("pose")},
+    {"/@blocks: broken entry `pose 0-1`", blocks("pose 0-1")},
+    {"/@blocks: broken entry `0:1`", blocks("0:1")},
+    {"/@blocks: broken entry `a:b 0:1`", blocks("a:b 0:1")},
+    {"/@blocks: broken entry `a 0:1 b 1:2`", blocks("a 0:1 b 1:2")},
+    {"/@blocks: broken entry ``", blocks("a 0:1,")},
+    {"/@blocks: broken entry `a x:1`", blocks("a x:1")},
+    {"/@blocks: broken entry `a?[31m 0;1`", blocks("a\x1b[31m 0;1")},
+    {"/@blocks: `f(1)` is no name for a block. Use letters, digits, _ and -", blocks("f(1) 0:1")},
+    {"/@blocks: `all` cannot name a block", blocks("all 0:2")},
+    {"/@blocks: names two blocks `a`", blocks("a 0:1, a 1:2")},
+    {"/@blocks: `a 1:1` has no components", blocks("a 1:1")},
+    {"/@blocks: `a 2:1` has no components", blocks("a 2:1")},
+    {"/@blocks: `a -1:1` has no components", blocks("a -1:1")},
+    {"/@blocks: `a 1:3` ends beyond the 2 components of the state. Write the blocks", blocks("a 0:1, a 1:3")},
+    {"/@blocks: has more than 1000 blocks", [](auto& r) {
+         std::string text;
+         for (int i = 0; i <= 1000; ++i) text += (i ? "," : "") + std::string("b") + std::to_string(i) + " 0:1";
+         hdf5::write_text(r, "blocks", text);
+     }},
+    {"/@blocks: is not text", [](auto& r) { hdf5::write_number<double>(r, "blocks", 3); }},
+    {"/@blocks: is missing, but there is a `blocks` elsewhere. Make it an attribute of the root",
+     [](auto& r) { hdf5::new_group(r, "blocks"); }},
+    {"/@blocks: is missing, but there is a `blocks` elsewhere",
+     [](auto& r) { hdf5::write_text(open(r, "error"), "blocks", "a 0:1"); }},
+};
+
+void require_refused(const std::vector<Damage>& damages) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "record.h5";
+    for (const Damage& damage : damages) {
+        write_plain_record(path, damage.apply);
+        const std::string said = refusal<InputError>([&] { read_judgement_record(path); });
+        INFO("expected: " << damage.said);
+        INFO("said: " << said);
+        CHECK(said.starts_with(path + ": " + (damage.said.starts_with('/') ? damage.said : "/")));
+        CHECK(said.find(damage.said) != std::string::npos);
+        CHECK(said.ends_with("."));
+        CHECK(said.find('\n') == std::string::npos);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("record: the plain record itself is judged, and what else a file holds is ignored") {
+    const TemporaryFolder folder;
+    const double one = 1;
+    write_plain_record(folder / "record.h5", [&](const Handle& root) {
+        hdf5::write_text(root, "blocks", " pose 0:1 ,rest 1 : 2");
+        hdf5::write_text(root, "author", "somebody");
+        hdf5::new_group(root, "notes");
+        hdf5::write_dataset(root, "time", hdf5::type_of<double>(), &one, {1}, {"", "s"});
+    });
+    const JudgedRecord record = read_judgement_record(folder / "record.h5");
+    CHECK(record.trouble_count == 0);
+    CHECK(record.results.arms.front().counted == 3);
+    CHECK(record.results.figures[2].part == "rest");
+}
+
+TEST_CASE("record: values that are none are refused by dataset, trial and step") { require_refused(value_damages); }
+
+TEST_CASE("record: datasets that do not fit together, reversed dimensions among them, are refused") {
+    require_refused(shape_damages);
+}
+
+TEST_CASE("record: blocks that cannot be are refused") { require_refused(block_damages); }
+
+TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its name") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "record.h5";
+    const auto said = [&] { return refusal<InputError>([&] { read_judgement_record(path); }); };
+    CHECK(said() == path + ": the file: cannot be found. Check the path.");
+    put_bytes(path, "trial,step\n");
+    CHECK(said() == path + ": the file: is not an HDF5 file. Give an HDF5 file.");
+    put_bytes(path, "MATLAB 7.3 MAT-file, Platform: GLNXA64");
+    CHECK(said() == path + ": the file: is a MATLAB workspace. Write the record with h5create, h5write and h5writeatt.");
+    write_plain_record(path);
+    put_bytes(path, bytes_of(path).substr(0, 900));
+    CHECK(said().find("is truncated or damaged") != std::string::npos);
+}
