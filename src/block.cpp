@@ -36,9 +36,12 @@ private:
 
 /// Adds up the eight running sums of each cell, in order.
 std::vector<double> added_up(const std::vector<double>& octets) {
-    std::vector<double> totals;
-    for (std::size_t at = 0; at < octets.size(); at += octet)
-        totals.push_back(std::accumulate(octets.data() + at, octets.data() + at + octet, 0.0));
+    std::vector<double> totals(octets.size() / octet);
+    const double* at = octets.data();
+    for (double& total : totals) {
+        total = std::accumulate(at, at + octet, 0.0);
+        at += octet;
+    }
     return totals;
 }
 
@@ -103,11 +106,13 @@ bool failed_trial(const ArmBlock& arm, std::size_t trials, std::size_t trial) {
 
 /// The cell of every NEES.
 void store_cells(const Octets& from, const EquiprobableCells& cells, ArmBlock& arm) {
+    arm.cells.resize(from.steps * from.trials);
     for (std::size_t k = 0; k < from.steps; ++k)
         for (std::size_t trial = 0; trial < from.trials; ++trial)
-            arm.cells.push_back(failed_trial(arm, from.trials, trial)
-                                    ? no_cell
-                                    : static_cast<std::uint16_t>(cells.cell(from.nees[k * from.padded + trial])));
+            arm.cells[k * from.trials + trial] = static_cast<std::uint16_t>(cells.cell(from.nees[k * from.padded + trial]));
+    for (std::size_t trial = 0; trial < from.trials; ++trial)
+        if (failed_trial(arm, from.trials, trial))
+            for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
 }
 
 /// Errors and NEES by trial, rounded to single precision.

@@ -5,19 +5,6 @@
 
 namespace credence {
 
-namespace {
-
-/// `greedy.X` has its partner in `fixed.X`.
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
-    const std::size_t dot = arm.name.find('.');
-    if (arm.name.substr(0, dot) != "greedy") return nullptr;
-    for (const ArmResults& other : results.arms)
-        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
-    return nullptr;
-}
-
-}  // namespace
-
 bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 
 std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
@@ -26,6 +13,14 @@ std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
         if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
             values[i] = std::numeric_limits<double>::quiet_NaN();
     return values;
+}
+
+const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
+    const std::size_t dot = arm.name.find('.');
+    if (dot == std::string::npos || arm.name.substr(0, dot) != "greedy") return nullptr;
+    for (const ArmResults& other : results.arms)
+        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
+    return nullptr;
 }
 
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed) {

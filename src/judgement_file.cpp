@@ -15,7 +15,6 @@ using hdf5::Handle;
 using hdf5::RealDataset;
 
 constexpr hsize_t largest_state = 1000, largest_rows = 2000, largest_steps = largest_pose_count - 1;
-constexpr std::int64_t part_numbers = (std::int64_t{64} << 20) / 8;
 
 /// Whether `matrices` are square ones of the `vectors`.
 bool are_squares(const Extents& matrices, Extents vectors) {
@@ -101,11 +100,12 @@ std::vector<StateBlock> read_blocks(const Handle& root, int n) {
 
 }  // namespace
 
-RecordFile::RecordFile(const Handle& root)
+RecordFile::RecordFile(const Handle& root, std::int64_t part_numbers)
     : error_(with_dataset(root, "error"), "error"),
       covariance_(with_dataset(root, "covariance"), "covariance"),
       innovation_(optional_dataset(root, "innovation", "innovation_covariance")),
-      innovation_covariance_(optional_dataset(root, "innovation_covariance", "innovation")) {
+      innovation_covariance_(optional_dataset(root, "innovation_covariance", "innovation")),
+      part_numbers_(part_numbers) {
     require_squares(error_, covariance_, "error", "covariance");
     const Extents& extents = error_.extents();
     const std::size_t rank = extents.size();
@@ -130,10 +130,9 @@ RecordFile::RecordFile(const Handle& root)
 
 RecordPart RecordFile::part_at(std::int64_t trial, int step) const {
     const std::int64_t n = shape_.n, m = shape_.m, of_step = n + n * n + m + m * m;
-    const auto steps = static_cast<int>(
-        std::clamp<std::int64_t>(part_numbers / of_step, 1, shape_.steps - step));
+    const auto steps = static_cast<int>(std::clamp<std::int64_t>(part_numbers_ / of_step, 1, shape_.steps - step));
     if (step > 0 || steps < shape_.steps) return {trial, 1, step, steps};
-    std::int64_t trials = std::max<std::int64_t>(part_numbers / (of_step * steps), 1);
+    std::int64_t trials = std::max<std::int64_t>(part_numbers_ / (of_step * steps), 1);
     // Whole chunks, each of which is then uncompressed once.
     const auto together = single_ ? 1 : static_cast<std::int64_t>(covariance_.chunk()[0]);
     if (trials > together) trials -= trials % together;

@@ -41,11 +41,12 @@ struct RecordValues {
 /// All functions throw hdf5::Error.
 class RecordFile {
 public:
-    explicit RecordFile(const hdf5::Handle& root);
+    /// `part_numbers`: as many numbers are read at once, 64 MiB of doubles.
+    explicit RecordFile(const hdf5::Handle& root, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
     const RecordShape& shape() const { return shape_; }
 
-    /// The part that starts at trial `trial` and step `step`, as large as 64 MiB of doubles hold, but at least a step.
+    /// The part that starts at a trial and step, as large as allowed, but at least a step.
     RecordPart part_at(std::int64_t trial, int step) const;
     void read(const RecordPart& part, RecordValues& values) const;
 
@@ -54,6 +55,7 @@ private:
 
     hdf5::RealDataset error_, covariance_;
     std::optional<hdf5::RealDataset> innovation_, innovation_covariance_;
+    std::int64_t part_numbers_;
     bool single_ = false;            ///< one trial, without a dimension for it
     RecordShape shape_;
 };

@@ -33,8 +33,10 @@ void add_part(const RecordPart& part, const RecordShape& shape, const RecordValu
         }
 }
 
-JudgedRecord read_parts(const RecordFile& file, const std::string& path,
-                        const std::function<void(const Progress&)>& progress) {
+}  // namespace
+
+JudgedRecord read_record(const RecordFile& file, const std::string& path,
+                         const std::function<void(const Progress&)>& progress) {
     const auto start = std::chrono::steady_clock::now();
     const RecordShape& shape = file.shape();
     RecordTotals totals(shape, path);
@@ -55,15 +57,13 @@ JudgedRecord read_parts(const RecordFile& file, const std::string& path,
     return totals.finish();
 }
 
-}  // namespace
-
 JudgedRecord read_judgement_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
     refuse_workspace(path);
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name parts of the state in the attribute `blocks`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const hdf5::Handle& root) { return read_parts(RecordFile(root), path, progress); });
+                           [&](const hdf5::Handle& root) { return read_record(RecordFile(root), path, progress); });
 }
 
 }  // namespace credence

@@ -6,6 +6,7 @@
 #include "judgement_step.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -53,9 +54,12 @@ private:
     int status_pose_ = -1;
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
-    double pose_error_ = 0;
     std::vector<std::vector<double>> whitened_;  ///< [lags + 1][m] by step, modulo its length; NaN where not observed
     std::vector<double> product_sum_, product_count_;  ///< [lags]
 };
+
+/// Reads a whole record, part by part. The same for parts of any size.
+JudgedRecord read_record(const RecordFile& file, const std::string& path,
+                         const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

@@ -4,7 +4,9 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace credence {
 
@@ -57,12 +59,33 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
 }
 
 Report make_report(const Study& study, double margin) {
-    Report report{"study " + study_hash(study), study.root_seed, study.complete, margin, {}, {}, planned_against_fixed(study)};
+    Report report;
+    report.source = "study " + study_hash(study);
+    report.root_seed = study.root_seed;
+    report.complete = study.complete;
+    report.margin = margin;
+    report.pairs = planned_against_fixed(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         for (const ArmResults& arm : results.arms)
             report.arms.push_back(report_arm(results, arm, study.root_seed, margin));
     }
+    return report;
+}
+
+Report make_record_report(const JudgedRecord& record, const std::string& path, double margin) {
+    ScenarioResults results = record.results;
+    ArmResults& arm = results.arms.front();
+    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(),
+              std::numeric_limits<double>::quiet_NaN());  // a record does not tell
+    Report report;
+    report.source = "record " + path;
+    report.margin = margin;
+    report.troubles = record.troubles;
+    results.scenario.title.clear();  // the source says it
+    report.scenarios.push_back(results.scenario);
+    constexpr std::uint64_t bootstrap_seed = 1;
+    report.arms.push_back(report_arm(results, arm, bootstrap_seed, margin));
     return report;
 }
 

@@ -54,6 +54,8 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json.update(evidence_json(arm.evidence));
     for (const Comparison& pair : report.pairs)
         if (pair.scenario == arm.scenario && pair.a == arm.arm) json["paired_difference"] = comparison_json(pair);
+    for (const RecordTrouble& trouble : report.troubles)
+        json["troubles"].push_back({{"trial", trouble.trial}, {"step", trouble.step}, {"what", trouble.what}});
     json["source"] = report.source;
     json["root_seed"] = report.root_seed ? Json(*report.root_seed) : Json();
     json["complete"] = report.complete;

@@ -79,6 +79,22 @@ std::string verdicts_part(const Report& report) {
     return text;
 }
 
+/// The trials of a record that are in no figure, the first of them by name.
+std::string troubles_part(const Report& report) {
+    constexpr std::size_t most = 5;
+    std::string text;
+    const std::size_t shown = std::min(most, report.troubles.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const RecordTrouble& trouble = report.troubles[i];
+        text += "trial " + std::to_string(trouble.trial) + ", step " + std::to_string(trouble.step) +
+                " (both from 0): " + trouble.what + "; the trial is in no figure.\n";
+    }
+    const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed;
+    if (shown > 0 && failed > static_cast<std::int64_t>(shown))
+        text += "... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.\n";
+    return text;
+}
+
 /// Studies with many failed trials say so before anything else.
 std::string warnings_part(const Report& report) {
     std::string text;
@@ -91,6 +107,7 @@ std::string warnings_part(const Report& report) {
             text += "note: " + std::to_string(arm.diverged) + " trials of " + name +
                     " diverged; they are in the figures.\n";
     }
+    text += troubles_part(report);
     if (!report.complete) text += "note: the study is not complete.\n";
     return text;
 }
@@ -100,10 +117,10 @@ std::string warnings_part(const Report& report) {
 std::string report_text(const Report& report) {
     std::string text = warnings_part(report);
     const std::int64_t trials = report.arms.empty() ? 0 : report.arms.front().trials;
-    text += report.source + ": " + std::to_string(trials) + " trials of each arm" +
-            (report.root_seed ? ", root seed " + std::to_string(*report.root_seed) : "") +
-            ". A consistent filter has NEES/dim 1 in every\nblock of the state and at every step; the verdict holds all "
-            "of them against 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
+    text += report.source + ": " + std::to_string(trials) + (trials == 1 ? " trial" : " trials") +
+            (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "") +
+            ".\nA consistent filter has NEES/dim 1 in every block of the state and at every step; the verdict holds all of "
+            "them\nagainst 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
     text += verdicts_part(report);
     for (const Scenario& scenario : report.scenarios) text += scenario_detail(report, scenario);
     return text;

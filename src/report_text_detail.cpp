@@ -14,7 +14,7 @@ namespace {
 std::string title_of(const std::string& figure, const std::string& unit) {
     const std::string name = figure == "trace_P"        ? "trace(P), last step"
                              : figure == "mean_trace_P" ? "trace(P), mean over the steps"
-                             : figure == "pose_error"   ? "pose error"
+                             : figure == "pose_error"   ? "pose error, sum over the poses"
                                                         : figure;
     return unit == "1" ? name : name + " [" + unit + "]";
 }

@@ -45,7 +45,8 @@ Summary summarise(std::vector<double> values) {
     std::erase_if(values, [](double value) { return std::isnan(value); });
     Summary summary{static_cast<std::int64_t>(values.size()), nan, nan, {nan, nan}, nan, nan};
     if (values.empty()) return summary;
-    summary.mean = exact_mean(values);
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    summary.mean = *least == *most ? *least : exact_mean(values);  // N x / N may round to another number than x
     if (values.size() > 1) {
         double squares = 0;
         for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);

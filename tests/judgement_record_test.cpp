@@ -2,6 +2,7 @@
 
 #include <credence/chi_square.hpp>
 
+#include "../src/judgement_totals.hpp"
 #include "judgement_support.hpp"
 
 #include <numeric>
@@ -59,8 +60,9 @@ void check_columns(const ScenarioResults& results, const Json& expected) {
     for (std::size_t c = 0; c < column_count; ++c) {
         const std::string& name = results.columns[c].name;
         CAPTURE(name);
-        if (name != "unseen") check_agree(results.arms.front().columns[c], expected[name]);
-        else CHECK(results.arms.front().columns[c] == std::vector<double>(static_cast<std::size_t>(results.trials), -1));
+        const std::vector<double>& column = results.arms.front().columns[c];
+        if (name == "unseen") CHECK(column == std::vector<double>(static_cast<std::size_t>(results.trials), -1));
+        else check_agree(column, expected[name]);
     }
 }
 
@@ -96,15 +98,12 @@ void check_troubles(const JudgedRecord& record, const Json& expected) {
     }
 }
 
-JudgedRecord read_reference(const std::string& name) {
-    const Json& expected = record_figures().at(name);
-    return read_judgement_record(record_folder + expected["file"].get<std::string>());
+std::string reference_path(const std::string& name) {
+    return record_folder + record_figures().at(name)["file"].get<std::string>();
 }
 
 /// All of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below 1e4.
-JudgedRecord check_reference(const std::string& name) {
-    const Json& expected = record_figures().at(name);
-    JudgedRecord record = read_reference(name);
+void check_record(const JudgedRecord& record, const Json& expected) {
     CHECK(record.results.trials == expected["trials"]);
     CHECK(record.results.steps() == expected["steps"]);
     CHECK(record.results.state_size() == expected["n"]);
@@ -113,6 +112,11 @@ JudgedRecord check_reference(const std::string& name) {
     check_columns(record.results, expected["columns"]);
     check_arm(record.results, expected);
     check_troubles(record, expected["troubles"]);
+}
+
+JudgedRecord check_reference(const std::string& name) {
+    JudgedRecord record = read_judgement_record(reference_path(name));
+    check_record(record, record_figures().at(name));
     return record;
 }
 
@@ -129,7 +133,8 @@ TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes t
           "nees nees_pose nees_feature_1 nis nis_rows squared_error squared_error_pose squared_error_feature_1 "
           "trace_P_step variance_pose variance_feature_1 standardised_error_x0 standardised_error_x1 "
           "standardised_error_x2 standardised_error_x3 standardised_error_x4 ");
-    CHECK(record.results.columns[column_pose_error].long_name == "squared error of the block pose, summed over the steps");
+    CHECK(record.results.columns[column_pose_error].long_name ==
+          "squared error of the block pose, summed over the steps");
     CHECK(record.results.arms.front().errors.size() == 60 * 6 * 5);
 }
 
@@ -161,9 +166,41 @@ TEST_CASE("record: one trial without a dimension of its own, and without blocks"
           "squared error of the whole state, summed over the steps");
 }
 
-TEST_CASE("record: single precision, chunks that fit nothing, and blocks as a list of texts") { check_reference("singles"); }
+TEST_CASE("record: single precision, chunks that fit nothing, and blocks as a list of texts") {
+    check_reference("singles");
+}
 
 TEST_CASE("record: one component and one row, and an attribute without a value") { check_reference("one"); }
+
+TEST_CASE("record: parts of any size, within a trial and over several, are the same record") {
+    for (const char* name : {"ragged", "troubled", "single", "singles"})
+        for (const std::int64_t part_numbers : {1, 100, 300, 2000}) {
+            CAPTURE(name, part_numbers);
+            const std::string path = reference_path(name);
+            check_record(hdf5::read_file(path, "", [&](const Handle& root) {
+                             return read_record(RecordFile(root, part_numbers), path);
+                         }), record_figures().at(name));
+        }
+}
+
+TEST_CASE("record: a run of very many steps has distances, and no cells") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "long.h5";
+    write_plain_record(path, [](const Handle& root) {
+        replace<double>(root, "error", {5000, 1}, std::vector<double>(5000, 1));
+        replace<double>(root, "covariance", {5000, 1, 1}, std::vector<double>(5000, 1));
+        remove(root, "innovation");
+        remove(root, "innovation_covariance");
+    });
+    const JudgedRecord record = read_judgement_record(path);
+    const ArmResults& arm = record.results.arms.front();
+    CHECK(arm.cells.empty());
+    CHECK(arm.shape_distance.size() == 5000);
+    check_agrees(arm.shape_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
+    CHECK(arm.columns[column_nees_ratio][0] == 1);
+    CHECK_FALSE(record.has_innovations);
+    CHECK(arm.products.count == std::vector<std::int64_t>(10, 0));
+}
 
 TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
     const TemporaryFolder folder;

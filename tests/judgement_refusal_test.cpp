@@ -72,7 +72,7 @@ const std::vector<Damage> value_damages{
      }},
     {"/innovation: trial 1, step 0 (both counted from 0) holds an infinite value",
      value("innovation", vector_at(1, 0), infinite)},
-    {"/innovation_covariance: trial 1, step 3 (both counted from 0) holds nan at [0, 1], where the errors or innovations",
+    {"/innovation_covariance: trial 1, step 3 (both counted from 0) holds nan at [0, 1], where the errors or innov",
      value("innovation_covariance", matrix_at(1, 3) + 1, nan)},
     {"/innovation_covariance: trial 1, step 3 (both counted from 0) is not symmetric: [0, 1] is 0.5, [1, 0] is 0",
      value("innovation_covariance", matrix_at(1, 3) + 1, 0.5)},
@@ -101,7 +101,8 @@ const std::vector<Damage> shape_damages{
     {"/error: is [1, 3, 4, 2]. Write it", extents("error", {1, 3, 4, 2}, "covariance", {1, 3, 4, 2, 2})},
     {"/innovation: does not fit: it is [2, 4, 2] and /error [3, 4, 2]. Write it as [trial, step, row], with NaN",
      extents("innovation", {2, 4, 2}, "innovation_covariance", {2, 4, 2, 2})},
-    {"/innovation: does not fit: it is [4, 2] and /error", extents("innovation", {4, 2}, "innovation_covariance", {4, 2, 2})},
+    {"/innovation: does not fit: it is [4, 2] and /error",
+     extents("innovation", {4, 2}, "innovation_covariance", {4, 2, 2})},
     {"/error: is [0, 4, 2]: no trials. Write at least one", extents("error", {0, 4, 2}, "covariance", {0, 4, 2, 2})},
     {"/error: is [3, 0, 2]: no steps", extents("error", {3, 0, 2}, "covariance", {3, 0, 2, 2})},
     {"/error: is [3, 4, 0]: no components", extents("error", {3, 4, 0}, "covariance", {3, 4, 0, 0})},
@@ -205,7 +206,8 @@ TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its na
     put_bytes(path, "trial,step\n");
     CHECK(said() == path + ": the file: is not an HDF5 file. Give an HDF5 file.");
     put_bytes(path, "MATLAB 7.3 MAT-file, Platform: GLNXA64");
-    CHECK(said() == path + ": the file: is a MATLAB workspace. Write the record with h5create, h5write and h5writeatt.");
+    CHECK(said() ==
+          path + ": the file: is a MATLAB workspace. Write the record with h5create, h5write and h5writeatt.");
     write_plain_record(path);
     put_bytes(path, bytes_of(path).substr(0, 900));
     CHECK(said().find("is truncated or damaged") != std::string::npos);

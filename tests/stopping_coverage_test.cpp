@@ -109,7 +109,7 @@ TEST_CASE("stopping: the engine's own intervals cover, where the truth is known 
     matched.sensor.range_min = 0;
     matched.sensor.range_max = std::numeric_limits<double>::infinity();
     matched.arms.controllers = {Controller::fixed};
-    const StoppingRule rule{{parse_goal("nees_ratio=3.35%"), parse_goal("nis_ratio=0.022")}, 5000, 256};
+    const StoppingRule rule{{parse_goal("nees_ratio=3.4%"), parse_goal("nis_ratio=0.0225")}, 5000, 256};
     constexpr int seeds = 200;
     int missed[2] = {0, 0}, beyond_the_first = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {

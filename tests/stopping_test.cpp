@@ -1,4 +1,4 @@
-// Room 11: stopping at a precision: goals, looks, and the study that grows from look to look.
+// Room 11: stopping at a precision: looks, and the study that grows from look to look.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -11,22 +11,12 @@
 #include <limits>
 
 using namespace credence;
-using Catch::Contains;
 using Catch::Matchers::WithinRel;
 
 namespace {
 
 const std::vector<double> sample{3.25, -1.5, 7.125, 0.0, 2.0, 2.0, 11.75, -4.0};
 const double missing = std::numeric_limits<double>::quiet_NaN();
-
-std::string refusal_of(const std::string& goal, const Study& study) {
-    try {
-        check_goals({parse_goal(goal)}, study);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 std::vector<StoppingGoal> goals(const std::vector<std::string>& texts) {
     std::vector<StoppingGoal> goals;
@@ -40,63 +30,12 @@ std::vector<std::string> names(const Look& look) {
     return names;
 }
 
-/// A state that asks for `allowed` of 1000 values with this sd.
+/// A look at one sample of this sd, for which `allowed` was asked and not met.
 Look one_look(double sd, double allowed, std::int64_t count = 4096) {
     return {4096, 1, look_alpha(1), {{"x", count, 0, sd, allowed * 2, allowed}}, false};
 }
 
 }  // namespace
-
-TEST_CASE("stopping: a goal is a mean or a paired difference, absolute or relative") {
-    const StoppingGoal relative = parse_goal("trace_P=0.5%");
-    CHECK(relative.text == "trace_P=0.5%");
-    CHECK(relative.metric == "trace_P");
-    CHECK(relative.kind == WidthKind::relative);
-    CHECK_THAT(relative.half_width, WithinRel(0.005, 1e-15));
-    CHECK_FALSE(relative.is_pair());
-    const StoppingGoal pair = parse_goal(" trace_P [ greedy.ekf - fixed ] = 1e-2 ");
-    CHECK(pair.metric == "trace_P");
-    CHECK(pair.minuend == "greedy.ekf");
-    CHECK(pair.subtrahend == "fixed");
-    CHECK(pair.kind == WidthKind::absolute);
-    CHECK(pair.half_width == 0.01);
-    CHECK(parse_goal("unseen[greedy-fixed]=2 %").kind == WidthKind::relative);
-}
-
-TEST_CASE("stopping: what is no goal is refused, saying why") {
-    const std::vector<std::pair<std::string, std::string>> refused{
-        {"", "there is no = in it"}, {"trace_P", "there is no = in it"}, {"=1", "no figure stands before the ="},
-        {"[greedy-fixed]=1", "no figure"}, {"trace_P=", "not a number"}, {"trace_P=x", "not a number"},
-        {"trace_P=%", "not a number"}, {"trace_P=1%%", "not a number"}, {"trace_P=0", "above 0"},
-        {"trace_P=0%", "above 0"}, {"trace_P=-1", "above 0"}, {"trace_P=nan", "above 0"}, {"trace_P=inf", "finite"},
-        {"trace_P=1e-324%", "not a number"}, {"trace_P[greedy]=1", "two arms"}, {"trace_P[a-b-c]=1", "two arms"},
-        {"trace_P[-fixed]=1", "two arms"}, {"trace_P[]=1", "two arms"}, {"trace_P[a-b=1", "not closed"},
-        {"trace_P[a-b]c=1", "not closed"}};
-    for (const auto& [text, why] : refused) {
-        CAPTURE(text);
-        CHECK_THROWS_WITH(parse_goal(text), Contains("invalid --until=" + text) && Contains(why));
-    }
-}
-
-TEST_CASE("stopping: goals of which the study has not the figure or the arms are refused, with what it has") {
-    Study study = new_study(small_scenarios(), 1);
-    CHECK(refusal_of("trace_P=1", study).empty());
-    CHECK(refusal_of("unseen[greedy-fixed]=1", study).empty());
-    CHECK(refusal_of("unseen[greedy.kf-fixed]=1", study).empty());  // one scenario has both
-    CHECK_THAT(refusal_of("trase_P=1", study), Contains("Did you mean trace_P?") && Contains("nees_ratio, nis_ratio"));
-    CHECK_THAT(refusal_of("nonsense=1", study), Contains("there is no figure nonsense). There are trace_P, unseen"));
-    CHECK_THAT(refusal_of("status=1", study), Contains("there is no figure status"));
-    CHECK_THAT(refusal_of("status_pose=1", study), Contains("there is no figure status_pose"));
-    CHECK_THAT(refusal_of("trace_P[greedy-fixt]=1", study), Contains("has an arm fixt). Did you mean fixed?"));
-    CHECK_THAT(refusal_of("trace_P[greedy.ekf-fixed.kf]=1", study), Contains("has both greedy.ekf and fixed.kf"));
-    CHECK_THAT(refusal_of("trace_P[greedy-greedy]=1", study), Contains("an arm less itself"));
-    CHECK_THAT(refusal_of("trace_P[greedy-greedy.kf]=1", study), Contains("an arm less itself"));
-    // Two estimators under one controller: no scenario key allows that yet.
-    study.scenarios[0].arms.push_back(study.scenarios[0].arms[1]);
-    study.scenarios[0].arms.back().name = "greedy.other";
-    CHECK_THAT(refusal_of("trace_P[greedy-fixed]=1", study), Contains("Name one of greedy.ekf, greedy.other"));
-    CHECK(refusal_of("trace_P[greedy.other-greedy.ekf]=1", study).empty());
-}
 
 TEST_CASE("stopping: looks are at 4096 trials, then doubled, and at the ceiling") {
     CHECK(look_trials(10000) == std::vector<std::int64_t>{4096, 8192, 10000});
@@ -152,10 +91,10 @@ TEST_CASE("stopping: a look has every arm and scenario, or every pair, of the fi
         trace[i] = arms[1].columns[column_trace_P][i];
         difference[i] = arms[1].columns[column_unseen][i] - arms[0].columns[column_unseen][i];
     }
-    CHECK(look.states[3].mean == summarise(trace).mean);
+    CHECK_THAT(look.states[3].mean, WithinRel(summarise(trace).mean, 1e-14));  // rounding of 512 terms
     CHECK_THAT(look.states[3].half_width,
                WithinRel(t_quantile(0.00625, 511) * summarise(trace).standard_error, 1e-14));
-    CHECK(look.states[5].mean == summarise(difference).mean);
+    CHECK(look.states[5].mean == summarise(difference).mean);  // of whole numbers
     CHECK(names(look_at(study, goals({"unseen[greedy.kf-fixed]=1"}), 512, 1)).size() == 1);
     CHECK_THROWS_AS(look_at(study, goals({"unseen=1"}), 701, 1), std::logic_error);
 }
@@ -186,6 +125,10 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
     CHECK(predicted_trials(one_look(1, 0.0217), {{}, 16000}) == 16000);  // or at it: 2.7347 / sqrt(16000) = 0.02162
     CHECK_FALSE(predicted_trials(one_look(1, 1e-10), rule));
     CHECK_FALSE(predicted_trials(one_look(missing, 1, 1), rule));
+    Look at_the_ceiling = one_look(1, 0.028, 9000);  // 0.0288 there, and 0.0276 at the look before
+    at_the_ceiling.trials = 9000;
+    at_the_ceiling.number = 3;
+    CHECK(predicted_trials(at_the_ceiling, {{}, 9000}) == 16384);
     Look two = one_look(1, 0.0277);
     two.states.push_back({"y", 4096, 0, 1, 0.035, 0.0135});
     two.states.push_back({"z", 4096, 0, 1, 0.035, 0.036});
@@ -247,6 +190,7 @@ TEST_CASE("stopping: all goals must be met") {
     CHECK(look.trials == 300);
     CHECK(look.states[0].met());
     CHECK(widest(look).name.starts_with("trace_P of"));
+    CHECK_FALSE(look_at(study, goals({"trace_P=1e-9", "unseen=1"}), 300, 1).met);
 }
 
 TEST_CASE("stopping: any number of threads and any history stop at the same look, with the same study") {

@@ -22,6 +22,7 @@ public:
     int cell(double value) const {
         if (!(value < limit_)) return shape_cells - 1;
         int cell = value > 0 ? first_[static_cast<std::size_t>(value * scale_)] : 0;
+        cell += value >= upper_[static_cast<std::size_t>(cell)];  // mostly all, and no branch to guess
         while (value >= upper_[static_cast<std::size_t>(cell)]) ++cell;
         return cell;
     }

@@ -3,6 +3,7 @@
 
 #include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
+#include <credence/judgement_record.hpp>
 
 #include <optional>
 #include <string>
@@ -42,11 +43,15 @@ struct Report {
     double margin = 0;
     std::vector<Scenario> scenarios;
     std::vector<ArmReport> arms;
+    std::vector<RecordTrouble> troubles;    ///< of a record: trials that are in no figure, the first ones
     std::vector<Comparison> pairs;          ///< planned against fixed: greedy - fixed of the same estimator, by trial
 };
 
 /// Figures of failed trials are left out (they are NaN); their number is given beside.
 Report make_report(const Study& study, double margin);
+
+/// The same of a record: one arm, `record`; `path` names it.
+Report make_record_report(const JudgedRecord& record, const std::string& path, double margin);
 
 /// One arm's part of a report.
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin);

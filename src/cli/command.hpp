@@ -2,6 +2,7 @@
 // Room 14: what the subcommands share. One file a subcommand; main.cpp lists them.
 
 #include <credence/ini.hpp>
+#include <credence/report.hpp>
 
 #include <map>
 #include <optional>
@@ -59,13 +60,25 @@ Option set_option();
 Option margin_option();
 Option output_option(const std::string& help);
 
+// What report and judge share: how to render, and rendering it. give_report returns the exit code.
+struct ReportRequest {
+    std::string format;
+    double margin = 0;
+};
+ReportRequest read_report_request(const Parsed& parsed);
+int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report);
+
 // The subcommands: their description, and their work. They return the exit code.
 const Command& run_command();
 const Command& report_command();
+const Command& judge_command();
+const Command& compare_command();
 const Command& replay_command();
 const Command& show_command();
 int run(const Parsed& parsed, const std::string& command_line);
 int report(const Parsed& parsed);
+int judge(const Parsed& parsed);
+int compare(const Parsed& parsed);
 int replay(const Parsed& parsed, const std::string& command_line);
 int show(const Parsed& parsed);
 

@@ -15,12 +15,34 @@ namespace {
 
 using namespace credence;
 
+/// A subcommand: how it describes itself, and its work.
+struct Subcommand {
+    const cli::Command& (*command)();
+    int (*work)(const cli::Parsed&, const std::string& command_line);
+};
+
+template <int (*work)(const cli::Parsed&)>
+int without_line(const cli::Parsed& parsed, const std::string&) {
+    return work(parsed);
+}
+
+const std::vector<Subcommand>& subcommands() {
+    static const std::vector<Subcommand> all{{cli::run_command, cli::run},
+                                             {cli::report_command, without_line<cli::report>},
+                                             {cli::judge_command, without_line<cli::judge>},
+                                             {cli::compare_command, without_line<cli::compare>},
+                                             {cli::replay_command, cli::replay},
+                                             {cli::show_command, without_line<cli::show>}};
+    return all;
+}
+
 int help() {
     std::cout << "credence: can a filter's covariance be believed, and does planning a path pay?\n\n"
                  "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
-    for (const cli::Command* command :
-         {&cli::run_command(), &cli::report_command(), &cli::replay_command(), &cli::show_command()})
-        std::cout << "  " << command->name << std::string(9 - command->name.size(), ' ') << command->summary << "\n";
+    for (const Subcommand& subcommand : subcommands()) {
+        const cli::Command& command = subcommand.command();
+        std::cout << "  " << command.name << std::string(9 - command.name.size(), ' ') << command.summary << "\n";
+    }
     std::cout << "\n  --help   this\n  --version  the version and how it was built\n\n"
                  "Exit codes: 0 done, 1 failed, 2 bad input.\n";
     return 0;
@@ -45,12 +67,15 @@ int complain(const std::string& message, int exit_code) {
 
 int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
     best_unit();  // refuses a bad CREDENCE_FORCE_UNIT before any work
-    const auto parsed = [&](const cli::Command& command) { return cli::parse(command, arguments); };
-    if (name == "run") { const auto p = parsed(cli::run_command()); return p ? cli::run(*p, line) : 0; }
-    if (name == "report") { const auto p = parsed(cli::report_command()); return p ? cli::report(*p) : 0; }
-    if (name == "replay") { const auto p = parsed(cli::replay_command()); return p ? cli::replay(*p, line) : 0; }
-    if (name == "show") { const auto p = parsed(cli::show_command()); return p ? cli::show(*p) : 0; }
-    const std::string meant = closest(name, {"run", "report", "replay", "show", "--help", "--version"});
+    std::vector<std::string> names{"--help", "--version"};
+    for (const Subcommand& subcommand : subcommands()) {
+        if (subcommand.command().name == name) {
+            const std::optional<cli::Parsed> parsed = cli::parse(subcommand.command(), arguments);
+            return parsed ? subcommand.work(*parsed, line) : 0;
+        }
+        names.push_back(subcommand.command().name);
+    }
+    const std::string meant = closest(name, names);
     throw InputError("unknown command " + printable(name) + ". " +
                      (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
 }

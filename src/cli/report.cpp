@@ -19,18 +19,25 @@ const Command& report_command() {
     return command;
 }
 
-int report(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
-    const std::string format = parsed.choice("format", {"text", "json", "csv"});
-    const double margin = parse_margin(parsed);
+ReportRequest read_report_request(const Parsed& parsed) {
+    const ReportRequest request{parsed.choice("format", {"text", "json", "csv"}), parse_margin(parsed)};
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require", {"consistent"});
-    const Report report = make_report(read_results(parsed.arguments.front()).study, margin);
-    write_output(parsed, format == "json"  ? report_json(report)
-                         : format == "csv" ? report_csv(report)
-                                           : report_text(report));
+    return request;
+}
+
+int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report) {
+    write_output(parsed, request.format == "json"  ? report_json(report)
+                         : request.format == "csv" ? report_csv(report)
+                                                   : report_text(report));
     if (parsed.has("require")) require_consistent(report);
     return 0;
+}
+
+int report(const Parsed& parsed) {
+    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
+    const ReportRequest request = read_report_request(parsed);
+    return give_report(parsed, request, make_report(read_results(parsed.arguments.front()).study, request.margin));
 }
 
 }  // namespace credence::cli

@@ -2,7 +2,7 @@
 
     /usr/bin/python3 tests/reference/make_records.py                small ones beside this file, and records.json
     /usr/bin/python3 tests/reference/make_records.py --big DIR      [--trials N], each with its own JSON, in DIR
-    /usr/bin/python3 tests/reference/make_records.py --large FILE   [--trials N], a record of about 1 GB, figures unknown
+    /usr/bin/python3 tests/reference/make_records.py --large FILE   [--trials N], about 1 GB, nothing said of it
 
 Deterministic; made with Python 3.11, NumPy 1.24.2, SciPy 1.10.1 and h5py 3.7. In JSON null is NaN.
 """

@@ -20,19 +20,11 @@ class Record:
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
 
-def squared(covariance, error):
-    """e' P^-1 e"""
-    return float(error @ np.linalg.solve(covariance, error))
-
-
-def bad_covariance(covariance):
-    """Whether it is not positive definite: singular, or worse. None: it is."""
-    scale = np.sqrt(np.abs(np.diag(covariance)))
-    scale[scale == 0] = 1
-    smallest = np.linalg.eigvalsh(covariance / np.outer(scale, scale))[0]
-    if smallest < -1e-12:
-        return "is not positive definite"
-    return "is singular" if smallest < 1e-12 else None
+def smallest_eigenvalues(covariances):
+    """Of the correlation matrices; a component without variance keeps its zeros."""
+    scale = np.sqrt(np.abs(np.diagonal(covariances, axis1=-2, axis2=-1)))
+    scale = np.where(scale > 0, scale, 1)
+    return np.linalg.eigvalsh(covariances / scale[..., :, None] / scale[..., None, :])[..., 0]
 
 
 class Expected:
@@ -43,6 +35,13 @@ class Expected:
         self.trials, self.steps, self.n = record.error.shape
         self.blocks = {"all": (0, self.n), **record.blocks}
         self.there = ~np.isnan(record.error).all(axis=2)
+        self.P = np.where(self.there[..., None, None], record.covariance, np.eye(self.n))
+        if record.innovation is not None:
+            self.observed = ~np.isnan(record.innovation) & self.there[..., None]
+            both = self.observed[..., :, None] & self.observed[..., None, :]
+            # A row that is not observed becomes a 0 of variance 1 of its own: it changes neither NIS nor other rows.
+            self.S = np.where(both, record.innovation_covariance, np.eye(both.shape[-1]))
+            self.nu = np.where(self.observed, record.innovation, 0)
         self.troubles = self.find_troubles()
         self.failed = np.zeros(self.trials, dtype=bool)
         self.failed[[trouble[0] for trouble in self.troubles]] = True
@@ -54,54 +53,48 @@ class Expected:
             self.compute_innovations()
 
     def find_troubles(self):
+        """[trial, step, what, status] of the first trouble of each trial that has one."""
+        smallest = [("covariance", smallest_eigenvalues(self.P))]
+        if self.record.innovation is not None:
+            smallest.append(("innovation covariance", smallest_eigenvalues(self.S)))
+        beyond = np.nan_to_num(np.abs(self.record.error)).max(axis=2) > 1e70
         found = []
         for trial in range(self.trials):
-            trouble = self.first_trouble(trial)
-            if trouble:
-                found.append([trial, *trouble])
+            of_trial = []
+            for step in np.flatnonzero(self.there[trial]):
+                for name, value in smallest:
+                    if value[trial, step] < 1e-12:
+                        worse = value[trial, step] < -1e-12
+                        of_trial.append([step, f"{name} is {'not positive definite' if worse else 'singular'}", 2])
+                if beyond[trial, step]:
+                    of_trial.append([step, "a figure of this step is beyond 1e140", 3])
+            if not self.there[trial].any():
+                of_trial = [[0, "no step exists: every error is NaN", 3]]
+            found += [[trial, *of_trial[0]]] if of_trial else []
         return found
 
-    def first_trouble(self, trial):
-        for step in range(self.steps):
-            if not self.there[trial, step]:
-                continue
-            what = bad_covariance(self.record.covariance[trial, step])
-            if what:
-                return [step, "covariance " + what, 2]
-            if np.abs(self.record.error[trial, step]).max() > 1e70:
-                return [step, "a figure of this step is beyond 1e140", 3]
-            if self.record.innovation is None:
-                continue
-            rows = ~np.isnan(self.record.innovation[trial, step])
-            what = bad_covariance(self.record.innovation_covariance[trial, step][np.ix_(rows, rows)]) if rows.any() else None
-            if what:
-                return [step, "innovation covariance " + what, 2]
-        return None if self.there[trial].any() else [0, "no step exists: every error is NaN", 3]
-
-    def put(self, name, part, at, value):
-        self.values.setdefault((name, part), np.full((self.trials, self.steps), np.nan))[at] = value
+    def put(self, name, part, values):
+        """`values` of the steps that are there, in order."""
+        self.values[name, part] = np.full((self.trials, self.steps), np.nan)
+        self.values[name, part][self.there] = values
 
     def compute_state(self):
-        error, covariance = self.record.error, self.record.covariance
-        for at in zip(*np.nonzero(self.there)):
-            for name, (first, end) in self.blocks.items():
-                block, e = covariance[at][first:end, first:end], error[at][first:end]
-                self.put("nees", name, at, squared(block, e))
-                self.put("squared_error", name, at, float(e @ e))
-                self.put("variance", name, at, float(np.trace(block)))
-            for j in range(self.n):
-                self.put("standardised_error", f"x{j}", at, error[at][j] / math.sqrt(covariance[at][j, j]))
+        error, covariance = self.record.error[self.there], self.P[self.there]
+        for name, (first, end) in self.blocks.items():
+            block, e = covariance[:, first:end, first:end], error[:, first:end]
+            self.put("nees", name, (e * np.linalg.solve(block, e[..., None])[..., 0]).sum(axis=1))
+            self.put("squared_error", name, (e**2).sum(axis=1))
+            self.put("variance", name, np.trace(block, axis1=1, axis2=2))
+        for j in range(self.n):
+            self.put("standardised_error", f"x{j}", error[:, j] / np.sqrt(covariance[:, j, j]))
 
     def compute_innovations(self):
-        innovation, covariance = self.record.innovation, self.record.innovation_covariance
-        self.white = np.full(innovation.shape, np.nan)
-        for at in zip(*np.nonzero(self.there)):
-            rows = np.flatnonzero(~np.isnan(innovation[at]))
-            block, nu = covariance[at][np.ix_(rows, rows)], innovation[at][rows]
-            self.put("nis", "all", at, squared(block, nu) if len(rows) else 0.0)
-            self.put("nis_rows", "all", at, float(len(rows)))
-            if len(rows):
-                self.white[at][rows] = np.linalg.solve(np.linalg.cholesky(block), nu)
+        S, nu = self.S[self.there], self.nu[self.there]
+        self.put("nis", "all", (nu * np.linalg.solve(S, nu[..., None])[..., 0]).sum(axis=1))
+        self.put("nis_rows", "all", self.observed[self.there].sum(axis=1))
+        white = np.linalg.solve(np.linalg.cholesky(S), nu[..., None])[..., 0]
+        self.white = np.full(self.nu.shape, np.nan)
+        self.white[self.there] = np.where(self.observed[self.there], white, np.nan)
 
     def figure(self, name, part, values):
         run = np.nanmean(values[~self.failed], axis=1) * self.steps
@@ -137,9 +130,8 @@ class Expected:
         result["pose_error"][used] = np.nansum(self.values["squared_error", pose][used], axis=1)
         result["nees_ratio"][used] = np.nanmean(self.values["nees", "all"][used], axis=1) / self.n
         if self.white is not None:
-            with np.errstate(invalid="ignore"):
-                ratio = np.nansum(self.values["nis", "all"], axis=1) / np.nansum(self.values["nis_rows", "all"], axis=1)
-            result["nis_ratio"][used] = ratio[used]
+            sums = [np.nansum(self.values[name, "all"][used], axis=1) for name in ("nis", "nis_rows")]
+            result["nis_ratio"][used] = np.divide(*sums, out=np.full(len(sums[0]), np.nan), where=sums[1] > 0)
         result["status"] = np.zeros(self.trials)
         result["status_pose"] = np.full(self.trials, -1.0)
         for trial, step, _, status in self.troubles:

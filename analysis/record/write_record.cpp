@@ -1,0 +1,48 @@
+// Writes the errors and covariances of your filter as a record that `credence judge` reads.
+//
+//   h5c++ write_record.cpp -lhdf5_hl && ./a.out example.h5 && credence judge example.h5
+//
+// Copy `write_record` into your own program. Arrays are row-major, the trial slowest.
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+/// `error` [trials, steps, n] = estimate - truth, wrapped where it is an angle; `covariance` [trials, steps, n, n]; NaN
+/// where there is no such step. `blocks` such as "position 0:2, velocity 2:4", half-open and from 0. False if HDF5 fails.
+bool write_record(const char* path, hsize_t trials, hsize_t steps, hsize_t n, const double* error,
+                  const double* covariance, const char* blocks) {
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t extents[] = {trials, steps, n, n};
+    const bool written = file >= 0 && H5LTmake_dataset_double(file, "error", 3, extents, error) >= 0 &&
+                         H5LTmake_dataset_double(file, "covariance", 4, extents, covariance) >= 0 &&
+                         H5LTset_attribute_string(file, "/", "blocks", blocks) >= 0;
+    return H5Fclose(file) >= 0 && written;
+}
+
+/// An example: a random walk in the plane, measured at every step, and the Kalman filter that knows it.
+int main(int argc, char** argv) {
+    const hsize_t trials = 10000, steps = 20, n = 2;
+    const double q = 0.1, r = 0.5;
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> normal;
+    std::vector<double> errors, covariances;
+    for (hsize_t trial = 0; trial < trials; ++trial) {
+        double truth[2] = {0, 0}, estimate[2] = {normal(engine), normal(engine)}, P = 1;
+        for (hsize_t step = 0; step < steps; ++step) {
+            P += q * q;
+            const double gain = P / (P + r * r);
+            for (int i = 0; i < 2; ++i) {
+                truth[i] += q * normal(engine);
+                estimate[i] += gain * (truth[i] + r * normal(engine) - estimate[i]);
+                errors.push_back(estimate[i] - truth[i]);
+            }
+            P *= 1 - gain;
+            covariances.insert(covariances.end(), {P, 0, 0, P});
+        }
+    }
+    return argc == 2 && write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x 0:1, y 1:2") ? 0 : 1;
+}

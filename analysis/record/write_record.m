@@ -1,0 +1,26 @@
+% Writes the errors and covariances of your filter as a record that `credence judge` reads. GNU Octave, with its netcdf
+% package (a netCDF-4 file is an HDF5 file):
+%
+%   octave write_record.m example.h5 && credence judge example.h5
+%
+% Octave and MATLAB store the first dimension fastest, files the last: an array [n, step, trial] here is [trial, step, n]
+% in the file, which is what judge reads. In MATLAB (not run) the same is
+%   h5create(path, '/error', size(e)); h5write(path, '/error', e); h5writeatt(path, '/', 'blocks', blocks);
+
+function write_record(path, e, P, blocks)
+  % e [n, step, trial] = estimate - truth, wrapped where it is an angle; P [n, n, step, trial]; NaN: no such step.
+  % blocks such as "position 0:2, velocity 2:4", half-open and from 0.
+  [n, steps, trials] = size(e);
+  nccreate(path, "error", "Dimensions", {"n", n, "step", steps, "trial", trials}, "Format", "netcdf4");
+  ncwrite(path, "error", e);
+  nccreate(path, "covariance", "Dimensions", {"n", n, "n2", n, "step", steps, "trial", trials});
+  ncwrite(path, "covariance", P);
+  ncwriteatt(path, "/", "blocks", blocks);
+end
+
+pkg load netcdf
+randn("seed", 1);
+trials = 2000; steps = 10; L = [1 0 0; 0.5 2 0; 0.3 0.1 0.7];   % an example: errors drawn from N(0, L L')
+e = reshape(L * randn(3, steps * trials), [3, steps, trials]);
+P = repmat(L * L', [1, 1, steps, trials]);
+write_record(argv(){1}, e, P, "first 0:1, rest 1:3");

@@ -1,0 +1,34 @@
+# Sourced by the scripts of the studies: builds the program, and makes tables of its reports.
+
+source experiments/setup.sh
+
+# Installs and builds what is missing of the program.
+build_program() {
+  install_missing $build_packages
+  local tests=()
+  [ -f build/CMakeCache.txt ] || tests=(-DCREDENCE_TESTS=OFF)  # the tests need more packages: tests/run.sh turns them on
+  build build credence "${tests[@]}"
+}
+
+# study FILE.h5 SCENARIO.ini... [options]: runs it, or goes on with what is there.
+study() {
+  local file=$1
+  shift
+  mkdir -p "$(dirname "$file")"
+  build/credence run "$@" -o "$file" --resume --quiet
+}
+
+# interval FILE.csv ARM FIGURE [SCALE]: `mean ± half-width` of a figure, with two digits of the half-width.
+interval() {
+  awk -F, -v arm="$2" -v figure="$3" '
+    $2 == arm && $5 == figure {
+      half = ($10 - $9) / 2
+      digits = half > 0 ? 1 - int(log(half) / log(10) - (half < 1)) : 4
+      if (digits < 0) digits = 0
+      printf "%.*f ± %.*f", digits, $7, digits, half
+      exit
+    }' "$1"
+}
+
+# verdict FILE.csv ARM
+verdict() { awk -F, -v arm="$2" '$2 == arm { print $17; exit }' "$1"; }

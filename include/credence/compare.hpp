@@ -1,0 +1,95 @@
+#pragma once
+// Room 13: A - B, trial by trial: arms of one results file, or of files whose trials share their draws. What is
+// compared is chosen and checked here; comparison.hpp computes it; text, JSON and CSV show it. [docs/statistics.md,
+// Comparison]
+
+#include <credence/comparison.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// A study and the file that it came from.
+struct StudyFile {
+    std::string path;
+    Study study;
+};
+
+/// One arm as it was asked for: its name, or its controller's alone.
+struct ArmChoice {
+    std::size_t file = 0;  ///< its place in the list of files
+    std::string arm;
+};
+
+/// What `--arms A,B` says.
+struct ArmsChoice {
+    std::string text;  ///< as given
+    ArmChoice a, b;
+};
+
+/// Reads `A,B`, each of them `ARM` or `FILE:ARM`; FILE is a path as given or its stem. Of one file, an arm alone is of
+/// that file; of two, A alone is of the first and B alone of the second; else each names its file. Throws InputError.
+ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
+
+/// A key in which the scenarios of two files differ, with both values.
+struct KeyDifference {
+    std::string key, a, b;
+};
+
+/// What the pairs say of the first figure, trace(P).
+enum class Conclusion {
+    lower,      ///< A's mean is lower
+    higher,     ///< A's mean is higher
+    equal,      ///< A and B are equal in every trial
+    not_shown,  ///< neither is shown
+};
+const std::string& conclusion_name(Conclusion conclusion);
+
+/// One of the two arms of a comparison.
+struct ComparedSide {
+    std::string file, source;               ///< its path, and `study UUID`
+    std::int64_t trials = 0;                ///< of its file
+    std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
+    std::vector<double> mean;               ///< by figure, over the pairs: mean of A - mean of B = mean of A - B
+};
+
+/// A - B of one scenario.
+struct ComparedPair {
+    Comparison comparison;
+    std::string title;  ///< the scenario's
+    ComparedSide a, b;
+    std::int64_t trials = 0;                 ///< that both have, from 0 on; those that failed in A or B are no pairs
+    bool complete = true;                    ///< the studies of both are
+    std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published figures
+    Conclusion conclusion = Conclusion::not_shown;
+
+    std::int64_t pairs() const { return comparison.figures.front().paired.pairs; }
+};
+
+struct CompareReport {
+    std::uint64_t root_seed = 1;
+    std::vector<ComparedPair> pairs;    ///< never empty
+    std::vector<std::string> left_out;  ///< scenarios that are not compared, and why
+};
+
+/// Compares the arms chosen, in every scenario that has both; scenarios of different files are matched by name. Without
+/// a choice: of one file, every greedy arm with the fixed arm of its estimator; of several, each later file's arms with
+/// the first file's of the same name (later - first). Arms of several files are called `STEM:arm`.
+///
+/// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors, m
+/// the number of comparisons, so that all conclusions hold together at 95 %, and where the bootstrap's 95 % interval
+/// leaves 0 out too: trace(P) is heavy-tailed.
+///
+/// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
+/// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms.
+CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice);
+
+/// For people: the conclusions first, then a table with a row per figure for each pair.
+std::string compare_text(const CompareReport& report);
+/// An array with an object per scenario and pair; NaN and infinity are null.
+std::string compare_json(const CompareReport& report);
+/// A row per scenario, pair and figure; NaN is an empty cell.
+std::string compare_csv(const CompareReport& report);
+
+}  // namespace credence

@@ -1,0 +1,53 @@
+#include <credence/compare.hpp>
+#include <credence/error.hpp>
+#include <credence/store.hpp>
+#include <set>
+
+#include "command.hpp"
+
+namespace credence::cli {
+
+const Command& compare_command() {
+    static const Command command{
+        "compare",
+        "FILE.h5... [--arms A,B] [options]",
+        "compare arms or runs trial by trial, A - B",
+        "\nOf one file: --arms greedy.ekf,fixed.ekf (a controller alone, greedy,fixed, will do); without --arms every\n"
+        "greedy arm against the fixed arm of its estimator. Of several files, which must have the same --seed and the\n"
+        "same world: --arms A,B takes A from the first and B from the second, or write FILE:ARM; without --arms the\n"
+        "arms of each further file against those of the first, so that the same world under --set "
+        "filter.measurement=0.8\n"
+        "shows what that did.\n",
+        {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
+         {"format", "FORMAT", "text (default), json or csv"},
+         output_option("write there, not to the standard output")}};
+    return command;
+}
+
+namespace {
+
+void check_paths(const std::vector<std::string>& paths) {
+    if (paths.empty()) throw InputError("no results file given. Name one or more FILE.h5.");
+    std::set<std::string> seen;
+    for (const std::string& path : paths)
+        if (!seen.insert(path).second) throw InputError("repeated file " + path + ". Name each once.");
+}
+
+}  // namespace
+
+int compare(const Parsed& parsed) {
+    const std::string format = parsed.choice("format", {"text", "json", "csv"});
+    check_paths(parsed.arguments);
+    std::optional<ArmsChoice> choice;
+    if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
+    check_output_option(parsed);
+    std::vector<StudyFile> files;
+    for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path).study});
+    const CompareReport report = compare_studies(files, choice);
+    write_output(parsed, format == "json"  ? compare_json(report)
+                         : format == "csv" ? compare_csv(report)
+                                           : compare_text(report));
+    return 0;
+}
+
+}  // namespace credence::cli

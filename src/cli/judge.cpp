@@ -1,0 +1,41 @@
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <credence/error.hpp>
+#include <credence/judgement_record.hpp>
+#include <credence/report.hpp>
+
+namespace credence::cli {
+
+const Command& judge_command() {
+    static const Command command{
+        "judge",
+        "RECORD.h5 [options]",
+        "the verdict on anyone's filter, from the errors and covariances it made",
+        "\nRECORD.h5 holds the datasets\n"
+        "  error                  [trial, step, n]     estimate - truth, in the chart of the covariance; NaN: no such step\n"
+        "  covariance             [trial, step, n, n]\n"
+        "  innovation             [trial, step, m]     optional; NaN where a row was not observed\n"
+        "  innovation_covariance  [trial, step, m, m]  with it\n"
+        "and, on the file, the attribute `blocks`, such as \"pose 0:3, feature_1 3:5\" (half-open, from 0): parts of the\n"
+        "state that are judged by themselves. analysis/ shows the few lines that write one from Python, Octave and C++.\n"
+        "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
+        {margin_option(),
+         {"format", "FORMAT", "text (default), json or csv"},
+         {"require", "VERDICT", "consistent: exit with 1 unless it is"},
+         {"quiet", "", "no progress"},
+         output_option("write there, not to the standard output")}};
+    return command;
+}
+
+int judge(const Parsed& parsed) {
+    if (parsed.arguments.size() != 1) throw InputError("judge takes one record. Give RECORD.h5.");
+    const std::string& path = parsed.arguments.front();
+    const ReportRequest request = read_report_request(parsed);
+    ProgressLine progress(parsed.has("quiet"));
+    const JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
+    progress.finish();
+    return give_report(parsed, request, make_record_report(record, path, request.margin));
+}
+
+}  // namespace credence::cli

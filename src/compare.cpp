@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+#include <credence/compare.hpp>
+
+#include "compare_choice.hpp"
+
+namespace credence {
+
+namespace {
+
+ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, std::int64_t trials) {
+    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i) {
+        const auto status = static_cast<Status>(static_cast<int>(compared.arm.columns[column_status][i]));
+        side.failed += failed(status);
+        side.diverged += status == Status::diverged;
+    }
+    return side;
+}
+
+/// The arms' own means of every figure, over the pairs that its difference is of.
+void add_means(ComparedPair& pair, const ChosenPair& chosen) {
+    const std::vector<Column>& columns = chosen.a.results.columns;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (!is_figure(columns[c])) continue;
+        std::vector<double> a = figure_values(chosen.a.arm, c), b = figure_values(chosen.b.arm, c);
+        a.resize(static_cast<std::size_t>(pair.trials));
+        b.resize(static_cast<std::size_t>(pair.trials));
+        for (std::size_t i = 0; i < a.size(); ++i)
+            if (std::isnan(a[i]) || std::isnan(b[i])) a[i] = b[i] = std::nan("");
+        pair.a.mean.push_back(summarise(std::move(a)).mean);
+        pair.b.mean.push_back(summarise(std::move(b)).mean);
+    }
+}
+
+ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
+    const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
+    ComparedPair pair;
+    pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
+    pair.title = a.scenario.title;
+    pair.trials = std::min(a.trials, b.trials);
+    pair.a = side_of(chosen.a, chosen.file_a, pair.trials);
+    pair.b = side_of(chosen.b, chosen.file_b, pair.trials);
+    pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
+    pair.differences = key_differences(a.scenario, b.scenario);
+    add_means(pair, chosen);
+    return pair;
+}
+
+/// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 %.
+Conclusion concluded(const PairedComparison& paired, std::size_t comparisons) {
+    if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
+    if (paired.pairs < 2) return Conclusion::not_shown;
+    const Summary& difference = paired.difference;
+    const double half = t_quantile(0.05 / static_cast<double>(comparisons), static_cast<double>(paired.pairs - 1)) *
+                        difference.standard_error;
+    if (difference.mean + half < 0 && paired.bootstrap95.high < 0) return Conclusion::lower;
+    if (difference.mean - half > 0 && paired.bootstrap95.low > 0) return Conclusion::higher;
+    return Conclusion::not_shown;
+}
+
+/// Holm's correction over everything that is shown, as the pairs of a report have it.
+void correct_together(std::vector<ComparedPair>& pairs) {
+    std::vector<Comparison> comparisons;
+    for (ComparedPair& pair : pairs) comparisons.push_back(std::move(pair.comparison));
+    correct_together(comparisons);
+    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].comparison = std::move(comparisons[i]);
+}
+
+}  // namespace
+
+const std::string& conclusion_name(Conclusion conclusion) {
+    static const std::string names[] = {"lower", "higher", "equal", "no difference shown"};
+    return names[static_cast<std::size_t>(conclusion)];
+}
+
+CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice) {
+    CompareReport report;
+    report.root_seed = files.front().study.root_seed;
+    for (const ChosenPair& chosen : chosen_pairs(files, choice, report.left_out))
+        report.pairs.push_back(compared(chosen, report.root_seed));
+    correct_together(report.pairs);
+    for (ComparedPair& pair : report.pairs)
+        pair.conclusion = concluded(pair.comparison.figures.front().paired, report.pairs.size());
+    return report;
+}
+
+}  // namespace credence

@@ -1,0 +1,28 @@
+#pragma once
+// Room 13: which arms of which files are compared.
+
+#include <credence/compare.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Two arms to be compared, and the files that they are of.
+struct ChosenPair {
+    ComparedArm a, b;
+    const StudyFile &file_a, &file_b;
+};
+
+/// What files are called: their stems, or their paths where two stems are the same.
+std::vector<std::string> file_labels(const std::vector<std::string>& paths);
+
+/// Checks that the files can be compared, and lists the pairs that were chosen. Scenarios without a partner are
+/// added to `left_out`, with the reason. Throws InputError where no pair is left.
+std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice,
+                                     std::vector<std::string>& left_out);
+
+/// The keys in which two resolved scenarios differ, but for titles and published figures.
+std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b);
+
+}  // namespace credence
