@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <credence/error.hpp>
-#include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
 #include <set>
 
@@ -12,32 +11,6 @@ namespace {
 
 bool one_of(const std::string& word, const std::vector<std::string>& words) {
     return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-/// Whether scenarios of different files may differ in a key and still have the same truth and the same draws. Every
-/// other key shapes the world.
-bool may_differ(const std::string& key) {
-    if (key == "scenario.name" || key == "scenario.title") return true;
-    return one_of(key.substr(0, key.find('.')), {"filter", "control", "planner", "arms", "published"});
-}
-
-void check_same_draws(const std::vector<StudyFile>& files) {
-    const StudyFile& first = files.front();
-    for (const StudyFile& file : files)
-        if (file.study.root_seed != first.study.root_seed)
-            throw InputError("cannot compare " + file.path + " with " + first.path + " (its root seed is " +
-                             std::to_string(file.study.root_seed) + ", not " + std::to_string(first.study.root_seed) +
-                             ": their trials do not share their draws). Run both with the same --seed.");
-}
-
-void check_same_world(const ChosenPair& pair) {
-    const Scenario &a = pair.a.results.scenario, &b = pair.b.results.scenario;
-    for (const ScenarioKey& key : scenario_keys())
-        if (!may_differ(key.name) && key.get(a) != key.get(b))
-            throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
-                             a.name + " is another world: " + key.name + " is " + printable(key.get(a)) +
-                             " there and " + printable(key.get(b)) +
-                             " here). Compare runs that differ in filter, control, planner or arms only.");
 }
 
 /// The names of all arms of a file, each once.
@@ -161,11 +134,9 @@ private:
     [[noreturn]] void refuse(const ArmsChoice& choice) const {
         std::string why = "no scenario has both", meant;
         for (const ArmChoice& side : {choice.a, choice.b}) {
-            const std::vector<std::string> names = arm_names(files_[side.file]);
-            const bool known = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-                return name == side.arm || name.substr(0, name.find('.')) == side.arm;
-            });
-            if (known) continue;
+            std::vector<std::string> names = arm_names(files_[side.file]);
+            for (std::size_t i = names.size(); i-- > 0;) names.push_back(names[i].substr(0, names[i].find('.')));
+            if (one_of(side.arm, names)) continue;
             why = "no scenario of " + files_[side.file].path + " has " + side.arm;
             meant = closest(side.arm, names);
             break;
@@ -195,14 +166,6 @@ std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const 
     else
         for (std::size_t later = 1; later < files.size(); ++later) chooser.same_arms(later);
     return chooser.take();
-}
-
-std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b) {
-    std::vector<KeyDifference> differences;
-    for (const ScenarioKey& key : scenario_keys())
-        if (key.name != "scenario.title" && !key.name.starts_with("published.") && key.get(a) != key.get(b))
-            differences.push_back({key.name, key.get(a), key.get(b)});
-    return differences;
 }
 
 }  // namespace credence

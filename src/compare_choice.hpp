@@ -22,6 +22,12 @@ std::vector<std::string> file_labels(const std::vector<std::string>& paths);
 std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice,
                                      std::vector<std::string>& left_out);
 
+/// Throws InputError where the files' root seeds differ.
+void check_same_draws(const std::vector<StudyFile>& files);
+
+/// Throws InputError naming the first key that gives the scenarios of two files another truth or other draws.
+void check_same_world(const ChosenPair& pair);
+
 /// The keys in which two resolved scenarios differ, but for titles and published figures.
 std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b);
 

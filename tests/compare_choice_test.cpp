@@ -1,13 +1,11 @@
 // Room 13: which arms of which files are compared, and what is refused.
 
-#include <credence/compare.hpp>
-#include <credence/scenario_keys.hpp>
+#include <nlohmann/json.hpp>
 
+#include "compare_support.hpp"
 #include "program.hpp"
 #include "store_study.hpp"
 #include "study_support.hpp"
-
-#include <nlohmann/json.hpp>
 
 using namespace credence;
 using namespace credence::test;
@@ -21,17 +19,11 @@ StudyFile unrun(const std::string& path, const std::vector<Scenario>& scenarios,
     return {path, new_study(scenarios, seed)};
 }
 
-Scenario with(Scenario scenario, const std::string& key, const std::string& value) {
-    set_key(scenario, key, value);
-    return resolved(scenario);
-}
-
 std::vector<std::string> names(const std::vector<StudyFile>& files, const std::string& arms = "") {
-    std::vector<std::string> paths, pairs;
-    for (const StudyFile& file : files) paths.push_back(file.path);
-    const CompareReport report =
-        compare_studies(files, arms.empty() ? std::nullopt : std::optional(read_arms(arms, paths)));
-    for (const ComparedPair& pair : report.pairs) pairs.push_back(pair.comparison.scenario + ": " + pair.comparison.name());
+    const CompareReport report = compared(files, arms);
+    std::vector<std::string> pairs;
+    for (const ComparedPair& pair : report.pairs)
+        pairs.push_back(pair.comparison.scenario + ": " + pair.comparison.name());
     return pairs;
 }
 
@@ -45,13 +37,16 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("compare: without --arms, planned against fixed; later files against the first") {
     const Scenario heading = scenario("h"), translation = scenario("t", "translation");
-    const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("d/two.h5", {translation}), three = unrun("three.h5", {heading});
+    const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("d/two.h5", {translation}),
+                    three = unrun("three.h5", {heading});
     CHECK(names({one}) == Names{"h: greedy.ekf - fixed.ekf", "t: greedy.kf - fixed.kf"});
     CHECK(names({one, two}) == Names{"t: two:fixed.kf - one:fixed.kf", "t: two:greedy.kf - one:greedy.kf"});
     CHECK(names({one, two, three}) == Names{"t: two:fixed.kf - one:fixed.kf", "t: two:greedy.kf - one:greedy.kf",
-                                            "h: three:fixed.ekf - one:fixed.ekf", "h: three:greedy.ekf - one:greedy.ekf"});
+                                            "h: three:fixed.ekf - one:fixed.ekf",
+                                            "h: three:greedy.ekf - one:greedy.ekf"});
     // Two files of one stem go by their paths.
-    CHECK(names({unrun("a/s.h5", {heading}), unrun("b/s.h5", {heading})}).front() == "h: b/s.h5:fixed.ekf - a/s.h5:fixed.ekf");
+    CHECK(names({unrun("a/s.h5", {heading}), unrun("b/s.h5", {heading})}).front() ==
+          "h: b/s.h5:fixed.ekf - a/s.h5:fixed.ekf");
 }
 
 TEST_CASE("compare: --arms names arms, controllers, and files") {
@@ -69,17 +64,22 @@ TEST_CASE("compare: --arms names arms, controllers, and files") {
 
 TEST_CASE("compare: --arms that cannot be read, or that nothing has, are refused in words that help") {
     const Scenario heading = scenario("h"), translation = scenario("t", "translation");
-    const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("two.h5", {translation}), three = unrun("three.h5", {heading});
+    const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("two.h5", {translation}),
+                    three = unrun("three.h5", {heading});
     for (const char* text : {"greedy.ekf", "a,b,c", ",", "a,", "one:,fixed", ":greedy,fixed"})
-        CHECK_THAT(refused({one}, text), Contains("invalid --arms=" + std::string(text) + " (") && Contains("Write --arms A,B"));
-    CHECK_THAT(refused({one}, "greedy.ekf,fixd.ekf"), Contains("(no scenario of one.h5 has fixd.ekf). Did you mean fixed.ekf?") &&
-                                                          Contains("one.h5 has fixed.ekf, greedy.ekf, fixed.kf, greedy.kf in h, t"));
+        CHECK_THAT(refused({one}, text),
+                   Contains("invalid --arms=" + std::string(text) + " (") && Contains("Write --arms A,B"));
+    CHECK_THAT(refused({one}, "greedy.ekf,fixd.ekf"),
+               Contains("(no scenario of one.h5 has fixd.ekf). Did you mean fixed.ekf?") &&
+                   Contains("one.h5 has fixed.ekf, greedy.ekf, fixed.kf, greedy.kf in h, t"));
+    CHECK_THAT(refused({one}, "greedi,fixed"), Contains("Did you mean greedy?"));
     CHECK_THAT(refused({one}, "greedy.ekf,fixed.kf"), Contains("no scenario has both"));
     CHECK_THAT(refused({one}, "fixed.ekf,fixed"), Contains("both are the same arm"));
     CHECK_THAT(refused({one, two}, "one:fixed,fixed"), Contains("fixed does not say of which file it is"));
     CHECK_THAT(refused({one, two, three}, "greedy,fixed"), Contains("greedy does not say of which file it is"));
     CHECK_THAT(refused({one, two, three}, "one:greedy,two:fixed"), Contains("three.h5 takes no part"));
-    CHECK_THAT(refused({one, two}, "one:greedy,four:fixed"), Contains("four is none of the files). The files are one, two"));
+    CHECK_THAT(refused({one, two}, "one:greedy,four:fixed"),
+               Contains("four is none of the files). The files are one, two"));
     StudyFile ambiguous = one;
     ambiguous.study.scenarios[0].arms.push_back(ambiguous.study.scenarios[0].arms[1]);
     ambiguous.study.scenarios[0].arms.back().name = "greedy.other";
@@ -88,50 +88,78 @@ TEST_CASE("compare: --arms that cannot be read, or that nothing has, are refused
 }
 
 TEST_CASE("compare: where there is nothing to compare, what there is is named") {
-    const Scenario fixed_only = with(scenario("h"), "arms.controllers", "fixed"), greedy_only = with(scenario("h"), "arms.controllers", "greedy");
-    CHECK_THAT(refused({unrun("one.h5", {fixed_only})}), Contains("nothing to compare in one.h5 (no greedy arm") && Contains("one.h5 has fixed.ekf in h."));
-    CHECK_THAT(refused({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}),
-               Contains("cannot compare two.h5 with one.h5 (no scenario of the same name has an arm of the same name)"));
-    CHECK_THAT(refused({unrun("one.h5", {scenario("h")}), unrun("two.h5", {scenario("other")})}), Contains("two.h5 has fixed.ekf, greedy.ekf in other"));
+    const Scenario fixed_only = changed(scenario("h"), "arms.controllers", "fixed"),
+                   greedy_only = changed(scenario("h"), "arms.controllers", "greedy");
+    CHECK_THAT(refused({unrun("one.h5", {fixed_only})}),
+               Contains("nothing to compare in one.h5 (no greedy arm") && Contains("one.h5 has fixed.ekf in h."));
+    CHECK_THAT(
+        refused({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}),
+        Contains("cannot compare two.h5 with one.h5 (no scenario of the same name has an arm of the same name)"));
+    CHECK_THAT(refused({unrun("one.h5", {scenario("h")}), unrun("two.h5", {scenario("other")})}),
+               Contains("two.h5 has fixed.ekf, greedy.ekf in other"));
     // The arms themselves may differ between files.
-    CHECK(names({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}, "greedy,fixed").empty() == false);
+    CHECK(names({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}, "fixed,greedy") ==
+          Names{"h: one:fixed.ekf - two:greedy.ekf"});
 }
 
 TEST_CASE("compare: files of other seeds or other worlds do not share their draws") {
     const Scenario h = scenario("h");
     const StudyFile one = unrun("one.h5", {h});
-    CHECK_THAT(refused({one, unrun("two.h5", {h}, 2)}),
-               Contains("cannot compare two.h5 with one.h5 (its root seed is 2, not 1: their trials do not share their draws)"));
-    const std::vector<std::pair<std::string, std::string>> worlds{
-        {"scenario.length_unit", "m"}, {"scenario.poses", "5"},      {"features.positions", "1 1, 2 2"}, {"features.path", "circle"},
-        {"features.step", "1"},        {"features.sway_amplitude", "0.1"}, {"sensor.range_max", "3"},   {"sensor.sigma", "0.1"},
-        {"sensor.detection", "0.9"},   {"noise.walk", "0.31"},       {"noise.truncate", "2"},            {"noise.initial_heading", "0.1"},
-        {"truth.deformation", "walk"}, {"truth.edge_noise", "independent"}, {"edges.graph", "chain"},   {"model.process", "translation"}};
+    CHECK_THAT(
+        refused({one, unrun("two.h5", {h}, 2)}),
+        Contains(
+            "cannot compare two.h5 with one.h5 (its root seed is 2, not 1: their trials do not share their draws)"));
+    const std::vector<std::pair<std::string, std::string>> worlds{{"scenario.length_unit", "m"},
+                                                                  {"scenario.poses", "5"},
+                                                                  {"features.positions", "1 1, 2 2"},
+                                                                  {"features.path", "circle"},
+                                                                  {"features.step", "1"},
+                                                                  {"features.sway_amplitude", "0.1"},
+                                                                  {"sensor.range_max", "3"},
+                                                                  {"sensor.sigma", "0.1"},
+                                                                  {"sensor.detection", "0.9"},
+                                                                  {"noise.walk", "0.31"},
+                                                                  {"noise.truncate", "2"},
+                                                                  {"noise.initial_heading", "0.1"},
+                                                                  {"truth.deformation", "walk"},
+                                                                  {"truth.edge_noise", "independent"},
+                                                                  {"edges.graph", "chain"},
+                                                                  {"model.process", "translation"}};
     for (const auto& [key, value] : worlds) {
         Scenario other = h;
-        if (key == "model.process") other = scenario("h", "translation");
-        else if (key == "features.positions") set_key(other, "edges.graph", "all"), other = with(other, key, value);
-        else other = with(other, key, value);
+        if (key == "model.process")
+            other = scenario("h", "translation");
+        else if (key == "features.positions")
+            set_key(other, "edges.graph", "all"), other = changed(other, key, value);
+        else
+            other = changed(other, key, value);
         const std::string message = refused({one, unrun("two.h5", {other})}, "fixed,fixed");
-        CHECK_THAT(message, Contains("scenario h is another world: " + key + " is ") && Contains("Compare runs that differ in filter, control"));
+        CHECK_THAT(message, Contains("scenario h is another world: " + key + " is ") &&
+                                Contains("Compare runs that differ in filter, control"));
     }
     const std::vector<std::pair<std::string, std::string>> same{
-        {"scenario.title", "another"}, {"filter.measurement", "0.8"}, {"filter.covariance", "1.1"}, {"control.path", "circle"},
-        {"planner.speeds", "3"},       {"planner.turns", "0"},        {"arms.controllers", "fixed"}, {"published.trace_P", "fixed.ekf 1"}};
-    for (const auto& [key, value] : same) CHECK(refused({one, unrun("two.h5", {with(h, key, value)})}, "fixed,fixed").empty());
+        {"scenario.title", "another"}, {"filter.measurement", "0.8"},
+        {"filter.covariance", "1.1"},  {"control.path", "circle"},
+        {"planner.speeds", "3"},       {"planner.turns", "0"},
+        {"arms.controllers", "fixed"}, {"published.trace_P", "fixed.ekf 1"}};
+    for (const auto& [key, value] : same)
+        CHECK(refused({one, unrun("two.h5", {changed(h, key, value)})}, "fixed,fixed").empty());
 }
 
 TEST_CASE("compare: scenarios that are left out are named") {
     const Scenario h = scenario("h"), t = scenario("t", "translation");
-    const CompareReport report = compare_studies({unrun("one.h5", {h, t})}, read_arms("greedy.kf,fixed.kf", {"one.h5"}));
+    const CompareReport report =
+        compare_studies({unrun("one.h5", {h, t})}, read_arms("greedy.kf,fixed.kf", {"one.h5"}));
     CHECK(report.left_out == Names{"h (no arm greedy.kf)"});
     CHECK_THAT(compare_text(report), Contains("note: left out: h (no arm greedy.kf)"));
-    const CompareReport files = compare_studies({unrun("one.h5", {h, t}), unrun("two.h5", {h, scenario("u")})}, std::nullopt);
+    const CompareReport files =
+        compare_studies({unrun("one.h5", {h, t}), unrun("two.h5", {h, scenario("u")})}, std::nullopt);
     CHECK(files.left_out == Names{"u (not in one.h5)", "t (not in two.h5)"});
 }
 
 TEST_CASE("compare: CSV quotes what a file's name brings, JSON what is no UTF-8") {
-    const std::vector<StudyFile> files{unrun("one.h5", {scenario("h")}), unrun("a,\"b\".h5", {scenario("h")}), unrun("\xff.h5", {scenario("h")})};
+    const std::vector<StudyFile> files{unrun("one.h5", {scenario("h")}), unrun("a,\"b\".h5", {scenario("h")}),
+                                       unrun("\xff.h5", {scenario("h")})};
     const CompareReport report = compare_studies(files, std::nullopt);
     CHECK_THAT(compare_csv(report), Contains("h,\"a,\"\"b\"\":fixed.ekf\",one:fixed.ekf,trace_P,"));
     CHECK(Json::parse(compare_json(report)).size() == 4);
@@ -139,14 +167,16 @@ TEST_CASE("compare: CSV quotes what a file's name brings, JSON what is no UTF-8"
 
 TEST_CASE("compare: the program compares, in every format") {
     const Workplace here;
-    const std::string run = "run " + seed_scenario("ekf-circle-constant") + " --threads 2 --quiet --set scenario.poses=8 ";
+    const std::string run =
+        "run " + seed_scenario("ekf-circle-constant") + " --threads 2 --quiet --set scenario.poses=8 ";
     REQUIRE(here.credence(run + "--trials 300 -o one.h5").exit_code == 0);
     REQUIRE(here.credence(run + "--trials 200 --set filter.measurement=0.8 -o two.h5").exit_code == 0);
     const Outcome text = here.credence("compare one.h5");
     CHECK(text.exit_code == 0);
     CHECK(text.out.find("greedy.ekf - fixed.ekf, trial by trial: 300 pairs. Negative: greedy.ekf is lower.\n") == 0);
-    for (const char* part : {"trace_P: greedy.ekf ", "A - B ± 95 %", "bootstrap 95 %", "median", "A below", "A above", "equal", "Wilcoxon z",
-                             "p (Holm)", "d_z", "reduction", "unseen", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P"})
+    for (const char* part : {"trace_P: greedy.ekf ", "A - B ± 95 %", "bootstrap 95 %", "median", "A below", "A above",
+                             "equal", "Wilcoxon z", "p (Holm)", "d_z", "reduction", "unseen", "pose_error",
+                             "nees_ratio", "nis_ratio", "mean_trace_P"})
         CHECK_THAT(text.out, Contains(part));
     const Json pairs = Json::parse(here.credence("compare one.h5 two.h5 --format json").out);
     REQUIRE(pairs.size() == 2);
@@ -154,8 +184,8 @@ TEST_CASE("compare: the program compares, in every format") {
     CHECK(pairs[0]["pairs"] == 200);
     CHECK(pairs[0]["differences"]["filter.measurement"] == Json::array({"0.8", "1"}));
     CHECK(pairs[0]["nees_ratio"]["ci95"][0] > 0);
-    for (const char* figure : {"mean", "ci95", "bootstrap95", "median", "below", "above", "ties", "wilcoxon_z", "holm_p", "effect_size",
-                               "variance_reduction", "mean_a", "mean_b"})
+    for (const char* figure : {"mean", "ci95", "bootstrap95", "median", "below", "above", "ties", "wilcoxon_z",
+                               "holm_p", "effect_size", "variance_reduction", "mean_a", "mean_b"})
         CHECK(pairs[0]["trace_P"].contains(figure));
     CHECK(here.credence("compare two.h5 one.h5 --arms one:greedy,two:fixed --format csv -o t.csv").exit_code == 0);
     CHECK(here.shell("grep -c '^ekf-circle-constant,one:greedy.ekf,two:fixed.ekf,' t.csv").out == "6\n");
@@ -188,7 +218,7 @@ TEST_CASE("compare: the program refuses bad input in one line with exit code 2, 
     refused_with("missing.h5 --arms greedy", "invalid --arms=greedy (not two arms");
     refused_with("one.h5 --arms greedy.kf,fixed.kf -o t.txt", "no scenario of one.h5 has greedy.kf");
     refused_with("one.h5 seed.h5", "its root seed is 2, not 1");
-    refused_with("one.h5 walk.h5", "noise.walk is 0.31 there and 0.3 here");
+    refused_with("one.h5 walk.h5", "noise.walk is 0.31 in walk.h5 and 0.3 in one.h5");
     refused_with("one.h5 --arm x", "Did you mean --arms?");
     CHECK(here.names() == before);
 }

@@ -96,7 +96,7 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
         return GoalState{"", summary.count, summary.mean, summary.standard_deviation,
                          (summary.ci95.high - summary.ci95.low) / 2, goal.half_width};
     };
-    CHECK(replicate(2000, rule_of(64, 2.8), 1, exponential_draw, plain).missed > most_missed(2000));
+    CHECK(replicate(2000, rule_of(64, 2), 1, exponential_draw, plain).missed > most_missed(2000));
 }
 
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {

@@ -1,0 +1,53 @@
+#pragma once
+// Studies and figures for the tests of `compare`.
+
+#include <credence/compare.hpp>
+#include <credence/scenario_keys.hpp>
+#include <numeric>
+
+namespace credence::test {
+
+inline Study run(const std::vector<Scenario>& scenarios, std::uint64_t seed, std::int64_t trials) {
+    Study study = new_study(scenarios, seed);
+    run_study(study, {trials, 1, {}});
+    return study;
+}
+
+inline Scenario changed(Scenario scenario, const std::string& key, const std::string& value) {
+    set_key(scenario, key, value);
+    return resolved(scenario);
+}
+
+/// The truth that the linear filter assumes, every feature in range: P is the same in every trial [model.md, Truth].
+inline Scenario matched() {
+    Scenario s;
+    s.name = "matched";
+    s.process = Process::translation;
+    s.truth = {Deformation::walk, EdgeNoise::independent};
+    s.sensor.range_min = 0;
+    s.sensor.range_max = std::numeric_limits<double>::infinity();
+    return resolved(s);
+}
+
+inline CompareReport compared(const std::vector<StudyFile>& files, const std::string& arms = "") {
+    std::vector<std::string> paths;
+    for (const StudyFile& file : files) paths.push_back(file.path);
+    return compare_studies(files, arms.empty() ? std::nullopt : std::optional(read_arms(arms, paths)));
+}
+
+inline const PairedComparison& of(const ComparedPair& pair, int column) {
+    return pair.comparison.figures[static_cast<std::size_t>(column)].paired;
+}
+
+inline double mean_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+inline double variance_of(const std::vector<double>& values) {
+    const double mean = mean_of(values);
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return squares / static_cast<double>(values.size() - 1);
+}
+
+}  // namespace credence::test
