@@ -111,7 +111,7 @@ std::string distribution_part(const Evidence& evidence) {
     std::string text;
     if (!std::isnan(shape.distance[worst]))
         text += "    NEES against chi-square: distance " + number(shape.distance[worst], 4) + " at step " +
-                std::to_string(worst + 1) + " (p " + number(shape.p[worst], 4) + ")";
+                std::to_string(worst + 1) + " (p " + (shape.p[worst] < 1e-4 ? "< 0.0001" : number(shape.p[worst], 4)) + ")";
     if (!std::isnan(evidence.credibility.nci))
         text += std::string(text.empty() ? "    " : "; ") + "NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +

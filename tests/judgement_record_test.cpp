@@ -219,6 +219,20 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
     CHECK(std::abs(record.results.arms.front().nees[0] - 0.5 / (1.5 + 1e-10)) < 1e-14);
     CHECK(record.results.scenario.name == "r_x");
     CHECK(record.results.scenario.title == "record r_x");  // a report is UTF-8
+
+    // What rounding leaves of a 0, between components whose variances are far larger.
+    write_plain_record(path, [](const Handle& root) { set_value(root, "covariance", 1, 1e-12); });
+    CHECK(read_judgement_record(path).trouble_count == 0);
+}
+
+TEST_CASE("record: parts hold whole chunks where there is room, so that each is uncompressed once") {
+    hdf5::read_file(reference_path("singles"), "", [](const Handle& root) {
+        const RecordFile file(root, 20 * 5 * (4 + 16));  // of 50 trials in chunks of 7
+        CHECK(file.part_at(0, 0).trials == 14);
+        CHECK(file.part_at(42, 0).trials == 8);
+        CHECK(RecordFile(root, 3 * 5 * (4 + 16)).part_at(0, 0).trials == 3);
+        return 0;
+    });
 }
 
 TEST_CASE("record: a covariance is singular where rounding alone could have made its smallest eigenvalue of 0") {

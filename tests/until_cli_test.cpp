@@ -31,7 +31,7 @@ TEST_CASE("cli: run --until stops at the first look for a loose goal, and says s
     CHECK(here.shell("h5diff --exclude-path /run credence.h5 quiet.h5").exit_code == 0);
 }
 
-TEST_CASE("cli: run --until goes on to a later look, with the number that it expects") {
+TEST_CASE("cli: run --until goes on to a later look, with the number that it expects", "[long]") {
     const Workplace here;
     const Outcome run = here.credence(kalman + "--until trace_P=7%");
     INFO(run.out << run.err);

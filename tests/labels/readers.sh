@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Label readers: the scripts of analysis/, on the languages that run them.
+set -euo pipefail
+/usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }
+bash tests/record_example.sh build/credence /usr/bin/python3 analysis/record/write_record.py
+records=$(mktemp -d)
+trap 'rm -rf "$records"' EXIT
+/usr/bin/python3 tests/reference/make_records.py --big "$records"
+/usr/bin/python3 tests/judge_records.py build/credence "$records"
+if command -v octave >/dev/null; then
+  bash tests/record_example.sh build/credence octave --no-gui --quiet analysis/record/write_record.m
+fi
