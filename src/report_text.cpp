@@ -55,6 +55,8 @@ std::string why(const ArmReport& arm) {
     for (const Finding& caution : verdict.cautions) add("note, " + sentence(caution));
     if (verdict.verdict == Verdict::undecided && verdict.trials_to_decide > 0)
         add("about " + number(verdict.trials_to_decide, 0) + " trials would decide");
+    else if (verdict.verdict == Verdict::undecided && !verdict.findings.empty() && arm.evidence.trials > 1)
+        add("every block is within the margin: only this keeps it from being consistent");
     else if (verdict.verdict == Verdict::undecided && arm.evidence.trials < 2)
         add(arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
                                      : "the innovations of one trial do not decide: give more trials or steps");
