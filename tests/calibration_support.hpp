@@ -44,12 +44,16 @@ inline ScenarioResults replication(const Scenario& scenario, std::int64_t trials
     return study.scenarios.front();
 }
 
-/// The evidence of studies with the root seeds 1 ... replications, one after the other.
+/// The evidence of studies with the root seeds 1 ... replications, one after the other; without the credibility indices,
+/// which have no level and take their time.
 inline void replicate(const Scenario& scenario, std::int64_t trials, int replications,
                       const std::function<void(const Evidence&)>& look) {
     for (int r = 1; r <= replications; ++r) {
-        const ScenarioResults results = replication(scenario, trials, static_cast<std::uint64_t>(r));
-        look(evidence_of(results, results.arms.front()));
+        ScenarioResults results = replication(scenario, trials, static_cast<std::uint64_t>(r));
+        ArmResults& arm = results.arms.front();
+        arm.nees.clear();
+        arm.errors.clear();
+        look(evidence_of(results, arm));
     }
 }
 

@@ -105,8 +105,8 @@ void look_at_shape(const Evidence& evidence, Calibration& calibration) {
     calibration.between("shape", least, 0.05, evidence.shape.p[middle] < 0.05);
 }
 
-/// False findings. At a margin of 0 the matched filter stands on both edges: that is the level of the verdict for a
-/// filter off by just the margin. Found too: the findings of bias are those of "bias anywhere".
+/// False findings. At a margin of 0 the matched filter stands on both edges: the level is that of the verdict for a
+/// filter off by just the margin.
 void look_at_verdict(const Evidence& evidence, Calibration& calibration) {
     for (const double margin : {0.0, 0.05}) {
         const Consistency judged = judge(evidence, margin);

@@ -34,12 +34,15 @@ nearest() {
     *world.hpp) echo world_test trial_test "$whole" ;;
     *sensor.hpp) echo sensor_test trial_test "$whole" ;;
     *filter.hpp) echo filter_test "$whole" ;;
-    *belief.hpp | *update.hpp) echo filter_belief_test status_test "$whole" ;;
+    *belief.hpp | *update.hpp | *condition.hpp) echo filter_belief_test status_test "$whole" ;;
+    *edges.hpp) echo evidence_test filter_belief_test ;;
+    *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
+    *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test ;;
+    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 

@@ -1,0 +1,139 @@
+// Room 10: the same machinery on draws made elsewhere. NumPy's normal draws are errors and innovations of a filter that
+// is right; their totals are put together here by hand, and every figure of the evidence must be what SciPy computes
+// from the values (tests/reference/make_chi_square.py).
+
+#include <credence/consistency.hpp>
+
+#include "calibration_draws.hpp"
+
+using namespace credence;
+using namespace credence::test;
+using namespace credence::test::drawn;
+
+namespace {
+
+Evidence evidence(double claimed = 1) {
+    const ScenarioResults all = results(claimed);
+    return evidence_of(all, all.arms.front());
+}
+
+void check_list(const std::vector<double>& values, const Json& expected) {
+    REQUIRE(values.size() == expected.size());
+    for (std::size_t i = 0; i < values.size(); ++i) check_agrees(values[i], number(expected[i]));
+}
+
+void check_intervals(const std::vector<Interval>& values, const Json& expected) {
+    REQUIRE(values.size() == expected.size());
+    for (std::size_t i = 0; i < values.size(); ++i) check_agrees(values[i], expected[i]);
+}
+
+void check_moments(const Moments& moments, const Json& expected) {
+    CHECK(moments.count == trials);
+    check_agrees(moments.mean, number(expected["mean"]));
+    check_agrees(moments.standard_deviation, number(expected["sd"]));
+    check_agrees(moments.standard_error, number(expected["se"]));
+}
+
+void check_banded(const BandedRatio& ratio, const Json& expected) {
+    check_list(ratio.degrees, expected["degrees"]);
+    check_list(ratio.ratio, expected["ratio"]);
+    check_intervals(ratio.band, expected["band"]);
+    check_intervals(ratio.simultaneous_band, expected["simultaneous_band"]);
+    CHECK(ratio.outside == expected["outside_band"]);
+    CHECK(ratio.outside_simultaneous == expected["outside_simultaneous_band"]);
+}
+
+void check_accuracy(const Accuracy& accuracy, const Json& expected) {
+    check_list(accuracy.rmse, expected["rmse"]);
+    check_list(accuracy.predicted, expected["predicted"]);
+    check_agrees(accuracy.over_steps, number(expected["over_steps"]));
+    check_agrees(accuracy.ratio, number(expected["ratio"]));
+    check_agrees(accuracy.ratio_ci95, expected["interval"]);
+}
+
+}  // namespace
+
+TEST_CASE("calibration: NEES, coverage and accuracy of NumPy's draws are what SciPy computes from their values") {
+    const Evidence found = evidence();
+    CHECK(found.trials == trials);
+    REQUIRE(found.blocks.size() == expected()["blocks"].size());
+    for (std::size_t b = 0; b < found.blocks.size(); ++b) {
+        const BlockEvidence& block = found.blocks[b];
+        const Json& theirs = expected()["blocks"][b];
+        CAPTURE(block.block);
+        CHECK(block.block == theirs["block"]);
+        CHECK(block.dimension == theirs["dimension"]);
+        check_moments(block.run, theirs["run"]);
+        check_agrees(over_steps95(block), theirs["interval"]);
+        for (std::size_t k = 0; k < steps; ++k) check_moments(block.step[k], theirs["step"][k]);
+        check_banded(block.anees, theirs["anees"]);
+        check_list(block.variance_ratio, theirs["variance_ratio"]);
+        for (std::size_t level = 0; level < coverage_level_count; ++level) {
+            check_list(block.coverage[level].share, theirs["coverage"][level]["share"]);
+            check_intervals(block.coverage[level].interval, theirs["coverage"][level]["interval"]);
+            check_agrees(block.coverage[level].over_steps, number(theirs["coverage"][level]["over_steps"]));
+        }
+        check_accuracy(block.accuracy, theirs["accuracy"]);
+    }
+}
+
+TEST_CASE("calibration: NIS of rows that vary has their number of degrees, and whiteness is SciPy's") {
+    const Evidence found = evidence();
+    REQUIRE(found.nis.size() == 1);
+    const NisEvidence& nis = found.nis.front();
+    CHECK(nis.degrees < 0.75 * trials * steps * rows);  // N m would be 4000; 30 % of the rows were not observed
+    check_banded(nis.nis, expected()["nis"]["nis"]);
+    check_agrees(nis.degrees, number(expected()["nis"]["degrees"]));
+    check_agrees(nis.ratio, number(expected()["nis"]["ratio"]));
+    check_agrees(nis.scale95, expected()["nis"]["scale95"]);
+    REQUIRE(found.whiteness.size() == lags);
+    for (std::size_t i = 0; i < lags; ++i) {
+        const Json& theirs = expected()["whiteness"][i];
+        CHECK(found.whiteness[i].lag == theirs["lag"]);
+        CHECK(found.whiteness[i].count == theirs["count"]);
+        check_agrees(found.whiteness[i].correlation, number(theirs["correlation"]));
+        check_agrees(found.whiteness[i].bound, number(theirs["bound"]));
+        check_agrees(found.whiteness[i].simultaneous_bound, number(theirs["simultaneous_bound"]));
+    }
+}
+
+TEST_CASE("calibration: bias, shape and credibility of NumPy's draws are SciPy's") {
+    const Evidence found = evidence();
+    REQUIRE(found.bias.size() == n);
+    for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t k = 0; k < steps; ++k) check_moments(found.bias[j].step[k], expected()["bias"][j]["step"][k]);
+    const Json& shape = expected()["shape"];
+    CHECK_FALSE(found.shape.exact);
+    check_list(found.shape.distance, shape["cell_distance"]);
+    check_list(found.shape.p, shape["cell_p"]);
+    const Json& credibility = expected()["credibility"];
+    for (std::size_t k = 0; k < steps; ++k) {
+        CHECK(found.credibility.step[k].count == trials);
+        check_agrees(found.credibility.step[k].nci, number(credibility["nci_by_step"][k]));
+        check_agrees(found.credibility.step[k].inclination, number(credibility["inclination_by_step"][k]));
+        CHECK(shape["distance"][k] >= shape["cell_distance"][k]);
+        CHECK(shape["distance"][k] <= shape["cell_distance"][k].get<double>() + 1.0 / shape_cells);
+    }
+    check_agrees(found.credibility.nci, number(credibility["nci"]));
+    check_agrees(found.credibility.inclination, number(credibility["inclination"]));
+    ScenarioResults exact = results(1);
+    exact.arms.front().shape_distance = numbers(shape["distance"]);
+    check_list(evidence_of(exact, exact.arms.front()).shape.p, shape["p"]);
+}
+
+TEST_CASE("calibration: NumPy's draws are called what they are, with SciPy's corrected interval") {
+    CHECK(judge(evidence(), 0.05).findings.empty());
+    CHECK(judge(evidence(), 0.3).verdict == Verdict::consistent);
+    for (const double claimed : {0.7, 1.4}) {  // P so many times what it should be: 200 trials suffice
+        const Consistency judged = judge(evidence(claimed), 0.05);
+        CHECK(judged.verdict == (claimed < 1 ? Verdict::optimistic : Verdict::pessimistic));
+        REQUIRE_FALSE(judged.findings.empty());
+        const Finding& finding = judged.findings.front();
+        const Json& whole = expected()["blocks"][0];
+        CHECK(finding.where == "all");
+        CHECK(finding.when == "over all steps");
+        check_agrees(finding.value * claimed, number(whole["run"]["mean"]));
+        check_agrees(finding.interval.low * claimed, number(whole["corrected_interval"][0]));
+        check_agrees(finding.interval.high * claimed, number(whole["corrected_interval"][1]));
+    }
+}
