@@ -145,7 +145,7 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
     arm.run_square_sums = added_up(octets.run_square_sums);
     for (const double count : added_up(octets.covered)) arm.covered.push_back(static_cast<std::int32_t>(count));
     store_columns(trial_columns(problem.scenario()), octets.columns, octets.trials, arm);
-    store_cells(octets, *equiprobable_cells(view.state_size), arm);
+    if (shape_counted(view.poses - 1)) store_cells(octets, *equiprobable_cells(view.state_size), arm);
     if (detailed(view, index)) store_details(octets, arm);
     return arm;
 }

@@ -20,25 +20,30 @@ std::uint64_t fnv1a(const std::string& text) {
     return hash;
 }
 
-/// The random words of one figure. Key: root seed. Counter: position / 4, resample, then the hash of the figure's name
-/// with source 15 in the place where draws.hpp has a source: no trial's noise has that one.
+/// The random words of one resample: SplitMix64 [Steele, Lea, Flood 2014], the finaliser of a counter times the golden
+/// ratio from a key on. The key is a Philox block: its key the root seed, its counter the resample and the hash of the
+/// figure's name with source 15 in the place where draws.hpp has a source: no trial's noise has that one. (Philox for
+/// every index takes three times as long.)
 class Words {
 public:
-    Words(std::uint64_t root_seed, const std::string& figure)
-        : keys_(static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32)) {
+    Words(std::uint64_t root_seed, const std::string& figure, int resample) {
+        const PhiloxKeys keys(static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32));
         const std::uint64_t hash = fnv1a(figure);
-        low_ = hash & 0xffffffff;
-        high_ = hash >> 32 | 0xf0000;
+        const auto block = philox<std::uint64_t>(
+            {{0, static_cast<std::uint64_t>(resample), hash & 0xffffffff, hash >> 32 | 0xf0000}}, keys);
+        key_ = (block.word[0] & 0xffffffff) << 32 | (block.word[1] & 0xffffffff);
     }
 
-    /// Words of positions 4 `group` ... 4 `group` + 3.
-    PhiloxBlock<std::uint64_t> operator()(int resample, std::uint64_t group) const {
-        return philox<std::uint64_t>({{group, static_cast<std::uint64_t>(resample), low_, high_}}, keys_);
+    /// 64 bits: two words of 32.
+    std::uint64_t operator()(std::uint64_t position) const {
+        std::uint64_t z = key_ + (position + 1) * 0x9e3779b97f4a7c15u;
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        return z ^ z >> 31;
     }
 
 private:
-    PhiloxKeys keys_;
-    std::uint64_t low_ = 0, high_ = 0;
+    std::uint64_t key_ = 0;
 };
 
 /// What is drawn: one trial's value.
@@ -61,17 +66,20 @@ struct BlockPart {
 };
 
 /// The mean of one resample. Four running sums, position p going to the one of p mod 4, hide the latency of adding.
-/// Flat: with the rounds of Philox in the loop, several of them in flight, it takes a third of the time.
 template <class Part>
-CREDENCE_FLAT double resampled_mean(const std::vector<Part>& parts, const Words& words, int resample) {
-    const std::uint64_t size = parts.size(), whole = size / 4;
+double resampled_mean(const std::vector<Part>& parts, const Words& words) {
+    const std::uint64_t size = parts.size();
+    const auto low = [&](std::uint64_t word) { return parts[((word & 0xffffffff) * size) >> 32]; };
+    const auto high = [&](std::uint64_t word) { return parts[((word >> 32) * size) >> 32]; };
     Part total[4]{};
-    for (std::uint64_t group = 0; group < whole; ++group) {
-        const PhiloxBlock<std::uint64_t> random = words(resample, group);
-        for (int i = 0; i < 4; ++i) total[i] += parts[(random.word[i] * size) >> 32];
+    for (std::uint64_t pair = 0; pair < size / 4 * 2; pair += 2) {
+        const std::uint64_t one = words(pair), other = words(pair + 1);
+        total[0] += low(one);
+        total[1] += high(one);
+        total[2] += low(other);
+        total[3] += high(other);
     }
-    const PhiloxBlock<std::uint64_t> random = words(resample, whole);
-    for (std::uint64_t i = 0; i < size % 4; ++i) total[i] += parts[(random.word[i] * size) >> 32];
+    for (std::uint64_t position = size / 4 * 4; position < size; ++position) total[0] += low(words(position));
     total[0] += total[1];
     total[2] += total[3];
     total[0] += total[2];
@@ -79,11 +87,13 @@ CREDENCE_FLAT double resampled_mean(const std::vector<Part>& parts, const Words&
 }
 
 template <class Part>
-std::vector<double> resampled_means(const std::vector<Part>& parts, const Words& words) {
+std::vector<double> resampled_means(const std::vector<Part>& parts, std::uint64_t root_seed,
+                                    const std::string& figure) {
     std::vector<double> means(bootstrap_resamples);
     [[maybe_unused]] const bool worth_threads = parts.size() > 100;
 #pragma omp parallel for schedule(static) if (worth_threads)
-    for (int b = 0; b < bootstrap_resamples; ++b) means[static_cast<std::size_t>(b)] = resampled_mean(parts, words, b);
+    for (int b = 0; b < bootstrap_resamples; ++b)
+        means[static_cast<std::size_t>(b)] = resampled_mean(parts, Words(root_seed, figure, b));
     return means;
 }
 
@@ -123,11 +133,11 @@ Interval bootstrap_mean_interval(const std::vector<double>& by_trial, std::uint6
                                  const std::string& figure, double alpha) {
     const double centre = centre_of(by_trial);
     if (std::isnan(centre)) return {nan, nan};
-    const Words words(root_seed, figure);
     std::vector<BlockPart> blocks;
     if (by_trial.size() >= fewest_blocks * block_size) blocks = blocks_of(by_trial, centre);
-    std::vector<double> means = blocks.size() >= fewest_blocks ? resampled_means(blocks, words)
-                                                               : resampled_means(trials_of(by_trial, centre), words);
+    std::vector<double> means = blocks.size() >= fewest_blocks
+                                    ? resampled_means(blocks, root_seed, figure)
+                                    : resampled_means(trials_of(by_trial, centre), root_seed, figure);
     return {centre + quantile(means, alpha / 2), centre + quantile(means, 1 - alpha / 2)};
 }
 

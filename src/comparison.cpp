@@ -1,27 +1,8 @@
 #include <credence/comparison.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace credence {
-
-bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
-
-std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
-    std::vector<double> values = arm.columns[column];
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
-            values[i] = std::numeric_limits<double>::quiet_NaN();
-    return values;
-}
-
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
-    const std::size_t dot = arm.name.find('.');
-    if (dot == std::string::npos || arm.name.substr(0, dot) != "greedy") return nullptr;
-    for (const ArmResults& other : results.arms)
-        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
-    return nullptr;
-}
 
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed) {
     Comparison comparison{a.results.scenario.name, a.label, b.label, {}};

@@ -52,7 +52,9 @@ private:
         all_inside_ = all_inside_ && within(time, margin);
         note_needed_trials(block.run);
         const Estimate corrected = corrected_(block.run);
-        if (const Side side = side_of(corrected.interval(), margin); side != Side::inside)
+        // Steps that are wholly correlated are as good as one: that has the fewest degrees of freedom.
+        if (const Side side = side_of(corrected.interval(), margin);
+            side != Side::inside && beyond_chi_square(corrected, side, block.run.count * block.dimension))
             add_finding(side, block.block, "over all steps", corrected);
         Found found[2];
         for (std::size_t k = 0; k < block.step.size(); ++k) {
@@ -67,7 +69,7 @@ private:
     }
 
     /// Student's interval alone is too narrow for few trials, because chi-square is skewed: a step must also lie beyond
-    /// the exact bound that NEES (1 -+ margin) chi-square(dimension) has, which needs no estimated deviation.
+    /// the exact bound that NEES (1 -+ margin) chi-square(dimension) has, which needs no estimated deviation. So must all steps.
     bool beyond_chi_square(const Estimate& step, Side side, double degrees) const {
         const double scaled = step.value / (1 + (side == Side::above ? verdict_.margin : -verdict_.margin));
         const Interval band = chi_square_band(degrees, corrected_.alpha());
@@ -95,11 +97,19 @@ private:
     void note_needed_trials(const Moments& run) {
         const double off = std::abs(run.mean - 1), slack = std::abs(off - verdict_.margin);
         const bool inside = off < verdict_.margin;
-        const double quantile = normal_quantile(inside ? 0.05 : corrected_.alpha());
-        const double needed = std::ceil(std::pow(quantile * run.standard_deviation / slack, 2));
+        const double needed = trials_needed(inside ? 0.05 : corrected_.alpha(), run.standard_deviation / slack);
         if (!std::isfinite(needed)) return;
         if (inside) needed_inside_ = std::max(needed_inside_, needed);
         else needed_outside_ = std::min(needed_outside_, needed);
+    }
+
+    /// The least N > count with t_{N - 1} ratio / sqrt(N) <= 1.
+    double trials_needed(double alpha, double ratio) const {
+        const double count = static_cast<double>(evidence_.trials);
+        double needed = std::ceil(std::pow(normal_quantile(alpha) * ratio, 2));
+        for (int round = 0; round < 10 && needed < 1000; ++round)  // beyond, t is z
+            needed = std::ceil(std::pow(t_quantile(alpha, std::max(count, needed - 1)) * ratio, 2));
+        return std::max(count + 1, needed);
     }
 
     void decide() {
@@ -108,7 +118,8 @@ private:
         else if (pessimistic_) verdict_.verdict = Verdict::pessimistic;
         else if (all_inside_ && !evidence_.blocks.empty() && verdict_.findings.empty())
             verdict_.verdict = Verdict::consistent;
-        if (verdict_.verdict == Verdict::undecided && !all_inside_)
+        constexpr std::int64_t enough_to_tell = 30;
+        if (verdict_.verdict == Verdict::undecided && !all_inside_ && evidence_.trials >= enough_to_tell)
             verdict_.trials_to_decide = std::isfinite(needed_outside_) ? needed_outside_ : needed_inside_;
     }
 
@@ -148,12 +159,13 @@ Consistency judge(const Evidence& evidence, double margin) {
     Consistency verdict = Judge(evidence, margin).run();
     if (evidence.blocks.empty()) return verdict;
     caution_about_whiteness(evidence, verdict);
+    caution_about_innovations(evidence, verdict);
     caution_about_shape(evidence, verdict);
     return verdict;
 }
 
 std::string sentence(const Finding& finding) {
-    const bool innovations = finding.where.starts_with("innovations");
+    const bool innovations = finding.where.starts_with("innovations (");
     const std::string measure = finding.what == "biased"       ? "mean error/sigma"
                                 : finding.what == "correlated" ? "correlation"
                                 : finding.what == "misshapen"  ? "distance from chi-square"

@@ -6,26 +6,37 @@
 
 namespace credence {
 
+namespace {
+
+Interval interval_of(const Whiteness& lag) {
+    return {lag.scaled - lag.simultaneous_bound, lag.scaled + lag.simultaneous_bound};
+}
+
+}  // namespace
+
 /// One trial: its NIS, summed over the steps, is chi-square with as many degrees as it had rows, if the innovations are
-/// white; the factor by which S is off has an exact interval. Corrected over the groups of rows.
+/// white; the factor by which S is off has an exact interval. Corrected over the groups of rows; half of
+/// the level is for them and half for the lags.
 Consistency judge_single_trial(const Evidence& evidence, double margin) {
     Consistency verdict;
     verdict.margin = margin;
     bool all_inside = !evidence.nis.empty(), above = false, below = false;
     for (const NisEvidence& nis : evidence.nis) {
         all_inside = all_inside && within(nis.scale95, margin);
-        const Interval band = chi_square_band(nis.degrees, 0.05 / static_cast<double>(evidence.nis.size()));
+        const Interval band = chi_square_band(nis.degrees, 0.025 / static_cast<double>(evidence.nis.size()));
         const Interval corrected{nis.ratio / band.high, nis.ratio / band.low};
         const Side side = side_of(corrected, margin);
         if (side == Side::inside) continue;
         (side == Side::above ? above : below) = true;
         verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected});
     }
-    for (const Whiteness& lag : evidence.whiteness)
-        if (std::abs(lag.correlation) > lag.simultaneous_bound)
-            verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.correlation,
-                                        {lag.correlation - lag.simultaneous_bound,
-                                         lag.correlation + lag.simultaneous_bound}});
+    for (const Whiteness& lag : evidence.whiteness) {
+        const double single_trial_bound = normal_quantile(0.025 / static_cast<double>(evidence.whiteness.size())) /
+                                          std::sqrt(static_cast<double>(lag.count));
+        if (std::abs(lag.scaled) > single_trial_bound)
+            verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.scaled,
+                                        interval_of(lag)});
+    }
     if (above && below) verdict.verdict = Verdict::mixed;
     else if (above) verdict.verdict = Verdict::optimistic;
     else if (below) verdict.verdict = Verdict::pessimistic;
@@ -38,14 +49,21 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
     const Whiteness* worst = nullptr;
     std::vector<int> lags;
     for (const Whiteness& lag : evidence.whiteness) {
-        if (std::abs(lag.correlation) - lag.simultaneous_bound <= verdict.margin) continue;
-        if (worst == nullptr || std::abs(lag.correlation) > std::abs(worst->correlation)) worst = &lag;
+        if (std::abs(lag.scaled) - lag.simultaneous_bound <= verdict.margin) continue;
+        if (worst == nullptr || std::abs(lag.scaled) > std::abs(worst->scaled)) worst = &lag;
         lags.push_back(lag.lag);
     }
     if (worst == nullptr) return;
-    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->correlation,
-                                {worst->correlation - worst->simultaneous_bound,
-                                 worst->correlation + worst->simultaneous_bound}});
+    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst)});
+}
+
+/// Innovations of the wrong size beside a state that is right: NEES does not see it.
+void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
+    if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
+    for (const NisEvidence& nis : evidence.nis)
+        if (const Side side = side_of(nis.ratio95, verdict.margin); side != Side::inside)
+            verdict.cautions.push_back(
+                {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95});
 }
 
 /// A distance from chi-square that is beyond the margin for sure: Massart's bound on the distance of N values from their

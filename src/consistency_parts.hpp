@@ -53,6 +53,7 @@ Consistency judge_single_trial(const Evidence& evidence, double margin);
 
 /// Adds the cautions to a verdict.
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
+void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
 void caution_about_shape(const Evidence& evidence, Consistency& verdict);
 
 }  // namespace credence

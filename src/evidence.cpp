@@ -30,7 +30,7 @@ double rows_at(const Figure& nis, const FigureTotals* rows, const ArmResults& ar
 NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     const Figure& figure = results.figures[f];
     const FigureTotals* rows = totals_named(results, arm, figure.rows);
-    NisEvidence evidence{figure.part, {}, 0, nan, {nan, nan}};
+    NisEvidence evidence{figure.part, {}, 0, nan, {nan, nan}, {nan, nan}};
     ExactSum total;
     std::vector<double> totals;
     for (std::size_t k = 0; k < arm.totals[f].sum.size(); ++k) {
@@ -44,17 +44,23 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
         evidence.ratio = total.rounded() / evidence.degrees;
         const Interval band = chi_square_band(evidence.degrees, 0.05);
         evidence.scale95 = {evidence.ratio / band.high, evidence.ratio / band.low};
+        const Moments run = moments_from_sums(arm.counted, total.rounded(), arm.totals[f].run_square_sum.rounded());
+        const double rows_a_trial = evidence.degrees / run.count,
+                     half = t_quantile(0.05, run.count - 1) * run.standard_error / rows_a_trial;
+        evidence.ratio95 = {evidence.ratio - half, evidence.ratio + half};
     }
     return evidence;
 }
 
-std::vector<Whiteness> whiteness_evidence(const ProductTotals& products) {
+/// `scale` NIS/m. The bounds are for innovations of the right size; where they are not, products are off by that much.
+std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double scale) {
     std::vector<Whiteness> evidence;
     const double lags = static_cast<double>(products.sum.size());
     for (std::size_t lag = 0; lag < products.sum.size(); ++lag) {
         const double count = static_cast<double>(products.count[lag]);
         if (count == 0) continue;
-        evidence.push_back({static_cast<int>(lag) + 1, products.count[lag], products.sum[lag].rounded() / count,
+        const double mean = products.sum[lag].rounded() / count;
+        evidence.push_back({static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale,
                             normal_quantile(0.05) / std::sqrt(count), normal_quantile(0.05 / lags) / std::sqrt(count)});
     }
     return evidence;
@@ -70,10 +76,11 @@ ShapeEvidence shape_evidence(const ScenarioResults& results, const ArmResults& a
     ShapeEvidence evidence;
     evidence.exact = !arm.shape_distance.empty();
     for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k) {
-        evidence.distance.push_back(evidence.exact ? arm.shape_distance[k]
-                                                   : cell_distance(arm.cells.data() + k * shape_cells, shape_cells));
+        evidence.distance.push_back(evidence.exact       ? arm.shape_distance[k]
+                                    : arm.cells.empty() ? nan
+                                                        : cell_distance(arm.cells.data() + k * shape_cells, shape_cells));
         const double count = static_cast<double>(arm.counted_at(k));
-        evidence.p.push_back(count < 1 ? nan : kolmogorov_smirnov_p(evidence.distance.back(), count));
+        evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back()) ? nan : kolmogorov_smirnov_p(evidence.distance.back(), count));
     }
     return evidence;
 }
@@ -116,7 +123,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
         if (figure.role == FigureRole::nis)
             if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0) evidence.nis.push_back(std::move(nis));
     }
-    evidence.whiteness = whiteness_evidence(arm.products);
+    evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio);
     evidence.shape = shape_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);
     return evidence;

@@ -73,8 +73,8 @@ Report make_report(const Study& study, double margin) {
     return report;
 }
 
-Report make_record_report(const JudgedRecord& record, const std::string& path, double margin) {
-    ScenarioResults results = record.results;
+Report make_record_report(JudgedRecord record, const std::string& path, double margin) {
+    ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
     std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(),
               std::numeric_limits<double>::quiet_NaN());  // a record does not tell

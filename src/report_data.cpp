@@ -75,23 +75,61 @@ std::string csv_row(std::vector<std::string> cells, const Summary& s, const std:
     return joined(cells, ",") + "\n";
 }
 
-/// What a consistent filter has at 1, by block: a figure like the others, but for its interval's level.
-std::string evidence_rows(const ArmReport& arm) {
-    std::string text;
-    const auto row = [&](const std::string& figure, double mean, double se, const Interval& interval, double sd) {
-        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-        text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure, "1"},
-                        {arm.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt,
-                        verdict_name(arm.consistency.verdict));
-    };
-    for (const BlockEvidence& block : arm.evidence.blocks) {
-        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-        row("nees_per_dimension:" + block.block, block.run.mean, block.run.standard_error, over_steps95(block),
-            block.run.standard_deviation);
-        row("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95, nan);
+/// Rows of an arm's evidence. What a figure is of stands behind a colon, and the step behind a second one.
+class EvidenceRows {
+public:
+    explicit EvidenceRows(const ArmReport& arm) : arm_(arm) {}
+
+    std::string text() {
+        for (const BlockEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const NisEvidence& nis : arm_.evidence.nis) {
+            add("nis_per_row:" + nis.part, nis.ratio, nan, nis.ratio95);
+            add_steps("nis_per_row:" + nis.part, nis.nis.ratio, nis.nis.simultaneous_band);
+        }
+        for (const Whiteness& lag : arm_.evidence.whiteness)
+            add("whiteness:" + std::to_string(lag.lag), lag.scaled, nan,
+                {lag.scaled - lag.bound, lag.scaled + lag.bound});
+        for (const BiasEvidence& bias : arm_.evidence.bias)
+            for (std::size_t k = 0; k < bias.step.size(); ++k)
+                add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
+        add_steps("distance_from_chi_square", arm_.evidence.shape.distance, {});
+        add("nci", arm_.evidence.credibility.nci, nan, none);
+        add("inclination", arm_.evidence.credibility.inclination, nan, none);
+        return text_;
     }
-    return text;
-}
+
+private:
+    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    static constexpr Interval none{nan, nan};
+
+    void add(const std::string& figure, double mean, double se, const Interval& interval, double sd = nan) {
+        text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), figure, "1"},
+                         {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt,
+                         verdict_name(arm_.consistency.verdict));
+    }
+    void add_moments(const std::string& figure, const Moments& moments) {
+        const double half = t_quantile(0.05, moments.count - 1) * moments.standard_error;
+        add(figure, moments.mean, moments.standard_error, {moments.mean - half, moments.mean + half},
+            moments.standard_deviation);
+    }
+    /// For NIS at a step the interval is its joint chi-square band: there is no spread of trials to take one from.
+    void add_steps(const std::string& figure, const std::vector<double>& values, const std::vector<Interval>& intervals) {
+        for (std::size_t k = 0; k < values.size(); ++k)
+            add(figure + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
+    }
+    void add_block(const BlockEvidence& block) {
+        add_moments("nees_per_dimension:" + block.block, block.run);
+        for (std::size_t k = 0; k < block.step.size(); ++k)
+            add_moments("nees_per_dimension:" + block.block + ":" + std::to_string(k + 1), block.step[k]);
+        add("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95);
+        for (const Coverage& level : block.coverage)
+            add_steps("coverage_" + to_text(level.level) + ":" + block.block, level.share, level.interval);
+        add_steps("variance_ratio:" + block.block, block.variance_ratio, {});
+    }
+
+    const ArmReport& arm_;
+    std::string text_;
+};
 
 }  // namespace
 
@@ -111,7 +149,7 @@ std::string report_csv(const Report& report) {
                              figure.unit},
                             figure.summary, figure.bootstrap95, figure.published,
                             verdict_name(arm.consistency.verdict));
-        text += evidence_rows(arm);
+        text += EvidenceRows(arm).text();
     }
     for (const Comparison& pair : report.pairs)
         for (const ComparedFigure& figure : pair.figures)

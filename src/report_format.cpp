@@ -16,7 +16,9 @@ std::string padded(const std::string& text, int width, bool right) {
 std::string number(double value, int digits) {
     if (std::isnan(value)) return "-";
     char buffer[64];
-    if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+    const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -digits) && digits >= 6;
+    if (vanishes) std::snprintf(buffer, sizeof buffer, "%.2g", value);
+    else if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
     else std::snprintf(buffer, sizeof buffer, "%.4g", value);
     return buffer;
 }

@@ -3,6 +3,8 @@
 #include <credence/consistency.hpp>
 #include <credence/text.hpp>
 
+#include <algorithm>
+
 namespace credence {
 
 namespace {
@@ -60,11 +62,11 @@ Json block_json(const BlockEvidence& block) {
 
 Json nis_json(const NisEvidence& nis) {
     return {{"rows", nis.part}, {"degrees", nis.degrees}, {"ratio", nis.ratio},
-            {"scale95", interval_json(nis.scale95)}, {"by_step", banded_json(nis.nis)}};
+            {"ratio_ci95", interval_json(nis.ratio95)}, {"scale95", interval_json(nis.scale95)}, {"by_step", banded_json(nis.nis)}};
 }
 
 Json whiteness_json(const Whiteness& lag) {
-    return {{"lag", lag.lag}, {"correlation", lag.correlation}, {"count", lag.count}, {"bound95", lag.bound},
+    return {{"lag", lag.lag}, {"correlation", lag.correlation}, {"scaled", lag.scaled}, {"count", lag.count}, {"bound95", lag.bound},
             {"simultaneous_bound95", lag.simultaneous_bound}};
 }
 
@@ -75,7 +77,9 @@ Json bias_json(const BiasEvidence& bias) {
 }
 
 Json credibility_json(const CredibilityEvidence& evidence) {
-    return {{"trials", evidence.step.empty() ? 0 : evidence.step.back().count},
+    std::int64_t trials = 0;
+    for (const Credibility& step : evidence.step) trials = std::max(trials, step.count);
+    return {{"trials", trials},
             {"nci", evidence.nci},
             {"inclination", evidence.inclination},
             {"nci_by_step", each_json(evidence.step, [](const Credibility& step) { return step.nci; })},

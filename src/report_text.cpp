@@ -57,7 +57,9 @@ std::string why(const ArmReport& arm) {
         add("about " + number(verdict.trials_to_decide, 0) + " trials would decide");
     else if (verdict.verdict == Verdict::undecided && !verdict.findings.empty() && arm.evidence.trials > 1)
         add("every block is within the margin: only this keeps it from being consistent");
-    else if (verdict.verdict == Verdict::undecided && arm.evidence.trials < 2)
+    else if (arm.evidence.trials == 0)
+        add("no trial is left that could be judged");
+    else if (verdict.verdict == Verdict::undecided && arm.evidence.trials == 1)
         add(arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
                                      : "the innovations of one trial do not decide: give more trials or steps");
     return text;
@@ -88,8 +90,8 @@ std::string troubles_part(const Report& report) {
     const std::size_t shown = std::min(most, report.troubles.size());
     for (std::size_t i = 0; i < shown; ++i) {
         const RecordTrouble& trouble = report.troubles[i];
-        text += "trial " + std::to_string(trouble.trial) + ", step " + std::to_string(trouble.step) +
-                " (both from 0): " + trouble.what + "; the trial is in no figure.\n";
+        text += "trial " + std::to_string(trouble.trial) + ", step " + std::to_string(trouble.step + 1) + " ([" +
+                std::to_string(trouble.trial) + ", " + std::to_string(trouble.step) + "] in the file): " + trouble.what + "; the trial is in no figure.\n";
     }
     const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed;
     if (shown > 0 && failed > static_cast<std::int64_t>(shown))

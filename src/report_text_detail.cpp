@@ -75,6 +75,17 @@ std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence) {
     return blocks;
 }
 
+/// Of the values that are known.
+double mean_of(const std::vector<double>& values) {
+    double sum = 0, known = 0;
+    for (const double value : values)
+        if (!std::isnan(value)) {
+            sum += value;
+            ++known;
+        }
+    return sum / known;
+}
+
 std::string of_steps(int outside, int steps) { return std::to_string(outside) + " of " + std::to_string(steps); }
 
 std::string block_row(const BlockEvidence& block) {
@@ -82,7 +93,7 @@ std::string block_row(const BlockEvidence& block) {
     return "    " + padded(block.block, 14, false) + padded(with_interval(block.run.mean, over_steps95(block)), 20) +
            padded(of_steps(block.anees.outside_simultaneous, block.anees.observed), 12) +
            padded(number(100 * coverage.over_steps, 1) + " %", 12) +
-           padded(number(block.variance_ratio.back(), 2), 12) +
+           padded(number(mean_of(block.variance_ratio), 2), 12) +
            padded(with_interval(block.accuracy.ratio, block.accuracy.ratio_ci95), 20) + "\n";
 }
 
@@ -91,13 +102,13 @@ std::string innovations_part(const Evidence& evidence) {
     for (const NisEvidence& nis : evidence.nis)
         parts.push_back(nis.part + " " + number(nis.ratio, 4) + " (outside its band at " +
                         of_steps(nis.nis.outside_simultaneous, nis.nis.observed) + " steps)");
-    std::string text = parts.empty() ? "" : "    " + wrapped_list("NIS/m:", parts, 4) + "\n";
+    std::string text = parts.empty() ? "" : "    " + wrapped_list("ΣNIS/Σm:", parts, 4) + "\n";
     if (!evidence.whiteness.empty()) {
         const Whiteness& first = evidence.whiteness.front();
         int outside = 0;
-        for (const Whiteness& lag : evidence.whiteness) outside += std::abs(lag.correlation) > lag.simultaneous_bound;
-        text += "    innovations: correlation " + number(first.correlation, 4) + " at lag 1 (white within ± " +
-                number(first.bound, 4) + "); " + of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
+        for (const Whiteness& lag : evidence.whiteness) outside += std::abs(lag.scaled) > lag.simultaneous_bound;
+        text += "    innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
+                " (white within ± " + number(first.bound, 4) + "); " + of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
                 " lags outside their joint bounds\n";
     }
     return text;
@@ -105,13 +116,17 @@ std::string innovations_part(const Evidence& evidence) {
 
 std::string distribution_part(const Evidence& evidence) {
     std::size_t worst = 0;
+    int known = 0;
     const ShapeEvidence& shape = evidence.shape;
-    for (std::size_t k = 0; k < shape.distance.size(); ++k)
-        if (shape.distance[k] > shape.distance[worst]) worst = k;
+    for (std::size_t k = 0; k < shape.distance.size(); ++k) {
+        known += !std::isnan(shape.distance[k]);
+        if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;
+    }
+    const double p = std::min(1.0, shape.p[worst] * known);
     std::string text;
-    if (!std::isnan(shape.distance[worst]))
+    if (known > 0)
         text += "    NEES against chi-square: distance " + number(shape.distance[worst], 4) + " at step " +
-                std::to_string(worst + 1) + " (p " + (shape.p[worst] < 1e-4 ? "< 0.0001" : number(shape.p[worst], 4)) + ")";
+                std::to_string(worst + 1) + " (p " + (p < 1e-4 ? "< 0.0001" : number(p, 4)) + " over all " + std::to_string(known) + " steps)";
     if (!std::isnan(evidence.credibility.nci))
         text += std::string(text.empty() ? "    " : "; ") + "NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +

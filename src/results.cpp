@@ -3,6 +3,7 @@
 #include <credence/chi_square.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace credence {
 
@@ -76,11 +77,29 @@ ScenarioResults empty_results(const Scenario& scenario) {
             one.totals.push_back(
                 {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
                  std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
-        one.cells.resize(steps * shape_cells);
+        if (shape_counted(results.steps())) one.cells.resize(steps * shape_cells);
         one.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
         results.arms.push_back(std::move(one));
     }
     return results;
+}
+
+bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
+
+std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
+    std::vector<double> values = arm.columns[column];
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
+            values[i] = std::numeric_limits<double>::quiet_NaN();
+    return values;
+}
+
+const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
+    const std::size_t dot = arm.name.find('.');
+    if (dot == std::string::npos || arm.name.substr(0, dot) != "greedy") return nullptr;
+    for (const ArmResults& other : results.arms)
+        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
+    return nullptr;
 }
 
 void extend(ScenarioResults& results, std::int64_t trials) {

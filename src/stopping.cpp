@@ -13,13 +13,10 @@ namespace credence {
 
 namespace {
 
-/// A column's values of the first trials, those of failed trials as NaN, whatever their fill.
+/// The first trials' values.
 std::vector<double> first_values(const ArmResults& arm, std::size_t column, std::int64_t trials) {
-    const auto begin = arm.columns[column].begin();
-    std::vector<double> values(begin, begin + trials);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (failed(static_cast<Status>(static_cast<int>(arm.columns[column_status][i]))))
-            values[i] = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> values = figure_values(arm, column);
+    values.resize(static_cast<std::size_t>(trials));
     return values;
 }
 

@@ -44,8 +44,6 @@ void parse_arms(StoppingGoal& goal) {
     goal.subtrahend = arms[1];
 }
 
-bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
-
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
     const std::string meant = closest(word, known);
     return (meant.empty() ? "" : "Did you mean " + meant + "? ") + "There are " + joined(known);

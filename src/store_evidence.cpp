@@ -125,8 +125,8 @@ void check_numbered(const Handle& group, const std::string& name, T first, hsize
 }  // namespace
 
 std::vector<std::string> evidence_links(const ScenarioResults& results) {
-    std::vector<std::string> names{"level", "cell", cells_name(results), "detailed_trial", "component",
-                                   "detailed_nees", "detailed_error"};
+    std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
+    if (shape_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
     for (const Figure& figure : results.figures)
         if (figure.role == FigureRole::nees) names.push_back(coverage_name(figure));
     if (lags(results) > 0)
@@ -137,10 +137,12 @@ std::vector<std::string> evidence_links(const ScenarioResults& results) {
 void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm) {
     write_coverage(group, dimensions.step, results, arm);
-    const auto cell = numbered<std::int32_t>(group, "cell", 0, shape_cells,
-                                             "cell of chi-square; every one is as probable as any other");
-    hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
-                       {results.figures.front().long_name + ": counted trials by cell", "1"});
+    if (shape_counted(results.steps())) {
+        const auto cell = numbered<std::int32_t>(group, "cell", 0, shape_cells,
+                                                 "cell of chi-square; every one is as probable as any other");
+        hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
+                           {results.figures.front().long_name + ": counted trials by cell", "1"});
+    }
     write_products(group, dimensions.part, results, arm);
     write_errors(group, dimensions.step, results, arm);
 }
@@ -149,8 +151,10 @@ void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t 
     const auto steps = static_cast<hsize_t>(results.steps()), size = static_cast<hsize_t>(results.state_size()),
                detailed = static_cast<hsize_t>(results.detailed());
     read_coverage(group, results, arm);
-    check_numbered<std::int32_t>(group, "cell", 0, shape_cells);
-    read_cells(group, results, arm);
+    if (shape_counted(results.steps())) {
+        check_numbered<std::int32_t>(group, "cell", 0, shape_cells);
+        read_cells(group, results, arm);
+    }
     if (lags(results) > 0) check_numbered<std::int32_t>(group, "lag", 1, lags(results));
     read_products(group, results, parts, arm);
     check_numbered<std::int64_t>(group, "detailed_trial", 0, detailed);

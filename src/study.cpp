@@ -131,7 +131,7 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
         const std::int64_t cells = figures * results.steps();
         const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
         const std::int64_t detail = kept * results.steps() * (results.state_size() + 1) * 4;
-        const std::int64_t shape = std::int64_t{results.steps()} * shape_cells * 8;
+        const std::int64_t shape = shape_counted(results.steps()) ? std::int64_t{results.steps()} * shape_cells * 8 : 0;
         total.file += arms * (trials * column_bytes + cells * 2 * 2 * 8 + (figures + 20) * 1500 + detail + shape);
         const auto in_memory = static_cast<std::int64_t>(results.columns.size() * sizeof(double));
         total.memory += arms * (trials * in_memory + cells * 2 * 64 + 2 * detail + shape);

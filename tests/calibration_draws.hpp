@@ -70,7 +70,8 @@ inline std::vector<std::vector<double>> trial_values(const double* draws, const 
 }
 
 /// Adds a trial's values to the totals.
-inline void add_trial(const std::vector<std::vector<double>>& values, const std::vector<Figure>& figures, ArmResults& arm) {
+inline void add_trial(const std::vector<std::vector<double>>& values, const std::vector<Figure>& figures,
+                      ArmResults& arm) {
     for (std::size_t f = 0; f < figures.size(); ++f) {
         FigureTotals& totals = arm.totals[f];
         double run = 0;
@@ -110,8 +111,12 @@ inline ScenarioResults results(double claimed) {
     ScenarioResults results{scenario, {}, figures(), {}, trials};
     ArmResults arm;
     for (const Figure& figure : results.figures)
-        arm.totals.push_back({std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
-                              std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
+        arm.totals.push_back(
+            {std::vector<ExactSum>(steps),
+             std::vector<ExactSum>(figure.integer ? 0 : steps),
+             {},
+             {},
+             std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
     arm.cells.resize(steps * shape_cells);
     arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     for (std::size_t i = 0; i < trials; ++i) {

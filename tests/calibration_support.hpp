@@ -2,18 +2,16 @@
 // What the tests that judge the judge share: worlds whose truth is known, replications, and how often a test rejected
 // over them against how often it should. Seeds are fixed; a false-alarm rate is what other seeds would have.
 
-#include "catch.hpp"
-
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
 #include <credence/evidence.hpp>
 #include <credence/study.hpp>
-
-#include <boost/math/distributions/binomial.hpp>
-
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
 #include <string>
+
+#include "catch.hpp"
 
 namespace credence::test {
 
@@ -44,8 +42,8 @@ inline ScenarioResults replication(const Scenario& scenario, std::int64_t trials
     return study.scenarios.front();
 }
 
-/// The evidence of studies with the root seeds 1 ... replications, one after the other; without the credibility indices,
-/// which have no level and take their time.
+/// The evidence of studies with the root seeds 1 ... replications, one after the other; without the credibility
+/// indices, which have no level and take their time.
 inline void replicate(const Scenario& scenario, std::int64_t trials, int replications,
                       const std::function<void(const Evidence&)>& look) {
     for (int r = 1; r <= replications; ++r) {
@@ -58,7 +56,9 @@ inline void replicate(const Scenario& scenario, std::int64_t trials, int replica
 }
 
 /// Whether an interval fails to cover a value; NaN counts as a failure.
-inline bool misses(const Interval& interval, double value) { return !(interval.low <= value && value <= interval.high); }
+inline bool misses(const Interval& interval, double value) {
+    return !(interval.low <= value && value <= interval.high);
+}
 
 /// Counts of rejections and sums of figures, by name, over independent replications.
 class Calibration {

@@ -2,10 +2,10 @@
 // with fixed seeds [statistics.md, The judge is judged]. Each count must lie within the central 99.9 % of its binomial:
 // another set of seeds fails a count with 1e-3, of 90 here. 2,000 replications tell 5 % from 3.5 % and from 6.7 %.
 
-#include "calibration_support.hpp"
-
 #include <credence/consistency.hpp>
 #include <credence/goodness.hpp>
+
+#include "calibration_support.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -45,7 +45,8 @@ double least_shape_level() {
 }
 
 void look_at_blocks(const Evidence& evidence, Calibration& calibration) {
-    static const double coverage_level[] = {wilson_level(0.5), wilson_level(0.9), wilson_level(0.95), wilson_level(0.99)};
+    static const double coverage_level[] = {wilson_level(0.5), wilson_level(0.9), wilson_level(0.95),
+                                            wilson_level(0.99)};
     for (const BlockEvidence& block : evidence.blocks) {
         const std::string of = " of " + block.block;
         const BandedRatio& anees = block.anees;
@@ -56,7 +57,8 @@ void look_at_blocks(const Evidence& evidence, Calibration& calibration) {
         calibration.at_most("joint band of ANEES" + of, 0.05, anees.outside_simultaneous > 0);
         calibration.on_average("steps outside the joint band of ANEES" + of, 0.05, anees.outside_simultaneous);
         calibration.on_average("var(NEES) / (2 dim)" + of, 1, block.variance_ratio[middle]);
-        calibration.between("interval over the steps" + of, least_t_level, most_t_level, misses(over_steps95(block), 1));
+        calibration.between("interval over the steps" + of, least_t_level, most_t_level,
+                            misses(over_steps95(block), 1));
         for (std::size_t level = 0; level < block.coverage.size(); ++level) {
             const Coverage& coverage = block.coverage[level];
             calibration.exactly("coverage at level " + std::to_string(level) + of, coverage_level[level],
@@ -139,7 +141,8 @@ TEST_CASE("calibration: on the matched linear scenario every test rejects at its
 }
 
 TEST_CASE("calibration: so it does where rows vary from trial to trial", "[long]") {
-    // RMSE over predicted: |e|^2 varies with P, which its interval does not know to be predicted. It misses 3 %, not 5 %.
+    // RMSE over predicted: |e|^2 varies with P, and its interval does not know that this was predicted: it is too wide,
+    // and misses 3 % of the time.
     Calibration calibration;
     replicate(matched_with_gaps(), trials, 1000, [&](const Evidence& evidence) {
         const std::vector<double>& degrees = evidence.nis.front().nis.degrees;

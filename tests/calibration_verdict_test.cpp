@@ -1,9 +1,10 @@
 // Room 10: filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
-// the test names, and with the figures of model.md [statistics.md, The judge is judged; model.md, Truth against filter].
-
-#include "calibration_support.hpp"
+// the test names, and with the figures of model.md [statistics.md, The judge is judged; model.md, Truth against
+// filter].
 
 #include <credence/consistency.hpp>
+
+#include "calibration_support.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -80,7 +81,8 @@ TEST_CASE("calibration: a covariance 1.1 times too large is pessimistic, 0.9 of 
         Scenario s = matched_linear();
         s.filter.covariance = factor;
         Verdicts v = verdicts(s, 2000);
-        CHECK(v.count[factor > 1 ? "pessimistic" : "optimistic"] == seeds);  // at 700 trials: 49 and 50; at 400: 42 and 48
+        CHECK(v.count[factor > 1 ? "pessimistic" : "optimistic"] ==
+              seeds);  // at 700 trials: 49 and 50; at 400: 42 and 48
         for (const char* block : {"all", "pose", "features", "feature_0"}) check_ratio(v, block, 1 / factor, 0);
     }
 }
@@ -100,8 +102,8 @@ TEST_CASE("calibration: sigma_head = 0.042 is mixed for 4000 trials, whatever th
 }
 
 TEST_CASE("calibration: the matched filter is consistent for 4000 trials, but for chance findings of bias", "[long]") {
-    // Consistent with 0.97: a bias is found somewhere in 2.9 % (at most 5 % by Bonferroni), the widest interval, that of
-    // the pose, leaves the margin in 0.2 %. Below 43 of 50 with 1e-4.
+    // Consistent with 0.97: a bias is found somewhere in 2.9 % (at most 5 % by Bonferroni), the widest interval, that
+    // of the pose, leaves the margin in 0.2 %. Below 43 of 50 with 1e-4.
     Verdicts v = verdicts(matched_linear(), 4000);
     CHECK(v.count["consistent"] >= 43);
     CHECK(v.count["consistent"] + v.count["undecided"] == seeds);

@@ -1,17 +1,16 @@
-// Rooms 10 and 11: mistakes that were found in well-known tools [statistics.md, The judge is judged], as far as no other
-// test would catch them. The others: alpha in each tail (statistics_reference_test, goodness_test, calibration_test),
-// the 99th percentile itself (statistics_reference_test), N m degrees (calibration_reference_test), seeds that share trials
-// (study_test, draws_test), resumed runs that restart at 0 (study_test, store_test, cli_test).
+// Rooms 10 and 11: mistakes that were found in well-known tools [statistics.md, The judge is judged], as far as no
+// other test would catch them. The others: alpha in each tail (statistics_reference_test, goodness_test,
+// calibration_test), the 99th percentile itself (statistics_reference_test), N m degrees (calibration_reference_test),
+// seeds that share trials (study_test, draws_test), resumed runs that restart at 0 (study_test, store_test, cli_test).
 
-#include "calibration_support.hpp"
-#include "synthetic.hpp"
-
+#include <algorithm>
 #include <credence/chi_square.hpp>
 #include <credence/report.hpp>
 #include <credence/stopping.hpp>
-
-#include <algorithm>
 #include <numeric>
+
+#include "calibration_support.hpp"
+#include "synthetic.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -145,7 +144,8 @@ TEST_CASE("mistakes: a look is judged by its own values, not by the widest or na
     CHECK(widths.front() > 10);
     CHECK(last.states.front().half_width < 0.5);
     const Summary summary = summarise({values.begin(), values.begin() + last.trials});
-    const double width = t_quantile(look_alpha(last.number), static_cast<double>(last.trials) - 1) * summary.standard_error;
+    const double width =
+        t_quantile(look_alpha(last.number), static_cast<double>(last.trials) - 1) * summary.standard_error;
     CHECK(last.states.front().half_width == Approx(width).epsilon(1e-12));
     // An outlier that comes late: the next look is wider than the one before, and says so.
     values = values_with(20, 100, 64);

@@ -14,6 +14,9 @@ double stable_chi_square_quantile(double p, int degrees);
 /// The line cut into `shape_cells` cells that are equally probable under chi-square(degrees).
 inline constexpr int shape_cells = 4096;
 
+/// Whether the shape of NEES is counted: not over so many steps that the counts alone would take over 128 MB an arm.
+inline bool shape_counted(int steps) { return steps <= 4096; }
+
 class EquiprobableCells {
 public:
     explicit EquiprobableCells(int degrees);

@@ -32,15 +32,6 @@ struct ComparedArm {
     std::string label;
 };
 
-/// Whether a column is a figure of the trial, not its status.
-bool is_figure(const Column& column);
-
-/// A column's values, failed trials as NaN whatever their fill.
-std::vector<double> figure_values(const ArmResults& arm, std::size_t column);
-
-/// `fixed.X` beside `greedy.X`; nullptr where there is none, or where the arm is no greedy one.
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm);
-
 /// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap.
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed);
 

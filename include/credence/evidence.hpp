@@ -55,6 +55,7 @@ struct NisEvidence {
     std::string part;
     BandedRatio nis;
     double degrees = 0, ratio = 0;             ///< over all steps
+    Interval ratio95;                          ///< of the ratio, Student's, by the spread of trials; NaN for one trial
     Interval scale95;                          ///< of the factor by which S is too small, were the innovations white
 };
 
@@ -63,6 +64,7 @@ struct Whiteness {
     int lag = 0;
     std::int64_t count = 0;                    ///< products
     double correlation = 0;                    ///< their mean
+    double scaled = 0;                         ///< the same over NIS/m: what is left where S has the wrong size
     double bound = 0, simultaneous_bound = 0;  ///< z/sqrt(count), for this lag and for all of them
 };
 

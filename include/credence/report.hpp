@@ -51,7 +51,7 @@ struct Report {
 Report make_report(const Study& study, double margin);
 
 /// The same of a record: one arm, `record`; `path` names it.
-Report make_record_report(const JudgedRecord& record, const std::string& path, double margin);
+Report make_record_report(JudgedRecord record, const std::string& path, double margin);
 
 /// One arm's part of a report.
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin);

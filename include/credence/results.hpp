@@ -65,6 +65,15 @@ struct ScenarioResults {
 /// An empty result of a resolved scenario.
 ScenarioResults empty_results(const Scenario& scenario);
 
+/// Whether a column is a figure of the trial, not its status.
+bool is_figure(const Column& column);
+
+/// A column's values, failed trials as NaN whatever their fill.
+std::vector<double> figure_values(const ArmResults& arm, std::size_t column);
+
+/// `fixed.X` beside `greedy.X`; nullptr where there is none, or where the arm is no greedy one.
+const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm);
+
 /// Makes room in the columns for trials up to `trials`.
 void extend(ScenarioResults& results, std::int64_t trials);
 

@@ -33,9 +33,9 @@ int judge(const Parsed& parsed) {
     const std::string& path = parsed.arguments.front();
     const ReportRequest request = read_report_request(parsed);
     ProgressLine progress(parsed.has("quiet"));
-    const JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
+    JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
     progress.finish();
-    return give_report(parsed, request, make_record_report(record, path, request.margin));
+    return give_report(parsed, request, make_record_report(std::move(record), path, request.margin));
 }
 
 }  // namespace credence::cli

@@ -101,6 +101,18 @@ def philox(counter, key):
     return w
 
 
+LOW = np.uint64(0xffffffff)
+
+
+def splitmix(key, position):
+    """SplitMix64 [Steele, Lea, Flood 2014]: 64 bits at each position of the stream that a key names."""
+    with np.errstate(over="ignore"):
+        z = np.uint64(key) + (position.astype(np.uint64) + np.uint64(1)) * np.uint64(0x9e3779b97f4a7c15)
+        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xbf58476d1ce4e5b9)
+        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94d049bb133111eb)
+    return z ^ (z >> np.uint64(31))
+
+
 def bootstrap(by_trial, seed, figure, alpha=0.05):
     """The percentile bootstrap as bootstrap.hpp describes it: from the description, with NumPy's sums and quantiles."""
     by_trial = np.asarray(by_trial, dtype=float)
@@ -116,12 +128,14 @@ def bootstrap(by_trial, seed, figure, alpha=0.05):
     else:
         sums, counts = by_trial[counted], np.ones(counted.sum())
     size = len(sums)
-    group = np.arange((size + 3) // 4)
+    whole = size // 4 * 4
     means = []
     for resample in range(2000):
-        fixed = [np.full(group.shape, word) for word in
-                 (resample, fingerprint & 0xffffffff, (fingerprint >> 32) | 0xf0000)]
-        words = np.stack(philox([group] + fixed, seed), axis=1).ravel()[:size]
+        block = philox([[word] for word in (0, resample, fingerprint & 0xffffffff, (fingerprint >> 32) | 0xf0000)], seed)
+        key = (int(block[0][0]) << 32) | int(block[1][0])
+        pairs = splitmix(key, np.arange(whole // 2))
+        words = np.concatenate([np.stack([pairs & LOW, pairs >> np.uint64(32)], axis=1).ravel(),
+                                splitmix(key, np.arange(whole, size)) & LOW])
         index = (words * np.uint64(size)) >> np.uint64(32)
         means.append(sums[index].sum() / counts[index].sum())
     return np.quantile(means, [alpha / 2, 1 - alpha / 2])
