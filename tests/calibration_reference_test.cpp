@@ -86,12 +86,14 @@ TEST_CASE("calibration: NIS of rows that vary has their number of degrees, and w
     check_agrees(nis.degrees, number(expected()["nis"]["degrees"]));
     check_agrees(nis.ratio, number(expected()["nis"]["ratio"]));
     check_agrees(nis.scale95, expected()["nis"]["scale95"]);
+    check_agrees(nis.ratio95, expected()["nis"]["ratio95"]);
     REQUIRE(found.whiteness.size() == lags);
     for (std::size_t i = 0; i < lags; ++i) {
         const Json& theirs = expected()["whiteness"][i];
         CHECK(found.whiteness[i].lag == theirs["lag"]);
         CHECK(found.whiteness[i].count == theirs["count"]);
         check_agrees(found.whiteness[i].correlation, number(theirs["correlation"]));
+        check_agrees(found.whiteness[i].scaled, number(theirs["scaled"]));
         check_agrees(found.whiteness[i].bound, number(theirs["bound"]));
         check_agrees(found.whiteness[i].simultaneous_bound, number(theirs["simultaneous_bound"]));
     }

@@ -65,8 +65,8 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 for trials in 100000 10000 1000; do
-  seeds=50
-  if [ $trials = 100000 ]; then seeds=25; fi
+  seeds=40
+  if [ $trials = 100000 ]; then seeds=20; fi
   for judge in verdict band; do
     for side in pessimistic optimistic; do echo "$judge $side $trials $seeds"; done
   done

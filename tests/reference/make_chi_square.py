@@ -85,16 +85,18 @@ def nis(innovations):
     totals, degrees = np.nansum(innovations**2, axis=(0, 2)), seen.sum(axis=(0, 2))
     ratio, all_degrees = totals.sum() / degrees.sum(), degrees.sum()
     scale = totals.sum() / np.array([stats.chi2.isf(0.025, all_degrees), stats.chi2.ppf(0.025, all_degrees)])
-    return {"nis": banded(totals, degrees), "degrees": all_degrees, "ratio": ratio, "scale95": scale}
+    by_trial = np.nansum(innovations**2, axis=(1, 2)) / (all_degrees / TRIALS)
+    return {"nis": banded(totals, degrees), "degrees": all_degrees, "ratio": ratio, "scale95": scale,
+            "ratio95": t_interval(by_trial, 0.05)}
 
 
 def whiteness(innovations):
-    result = []
+    result, size = [], nis(innovations)["ratio"]
     for lag in range(1, LAGS + 1):
         products = innovations[:, lag:] * innovations[:, :-lag]
         count = (~np.isnan(products)).sum()
         result.append({"lag": lag, "count": count, "correlation": np.nansum(products) / count,
-                       "bound": stats.norm.isf(0.025) / math.sqrt(count),
+                       "scaled": np.nansum(products) / count / size, "bound": stats.norm.isf(0.025) / math.sqrt(count),
                        "simultaneous_bound": stats.norm.isf(0.025 / LAGS) / math.sqrt(count)})
     return result
 
