@@ -52,9 +52,8 @@ private:
         all_inside_ = all_inside_ && within(time, margin);
         note_needed_trials(block.run);
         const Estimate corrected = corrected_(block.run);
-        // Steps that are wholly correlated are as good as one: that has the fewest degrees of freedom.
         if (const Side side = side_of(corrected.interval(), margin);
-            side != Side::inside && beyond_chi_square(corrected, side, block.run.count * block.dimension))
+            side != Side::inside && beyond_chi_square(corrected, side, degrees_over_steps(block)))
             add_finding(side, block.block, "over all steps", corrected);
         Found found[2];
         for (std::size_t k = 0; k < block.step.size(); ++k) {
@@ -74,6 +73,14 @@ private:
         const double scaled = step.value / (1 + (side == Side::above ? verdict_.margin : -verdict_.margin));
         const Interval band = chi_square_band(degrees, corrected_.alpha());
         return side == Side::above ? scaled > band.high : scaled < band.low;
+    }
+
+    /// Degrees of freedom of the NEES over all steps, from its spread over the trials: chi-square has 2 mean^2/variance.
+    /// Not fewer than wholly correlated steps have, which are as good as one, and not more than independent ones.
+    double degrees_over_steps(const BlockEvidence& block) const {
+        const double fewest = block.run.count * block.dimension,
+                     told = 2 * block.run.count * std::pow(block.run.mean / block.run.standard_deviation, 2);
+        return told > fewest ? std::min(told, fewest * evidence_.steps) : fewest;
     }
 
     void look_at_bias(const BiasEvidence& bias) {

@@ -158,6 +158,24 @@ TEST_CASE("calibration: so it does where rows vary from trial to trial", "[long]
     calibration.check();
 }
 
+TEST_CASE("calibration: few trials of few steps rarely make a filter that is right look wrong", "[long]") {
+    // Student's interval alone does in 5 to 13 % of these, chi-square being skewed [measured].
+    for (const int poses : {2, 3, 6}) {
+        Scenario s = matched_linear();
+        s.poses = poses;
+        for (const int few : {5, 10, 20}) {
+            Calibration calibration;
+            replicate(s, few, 500, [&](const Evidence& evidence) {
+                bool size = false;
+                for (const Finding& finding : judge(evidence, 0).findings) size = size || finding.what != "biased";
+                calibration.at_most("false finding, " + std::to_string(few) + " trials", 0.05, size);
+            });
+            CAPTURE(poses);
+            calibration.check();
+        }
+    }
+}
+
 TEST_CASE("calibration: a single trial's innovations rarely speak against a filter that is right", "[long]") {
     // Half of the 5 % is for its NIS, half for the lags. 100 to 200 products a lag have longer tails than a normal.
     Calibration calibration;
