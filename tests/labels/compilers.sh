@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# Label compilers: clang builds everything without a warning, passes the core suite, prints the committed digest, and
-# its program gives the bits of g++'s.
+# Label compilers: clang builds the program without a warning, prints the committed digest, and its program gives the bits
+# of g++'s. (`cmake --preset clang` builds the tests as well.)
 set -euo pipefail
 cmake --preset clang >/dev/null
-cmake --build --preset clang -j "$(nproc)" | tail -n 3
-build-clang/tests/credence_tests '~[long]' | tail -n 3
+cmake --build --preset clang --target credence credence_digest -j "$(nproc)" | tail -n 3
 bash tests/digest/check.sh build-clang/tests/digest/credence_digest
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
