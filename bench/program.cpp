@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "../tests/temporary_folder.hpp"
 #include "rows.hpp"
 #include "whole.hpp"
 
@@ -26,25 +27,6 @@ struct Case {
 
 constexpr Case cases[] = {{"fixed path only", "fixed", "fixed", 1'000'000, 50'000},
                           {"the seed's arms, fixed and greedy", "both", "fixed, greedy", 100'000, 5'000}};
-
-/// A temporary folder, removed at the end.
-class Folder {
-public:
-    Folder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "credence-bench-XXXXXX").string();
-        if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-        path_ = pattern;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-private:
-    std::filesystem::path path_;
-};
 
 double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -80,7 +62,7 @@ void write_bytes(const std::string& path, std::size_t size) {
 
 /// What the parts of a case share.
 struct Job {
-    Folder folder;
+    const test::TemporaryFolder folder;
     Scenario scenario;
     std::int64_t trials = 0;
     Study study;  ///< run once, for what is written
@@ -91,14 +73,14 @@ struct Job {
           trials(effort.of(c.trials, c.quick_trials)),
           study(new_study({scenario}, 1)) {
         run_study(study, {trials, 1, {}});
-        write_results(folder.file("results.h5"), study, {});
-        size = std::filesystem::file_size(folder.file("results.h5"));
-        write_text_file(folder.file("program.ini"), std::string("[arms]\ncontrollers = ") + c.controllers + "\n");
+        write_results(folder / "results.h5", study, {});
+        size = std::filesystem::file_size(folder / "results.h5");
+        write_text_file(folder / "program.ini", std::string("[arms]\ncontrollers = ") + c.controllers + "\n");
     }
 
     double program() const {
-        return run_program({CREDENCE_PROGRAM, "run", folder.file("program.ini"), "--trials", std::to_string(trials),
-                            "--threads", "1", "--output", folder.file("program.h5"), "--overwrite", "--quiet"});
+        return run_program({CREDENCE_PROGRAM, "run", folder / "program.ini", "--trials", std::to_string(trials),
+                            "--threads", "1", "--output", folder / "program.h5", "--overwrite", "--quiet"});
     }
     void engine() const {
         Study fresh = new_study({scenario}, 1);
@@ -139,9 +121,9 @@ void add_program(const Effort& effort) {
         add_part(group + "program", effort, job, [](const Job& j) { return j.program(); });
         add_part(group + "engine", effort, job, [](const Job& j) { return j.engine(), 0.0; });
         add_part(group + "write", effort, job,
-                 [](const Job& j) { return write_results(j.folder.file("results.h5"), j.study, {}), 0.0; });
+                 [](const Job& j) { return write_results(j.folder / "results.h5", j.study, {}), 0.0; });
         add_part(group + "disk", effort, job,
-                 [](const Job& j) { return write_bytes(j.folder.file("disk"), j.size), 0.0; });
+                 [](const Job& j) { return write_bytes(j.folder / "disk", j.size), 0.0; });
     }
 }
 

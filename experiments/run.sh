@@ -4,10 +4,7 @@
 # `credence run`, such as --trials 1e5.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source experiments/setup.sh
-install_missing $build_packages
-tests=()
-[ -f build/CMakeCache.txt ] || tests=(-DCREDENCE_TESTS=OFF)  # the tests need more packages: tests/run.sh turns them on
-build build credence "${tests[@]}"
+source experiments/study.sh
+build_program
 mkdir -p results
 build/credence run experiments/seed/*.ini -o results/seed.h5 --resume "$@"

@@ -10,15 +10,18 @@ build_program() {
   build build credence "${tests[@]}"
 }
 
-# study FILE.h5 SCENARIO.ini... [options]: runs it, or goes on with what is there.
+# study STEM TRIALS SCENARIO.ini [section.key=value...]: runs it, or goes on with what is there, and reports it: STEM.h5
+# and STEM.csv.
 study() {
-  local file=$1
-  shift
-  mkdir -p "$(dirname "$file")"
-  build/credence run "$@" -o "$file" --resume --quiet
+  local stem=$1 trials=$2 scenario=$3 settings=() setting
+  shift 3
+  for setting in "$@"; do settings+=(--set "$setting"); done
+  mkdir -p "$(dirname "$stem")"
+  build/credence run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume --quiet
+  build/credence report "$stem.h5" --format csv >"$stem.csv"
 }
 
-# interval FILE.csv ARM FIGURE [SCALE]: `mean ± half-width` of a figure, with two digits of the half-width.
+# interval FILE.csv ARM FIGURE: `mean ± half-width` of a figure, with two digits of the half-width.
 interval() {
   awk -F, -v arm="$2" -v figure="$3" '
     $2 == arm && $5 == figure {

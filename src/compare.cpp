@@ -42,7 +42,7 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     pair.a = side_of(chosen.a, chosen.file_a, pair.trials);
     pair.b = side_of(chosen.b, chosen.file_b, pair.trials);
     pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
-    pair.differences = key_differences(a.scenario, b.scenario);
+    pair.differences = shown_differences(a.scenario, b.scenario);
     add_means(pair, chosen);
     return pair;
 }

@@ -30,19 +30,15 @@ std::string contents(const StudyFile& file) {
 
 /// The arm that a name means, its own or the only one of that controller; nullptr for none.
 const ArmResults* named_arm(const ScenarioResults& results, const std::string& name, const ArmsChoice& choice) {
-    std::vector<std::string> meant;
-    const ArmResults* found = nullptr;
-    for (const ArmResults& arm : results.arms) {
-        if (arm.name == name) return &arm;
-        if (arm.name.substr(0, arm.name.find('.')) != name) continue;
-        meant.push_back(arm.name);
-        found = &arm;
-    }
-    if (meant.size() > 1)
+    const std::vector<const ArmResults*> meant = arms_meant(results, name);
+    if (meant.size() > 1) {
+        std::vector<std::string> names;
+        for (const ArmResults* arm : meant) names.push_back(arm->name);
         throw invalid_value("--arms", choice.text,
-                            name + " in scenario " + results.scenario.name + " is " + joined(meant, " or "),
+                            name + " in scenario " + results.scenario.name + " is " + joined(names, " or "),
                             "Give the arm's whole name");
-    return found;
+    }
+    return meant.empty() ? nullptr : meant.front();
 }
 
 /// Collects the pairs of two files, or of one with itself.
@@ -135,7 +131,7 @@ private:
         std::string why = "no scenario has both", meant;
         for (const ArmChoice& side : {choice.a, choice.b}) {
             std::vector<std::string> names = arm_names(files_[side.file]);
-            for (std::size_t i = names.size(); i-- > 0;) names.push_back(names[i].substr(0, names[i].find('.')));
+            for (std::size_t i = names.size(); i-- > 0;) names.push_back(controller_of(names[i]));
             if (one_of(side.arm, names)) continue;
             why = "no scenario of " + files_[side.file].path + " has " + side.arm;
             meant = closest(side.arm, names);

@@ -1,7 +1,6 @@
 // Whether trials of different files share their draws and their world.
 
 #include <credence/error.hpp>
-#include <credence/scenario_keys.hpp>
 
 #include "compare_choice.hpp"
 
@@ -32,19 +31,19 @@ void check_same_draws(const std::vector<StudyFile>& files) {
 
 void check_same_world(const ChosenPair& pair) {
     const Scenario &a = pair.a.results.scenario, &b = pair.b.results.scenario;
-    for (const ScenarioKey& key : scenario_keys())
-        if (!may_differ(key.name) && key.get(a) != key.get(b))
+    for (const KeyDifference& difference : key_differences(a, b))
+        if (!may_differ(difference.key))
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
-                             a.name + " is another world: " + key.name + " is " + printable(key.get(a)) + " in " +
-                             pair.file_a.path + " and " + printable(key.get(b)) + " in " + pair.file_b.path +
+                             a.name + " is another world: " + difference.key + " is " + printable(difference.a) +
+                             " in " + pair.file_a.path + " and " + printable(difference.b) + " in " + pair.file_b.path +
                              "). Compare runs that differ in filter, control, planner or arms only.");
 }
 
-std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b) {
-    std::vector<KeyDifference> differences;
-    for (const ScenarioKey& key : scenario_keys())
-        if (key.name != "scenario.title" && !key.name.starts_with("published.") && key.get(a) != key.get(b))
-            differences.push_back({key.name, key.get(a), key.get(b)});
+std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b) {
+    std::vector<KeyDifference> differences = key_differences(a, b);
+    std::erase_if(differences, [](const KeyDifference& difference) {
+        return difference.key == "scenario.title" || difference.key.starts_with("published.");
+    });
     return differences;
 }
 

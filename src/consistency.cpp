@@ -157,9 +157,7 @@ const std::string& verdict_name(Verdict verdict) {
     return names[static_cast<int>(verdict)];
 }
 
-Interval over_steps95(const BlockEvidence& block) {
-    return Student(0.05)(block.run).interval();
-}
+Interval over_steps95(const BlockEvidence& block) { return t_interval(block.run); }
 
 Consistency judge(const Evidence& evidence, double margin) {
     if (evidence.trials == 1) return judge_single_trial(evidence, margin);

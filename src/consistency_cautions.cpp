@@ -30,13 +30,12 @@ Consistency judge_single_trial(const Evidence& evidence, double margin) {
         (side == Side::above ? above : below) = true;
         verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected});
     }
-    for (const Whiteness& lag : evidence.whiteness) {
-        const double single_trial_bound = normal_quantile(0.025 / static_cast<double>(evidence.whiteness.size())) /
-                                          std::sqrt(static_cast<double>(lag.count));
-        if (std::abs(lag.scaled) > single_trial_bound)
+    const double lags = static_cast<double>(evidence.whiteness.size()),
+                 quantile = evidence.whiteness.empty() ? 0 : normal_quantile(0.025 / lags);
+    for (const Whiteness& lag : evidence.whiteness)
+        if (std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
             verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.scaled,
                                         interval_of(lag)});
-    }
     if (above && below) verdict.verdict = Verdict::mixed;
     else if (above) verdict.verdict = Verdict::optimistic;
     else if (below) verdict.verdict = Verdict::pessimistic;

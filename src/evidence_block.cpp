@@ -78,9 +78,8 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
     const double predicted = run_moments(arm, *variance, results.steps(), 1).mean;
     accuracy.over_steps = std::sqrt(square.mean);
     accuracy.ratio = std::sqrt(square.mean / predicted);
-    const double half = t_quantile(0.05, square.count - 1) * square.standard_error;
-    accuracy.ratio_ci95 = {std::sqrt(std::max(0.0, square.mean - half) / predicted),
-                           std::sqrt((square.mean + half) / predicted)};
+    const Interval interval = t_interval(square);
+    accuracy.ratio_ci95 = {std::sqrt(std::max(0.0, interval.low) / predicted), std::sqrt(interval.high / predicted)};
     return accuracy;
 }
 

@@ -60,11 +60,6 @@ private:
     RecordShape shape_;
 };
 
-/// Whether names of scenarios and blocks may hold it: [A-Za-z0-9_-].
-inline bool is_name_character(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-}
-
 /// The whole state as `all`, then the blocks that a text names, such as `pose 0:3, feature_1 3:5`, of a state of n
 /// components. Throws hdf5::Error at `place`.
 std::vector<StateBlock> parse_blocks(const std::string& text, int n, const std::string& place);

@@ -108,9 +108,7 @@ private:
                          verdict_name(arm_.consistency.verdict));
     }
     void add_moments(const std::string& figure, const Moments& moments) {
-        const double half = t_quantile(0.05, moments.count - 1) * moments.standard_error;
-        add(figure, moments.mean, moments.standard_error, {moments.mean - half, moments.mean + half},
-            moments.standard_deviation);
+        add(figure, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
     }
     /// For NIS at a step the interval is its joint chi-square band: there is no spread of trials to take one from.
     void add_steps(const std::string& figure, const std::vector<double>& values, const std::vector<Interval>& intervals) {

@@ -38,8 +38,7 @@ std::string figure_row(const std::string& label, const Summary& s, const std::op
 std::string paired_row(const Comparison& pair, const ComparedFigure& figure) {
     const PairedComparison& paired = figure.paired;
     const std::string less = number(100 * paired.wins_a, 0) + " % below";
-    const auto controller = [](const std::string& arm) { return arm.substr(0, arm.find('.')); };
-    return figure_row(controller(pair.a) + " - " + controller(pair.b), paired.difference, paired.bootstrap95, less);
+    return figure_row(controller_of(pair.a) + " - " + controller_of(pair.b), paired.difference, paired.bootstrap95, less);
 }
 
 /// A part with the arms and their differences, one row each.

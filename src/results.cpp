@@ -94,6 +94,15 @@ std::vector<double> figure_values(const ArmResults& arm, std::size_t column) {
     return values;
 }
 
+std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name) {
+    std::vector<const ArmResults*> meant;
+    for (const ArmResults& arm : results.arms) {
+        if (arm.name == name) return {&arm};
+        if (controller_of(arm.name) == name) meant.push_back(&arm);
+    }
+    return meant;
+}
+
 const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
     const std::size_t dot = arm.name.find('.');
     if (dot == std::string::npos || arm.name.substr(0, dot) != "greedy") return nullptr;

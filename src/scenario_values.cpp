@@ -18,14 +18,9 @@ bool inside(double value, const Range& range) {
     return (range.low_included ? value >= range.low : value > range.low) && value <= range.high;
 }
 
-std::string characters_not_in(const std::string& value, bool (*allowed)(unsigned char)) {
-    const auto bad =
-        std::find_if_not(value.begin(), value.end(), [=](char c) { return allowed(static_cast<unsigned char>(c)); });
+std::string characters_not_in(const std::string& value, bool (*allowed)(char)) {
+    const auto bad = std::find_if_not(value.begin(), value.end(), allowed);
     return bad == value.end() ? "" : "it holds a character that is not allowed there";
-}
-
-bool is_word_character(unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
 }
 
 int parse_feature_index(const std::string& value, const std::string& text) {
@@ -195,19 +190,23 @@ std::optional<std::vector<Estimator>> parse_estimators(const std::string& value)
 std::string is_name(const std::string& value) {
     if (value == "run") return "the results file has a group of that name";
     if (value.empty() || value.size() > 100) return "must have 1 to 100 characters";
-    return characters_not_in(value, is_word_character).empty() ? "" : "only letters, digits, _ and - are allowed";
+    return characters_not_in(value, is_name_character).empty() ? "" : "only letters, digits, _ and - are allowed";
 }
 
 std::string is_title(const std::string& value) {
     if (value.size() > 300) return "must have at most 300 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
-    return characters_not_in(value, [](unsigned char c) { return c >= 0x20 && c != 0x7f && c != '#'; });
+    return characters_not_in(value, [](char c) {
+        return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '#';
+    });
 }
 
 std::string is_unit(const std::string& value) {
     if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
-    return characters_not_in(value, [](unsigned char c) { return is_word_character(c) || c >= 0x80; });
+    return characters_not_in(value, [](char c) {
+        return is_name_character(c) || static_cast<unsigned char>(c) >= 0x80;
+    });
 }
 
 }  // namespace credence

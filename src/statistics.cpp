@@ -99,4 +99,9 @@ Moments moments_from_sums(std::int64_t count, double sum, double square_sum) {
     return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
 }
 
+Interval t_interval(const Moments& moments, double alpha) {
+    const double half = t_quantile(alpha, moments.count - 1) * moments.standard_error;
+    return {moments.mean - half, moments.mean + half};
+}
+
 }  // namespace credence

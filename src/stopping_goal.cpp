@@ -59,22 +59,16 @@ std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& c
     throw refused(goal.text, "there is no figure " + goal.metric, did_you_mean(goal.metric, names));
 }
 
-std::string controller_of(const ArmResults& arm) { return arm.name.substr(0, arm.name.find('.')); }
-
 /// The scenario's arm of that name, or its only arm of that controller; none: it has no such arm.
 const ArmResults* arm_named(const StoppingGoal& goal, const ScenarioResults& results, const std::string& name) {
-    std::vector<std::string> fitting;
-    const ArmResults* found = nullptr;
-    for (const ArmResults& arm : results.arms) {
-        if (arm.name == name) return &arm;
-        if (controller_of(arm) != name) continue;
-        found = &arm;
-        fitting.push_back(arm.name);
-    }
-    if (fitting.size() > 1)
+    const std::vector<const ArmResults*> meant = arms_meant(results, name);
+    if (meant.size() > 1) {
+        std::vector<std::string> names;
+        for (const ArmResults* arm : meant) names.push_back(arm->name);
         throw refused(goal.text, "scenario " + results.scenario.name + " has several arms " + name,
-                      "Name one of " + joined(fitting));
-    return found;
+                      "Name one of " + joined(names));
+    }
+    return meant.empty() ? nullptr : meant.front();
 }
 
 /// What is wrong with a pair of arms that no scenario has.
@@ -82,7 +76,7 @@ InputError no_such_pair(const StoppingGoal& goal, const Study& study) {
     std::vector<std::string> known;
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms)
-            for (const std::string& name : {arm.name, controller_of(arm)})
+            for (const std::string& name : {arm.name, controller_of(arm.name)})
                 if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const std::string& name : {goal.minuend, goal.subtrahend})
         if (std::find(known.begin(), known.end(), name) == known.end())

@@ -7,25 +7,13 @@
 #include <credence/evidence.hpp>
 #include <credence/study.hpp>
 #include <functional>
-#include <limits>
 #include <map>
 #include <string>
 
 #include "catch.hpp"
+#include "matched.hpp"
 
 namespace credence::test {
-
-/// The truth that the linear filter assumes, every feature always in range: NEES ~ chi-square(n), NIS ~ chi-square(m),
-/// innovations white, all of them exactly [model.md, Truth against filter].
-inline Scenario matched_linear() {
-    Scenario s;
-    s.process = Process::translation;
-    s.truth = {Deformation::walk, EdgeNoise::independent};
-    s.sensor.range_min = 0;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
-    s.arms.controllers = {Controller::fixed};
-    return s;
-}
 
 /// The same where each feature is missed with 0.3, by its own draw: rows and P vary from trial to trial, and all is
 /// exact as before. (Gating on the true range is not: what is seen then tells of the error.)

@@ -5,6 +5,8 @@
 #include <credence/scenario_keys.hpp>
 #include <numeric>
 
+#include "matched.hpp"
+
 namespace credence::test {
 
 inline Study run(const std::vector<Scenario>& scenarios, std::uint64_t seed, std::int64_t trials) {
@@ -18,14 +20,11 @@ inline Scenario changed(Scenario scenario, const std::string& key, const std::st
     return resolved(scenario);
 }
 
-/// The truth that the linear filter assumes, every feature in range: P is the same in every trial [model.md, Truth].
+/// The matched linear world under both controllers.
 inline Scenario matched() {
-    Scenario s;
+    Scenario s = matched_linear();
     s.name = "matched";
-    s.process = Process::translation;
-    s.truth = {Deformation::walk, EdgeNoise::independent};
-    s.sensor.range_min = 0;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
+    s.arms = Scenario{}.arms;
     return resolved(s);
 }
 

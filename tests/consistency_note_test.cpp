@@ -1,6 +1,7 @@
 // Room 10: what stands beside a verdict, and what few trials may not be told.
 
 #include "catch.hpp"
+#include "matched.hpp"
 #include "synthetic.hpp"
 
 #include <credence/consistency.hpp>
@@ -81,13 +82,7 @@ TEST_CASE("consistency: innovations of the wrong size are noted where the state 
 }
 
 TEST_CASE("consistency: a wrong size of S is not taken for correlation") {
-    Scenario scenario;
-    scenario.process = Process::translation;
-    scenario.truth = {Deformation::walk, EdgeNoise::independent};
-    scenario.sensor.range_min = 0;
-    scenario.sensor.range_max = std::numeric_limits<double>::infinity();
-    scenario.arms.controllers = {Controller::fixed};
-    Study study = new_study({resolved(scenario)}, 1);
+    Study study = new_study({resolved(matched_linear())}, 1);
     run_study(study, {500, 1, {}});
     ScenarioResults& results = study.scenarios.front();
     ArmResults& arm = results.arms.front();

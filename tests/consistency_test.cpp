@@ -1,6 +1,7 @@
 // Room 10: the verdict. Every kind has a case that must get it and one that must not.
 
 #include "catch.hpp"
+#include "matched.hpp"
 
 #include <credence/consistency.hpp>
 #include <credence/study.hpp>
@@ -8,19 +9,9 @@
 #include <algorithm>
 
 using namespace credence;
+using namespace credence::test;
 
 namespace {
-
-/// The truth that the linear filter assumes: NEES ~ chi-square(n) exactly [model.md, Truth against filter].
-Scenario matched() {
-    Scenario s;
-    s.process = Process::translation;
-    s.truth = {Deformation::walk, EdgeNoise::independent};
-    s.sensor.range_min = 0;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
-    s.arms.controllers = {Controller::fixed};
-    return s;
-}
 
 ScenarioResults simulated(const Scenario& scenario, std::int64_t trials) {
     validate(scenario);
@@ -50,7 +41,7 @@ bool has(const Consistency& consistency, const std::string& what, const std::str
 }  // namespace
 
 TEST_CASE("consistency: the matched linear filter is consistent", "[long]") {
-    const Evidence evidence = evidence_of_first_arm(simulated(matched(), 20000));
+    const Evidence evidence = evidence_of_first_arm(simulated(matched_linear(), 20000));
     const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "consistent");
     CHECK(c.findings.empty());
@@ -59,7 +50,7 @@ TEST_CASE("consistency: the matched linear filter is consistent", "[long]") {
 }
 
 TEST_CASE("consistency: the same filter is undecided with few trials, and the trials that decide are named") {
-    const Consistency c = verdict_of(matched(), 200);
+    const Consistency c = verdict_of(matched_linear(), 200);
     CHECK(verdict_name(c.verdict) == "undecided");
     CHECK(c.trials_to_decide > 200);
     CHECK(c.trials_to_decide < 20000);
@@ -70,7 +61,7 @@ TEST_CASE("consistency: few trials do not make a consistent filter look inconsis
     for (const std::int64_t trials : {20, 50, 100}) {
         int wrong = 0;
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-            Study study = new_study({resolved(matched())}, seed);
+            Study study = new_study({resolved(matched_linear())}, seed);
             run_study(study, {trials, 1, {}});
             const Verdict verdict = judge(evidence_of_first_arm(study.scenarios.front()), 0.05).verdict;
             wrong += verdict != Verdict::undecided && verdict != Verdict::consistent;
@@ -81,7 +72,7 @@ TEST_CASE("consistency: few trials do not make a consistent filter look inconsis
 }
 
 TEST_CASE("consistency: one block outside is enough to decide, so the trials that decide are its own") {
-    ScenarioResults results = simulated(matched(), 60);
+    ScenarioResults results = simulated(matched_linear(), 60);
     FigureTotals& pose = results.arms.front().totals[1];
     for (ExactSum& step : pose.sum) step.add(0.12 * step.rounded());  // the pose outside the margin, the others inside
     const Consistency c = judge(evidence_of_first_arm(results), 0.05);
@@ -91,7 +82,7 @@ TEST_CASE("consistency: one block outside is enough to decide, so the trials tha
 }
 
 TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
-    Scenario s = matched();
+    Scenario s = matched_linear();
     s.filter.measurement = 0.8;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 4000));
     const Consistency c = judge(evidence, 0.05);
@@ -105,7 +96,7 @@ TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic
 }
 
 TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic", "[long]") {
-    Scenario s = matched();
+    Scenario s = matched_linear();
     s.filter.covariance = 1.1;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 20000));
     const Consistency c = judge(evidence, 0.05);
@@ -128,7 +119,7 @@ TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") 
 }
 
 TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent", "[long]") {
-    ScenarioResults results = simulated(matched(), 20000);
+    ScenarioResults results = simulated(matched_linear(), 20000);
     REQUIRE(judge(evidence_of_first_arm(results), 0.05).verdict == Verdict::consistent);
     const auto bias = std::find_if(results.figures.begin(), results.figures.end(),
                                    [](const Figure& f) { return f.name == "standardised_error_f1_x"; });
@@ -144,7 +135,7 @@ TEST_CASE("consistency: a bias of one component is found and named, and keeps a 
 }
 
 TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
-    ScenarioResults results = simulated(matched(), 20000);
+    ScenarioResults results = simulated(matched_linear(), 20000);
     FigureTotals& whole = results.arms.front().totals.front();
     for (const std::size_t k : {2u, 3u, 4u, 8u}) {  // 10 % more NEES at steps 3 to 5 and 9
         whole.sum[k].add(0.1 * whole.sum[k].rounded());
@@ -159,7 +150,7 @@ TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
 }
 
 TEST_CASE("consistency: a wider margin forgives more", "[long]") {
-    Scenario s = matched();
+    Scenario s = matched_linear();
     s.filter.covariance = 1.1;
     CHECK(verdict_name(verdict_of(s, 20000, 0.15).verdict) == "consistent");
 }

@@ -2,6 +2,7 @@
 // error: bounds are 4 standard errors of the difference, a false alarm in 16,000 for each figure.
 
 #include "catch.hpp"
+#include "matched.hpp"
 
 #include <credence/consistency.hpp>
 #include <credence/study.hpp>
@@ -44,12 +45,9 @@ double block_ratio(const ScenarioResults& results, std::size_t arm, const std::s
 
 /// The truth that the filter assumes, every feature always in range.
 Scenario matched(Process process, double sigma_heading) {
-    Scenario s = cell(process, Path::straight, RangeNoise::constant);
-    s.truth = {Deformation::walk, EdgeNoise::independent};
-    s.sensor.range_min = 0;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
+    Scenario s = test::matched_linear();
+    s.process = process;
     s.noise.heading = sigma_heading;
-    s.arms.controllers = {Controller::fixed};
     return s;
 }
 

@@ -22,17 +22,6 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Workplace::Workplace() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "credence-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
-    folder_ = pattern;
-}
-
-Workplace::~Workplace() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-}
-
 void Workplace::write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
 }
@@ -41,7 +30,8 @@ std::string Workplace::read(const std::string& name) const { return read_file(fo
 
 std::vector<std::string> Workplace::names() const {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+        names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -50,8 +40,8 @@ Outcome Workplace::credence(const std::string& arguments) const { return shell(C
 
 Outcome Workplace::shell(const std::string& command) const {
     // What the command prints goes beside the folder, so that the folder holds what the program wrote and nothing else.
-    const std::string out = folder_.string() + ".out", err = folder_.string() + ".err";
-    const std::string quoted = "cd " + folder_.string() + " && { " + command + "\n} >" + out + " 2>" + err;
+    const std::string out = folder_.path().string() + ".out", err = folder_.path().string() + ".err";
+    const std::string quoted = "cd " + folder_.path().string() + " && { " + command + "\n} >" + out + " 2>" + err;
     const int status = std::system(quoted.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
     std::filesystem::remove(out);
@@ -59,6 +49,6 @@ Outcome Workplace::shell(const std::string& command) const {
     return outcome;
 }
 
-std::string seed_scenario(const std::string& name) { return std::string(CREDENCE_SOURCE) + "/experiments/seed/" + name + ".ini"; }
+std::string seed_scenario(const std::string& name) { return CREDENCE_SOURCE "/experiments/seed/" + name + ".ini"; }
 
 }  // namespace credence

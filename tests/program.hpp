@@ -1,7 +1,8 @@
 #pragma once
 // Runs the built program as a user would, in a folder of its own.
 
-#include <filesystem>
+#include "temporary_folder.hpp"
+
 #include <string>
 #include <vector>
 
@@ -15,13 +16,8 @@ struct Outcome {
 /// A fresh temporary folder, removed with everything in it at the end of the test.
 class Workplace {
 public:
-    Workplace();
-    ~Workplace();
-    Workplace(const Workplace&) = delete;
-    Workplace& operator=(const Workplace&) = delete;
-
     /// Path of a file in the folder.
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string path(const std::string& name) const { return folder_ / name; }
     void write(const std::string& name, const std::string& text) const;
     std::string read(const std::string& name) const;
     /// Names of everything in the folder, sorted.
@@ -32,7 +28,7 @@ public:
     Outcome shell(const std::string& command) const;
 
 private:
-    std::filesystem::path folder_;
+    test::TemporaryFolder folder_;
 };
 
 /// The project's own scenario files.

@@ -44,7 +44,7 @@ TEST_CASE("report: its means are the means of the columns") {
     for (std::size_t i = 0; i < 300; ++i) mean += planned[i] / 300, difference += (planned[i] - fixed[i]) / 300;
     CHECK(report.arms[3].figures[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
     CHECK(report.pairs[1].figures[column_trace_P].paired.difference.mean == Approx(difference).epsilon(1e-12));
-    CHECK(report.pairs[1].name() == "greedy.kf - fixed.kf");
+    CHECK(report.pairs[1].name() == std::string("greedy.kf - fixed.kf"));
 }
 
 TEST_CASE("report: failed trials are counted and shown, and figures are given without them") {

@@ -2,6 +2,7 @@
 // Replications with fixed seeds; each one runs the production's looks and decisions.
 
 #include "catch.hpp"
+#include "matched.hpp"
 #include "synthetic.hpp"
 
 #include <credence/statistics.hpp>
@@ -102,13 +103,8 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {
     // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [model.md, Truth
     // against filter].
-    Scenario matched;
-    matched.process = Process::translation;
+    Scenario matched = matched_linear();
     matched.poses = 8;
-    matched.truth = {Deformation::walk, EdgeNoise::independent};
-    matched.sensor.range_min = 0;
-    matched.sensor.range_max = std::numeric_limits<double>::infinity();
-    matched.arms.controllers = {Controller::fixed};
     const StoppingRule rule{{parse_goal("nees_ratio=3.4%"), parse_goal("nis_ratio=0.0225")}, 5000, 256};
     constexpr int seeds = 200;
     int missed[2] = {0, 0}, beyond_the_first = 0;

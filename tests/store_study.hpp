@@ -7,8 +7,7 @@
 #include <credence/store.hpp>
 
 #include "catch.hpp"
-
-#include <unistd.h>
+#include "temporary_folder.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -17,27 +16,6 @@
 #include <string>
 
 namespace credence::test {
-
-/// A folder of the test's own, gone with it.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "credence_XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-        path_ = name;
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::size_t entries() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 inline std::string bytes_of(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);

@@ -11,11 +11,9 @@ here=experiments/consistency out=results/consistency
 
 # row LABEL NAME SCENARIO.ini [section.key=value...]: a study and its row.
 row() {
-  local label=$1 name=$2 scenario=$3 settings=() setting arm
+  local label=$1 name=$2 scenario=$3 arm
   shift 3
-  for setting in "$@"; do settings+=(--set "$setting"); done
-  study "$out/$name.h5" "$here/$scenario" --trials "$trials" "${settings[@]}"
-  build/credence report "$out/$name.h5" --format csv >"$out/$name.csv"
+  study "$out/$name" "$trials" "$here/$scenario" "$@"
   arm=$(awk -F, 'NR == 2 { print $2 }' "$out/$name.csv")
   printf '| %s ' "$label"
   local part

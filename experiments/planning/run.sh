@@ -12,11 +12,9 @@ cells=() labels=()
 
 # cell LABEL NAME SCENARIO.ini [section.key=value...]
 cell() {
-  local label=$1 name=$2 scenario=$3 settings=() setting
+  local label=$1 name=$2 scenario=$3
   shift 3
-  for setting in "$@"; do settings+=(--set "$setting"); done
-  study "$out/$name.h5" "$scenario" --trials "$trials" "${settings[@]}"
-  build/credence report "$out/$name.h5" --format csv >"$out/$name.csv"
+  study "$out/$name" "$trials" "$scenario" "$@"
   cells+=("$name") labels+=("$label")
 }
 

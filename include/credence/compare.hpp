@@ -4,6 +4,7 @@
 // Comparison]
 
 #include <credence/comparison.hpp>
+#include <credence/scenario_keys.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,11 +32,6 @@ struct ArmsChoice {
 /// Reads `A,B`, each of them `ARM` or `FILE:ARM`; FILE is a path as given or its stem. Of one file, an arm alone is of
 /// that file; of two, A alone is of the first and B alone of the second; else each names its file. Throws InputError.
 ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
-
-/// A key in which the scenarios of two files differ, with both values.
-struct KeyDifference {
-    std::string key, a, b;
-};
 
 /// What the pairs say of the first figure, trace(P).
 enum class Conclusion {

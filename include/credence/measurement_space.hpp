@@ -2,8 +2,8 @@
 // Room 7: a candidate's cost in the space of the measurements [docs/model.md, Measurement space].
 //
 //   P, u, a, d0, H0 as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: what the fresh
-//   heading noise does to sighting j; sigma^2 its variance B_j = P H0_j' [n, 2], A_jl = H0_j B_l, G_jl = B_j' B_l [2,
-//   2]: the same for all candidates of a step
+//   heading noise does to sighting j; sigma^2 its variance
+//   B_j = P H0_j' [n, 2], A_jl = H0_j B_l, G_jl = B_j' B_l [2, 2]: the same for all candidates of a step
 // trace(P+) = trace(T P T') + sigma^2 - trace(S^-1 C), with
 //   S_jl = A_jl + sigma^2 g_j g_l' + N_j I (j = l),  C_jl = G_jl + w_j c_l' + c_j w_l' + sigma^4 g_j g_l',
 //   w_j the heading's row of B_j, c_j = a . (the position's rows of B_j) + |a|^2 w_j / 2 + sigma^2 g_j.

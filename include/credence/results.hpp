@@ -71,6 +71,9 @@ bool is_figure(const Column& column);
 /// A column's values, failed trials as NaN whatever their fill.
 std::vector<double> figure_values(const ArmResults& arm, std::size_t column);
 
+/// The arms that a name means: the one that has it, or all of that controller.
+std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name);
+
 /// `fixed.X` beside `greedy.X`; nullptr where there is none, or where the arm is no greedy one.
 const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm);
 

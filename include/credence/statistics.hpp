@@ -45,6 +45,8 @@ std::vector<double> paired_differences(const std::vector<double>& a, const std::
 struct Moments {
     double count = 0, mean = 0, standard_deviation = 0, standard_error = 0;
 };
+/// mean -+ t_{1 - alpha/2, count - 1} standard_error
+Interval t_interval(const Moments& moments, double alpha = 0.05);
 Moments moments_from_sums(std::int64_t count, double sum, double square_sum);
 
 }  // namespace credence

@@ -20,6 +20,9 @@ std::optional<std::int64_t> to_integer(std::string_view text);
 
 std::string trimmed(std::string_view text);
 
+/// Whether names of scenarios and of a record's blocks may hold it: [A-Za-z0-9_-], whatever the locale.
+bool is_name_character(char c);
+
 /// Whether every sequence of bytes is one of UTF-8 (RFC 3629), as files and JSON need it.
 bool is_utf8(std::string_view text);
 

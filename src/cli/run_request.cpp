@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::int64_t default_trials = 10000, default_ceiling = 10'000'000;
 
-/// The first key in which two resolved scenarios differ, with both values.
-std::string first_difference(const Scenario& stored, const Scenario& asked) {
-    for (const ScenarioKey& key : scenario_keys())
-        if (key.get(stored) != key.get(asked))
-            return key.name + " is " + key.get(stored) + " there and " + key.get(asked) + " here";
-    return "";
-}
-
 /// Refuses to go on with another study, saying what differs.
 void check_same_study(const Study& stored, const Study& asked, const std::string& path) {
     if (study_hash(stored) == study_hash(asked)) return;
@@ -34,11 +26,13 @@ void check_same_study(const Study& stored, const Study& asked, const std::string
               std::to_string(asked.scenarios.size());
     else
         for (std::size_t s = 0; s < stored.scenarios.size(); ++s) {
-            const std::string difference = first_difference(stored.scenarios[s].scenario, asked.scenarios[s].scenario);
-            if (!difference.empty()) {
-                why = "scenario " + stored.scenarios[s].scenario.name + ": " + difference;
-                break;
-            }
+            const std::vector<KeyDifference> differences =
+                key_differences(stored.scenarios[s].scenario, asked.scenarios[s].scenario);
+            if (differences.empty()) continue;
+            const KeyDifference& first = differences.front();
+            why = "scenario " + stored.scenarios[s].scenario.name + ": " + first.key + " is " + first.a +
+                  " there and " + first.b + " here";
+            break;
         }
     throw InputError("cannot resume " + path + " (it holds another study: " + why + "). Name another output.");
 }
