@@ -8,10 +8,11 @@ namespace credence {
 
 namespace {
 
-ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, std::int64_t trials) {
+/// `statuses`: of the trials that are compared.
+ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<double>& statuses) {
     ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i) {
-        const auto status = static_cast<Status>(static_cast<int>(compared.arm.columns[column_status][i]));
+    for (const double value : statuses) {
+        const auto status = static_cast<Status>(static_cast<int>(value));
         side.failed += failed(status);
         side.diverged += status == Status::diverged;
     }
@@ -19,13 +20,12 @@ ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, std::in
 }
 
 /// The arms' own means of every figure, over the pairs that its difference is of.
-void add_means(ComparedPair& pair, const ChosenPair& chosen) {
+void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials& common) {
     const std::vector<Column>& columns = chosen.a.results.columns;
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!is_figure(columns[c])) continue;
-        std::vector<double> a = figure_values(chosen.a.arm, c), b = figure_values(chosen.b.arm, c);
-        a.resize(static_cast<std::size_t>(pair.trials));
-        b.resize(static_cast<std::size_t>(pair.trials));
+        std::vector<double> a = common.of_a(figure_values(chosen.a.results, chosen.a.arm, c)),
+                            b = common.of_b(figure_values(chosen.b.results, chosen.b.arm, c));
         for (std::size_t i = 0; i < a.size(); ++i)
             if (std::isnan(a[i]) || std::isnan(b[i])) a[i] = b[i] = std::nan("");
         pair.a.mean.push_back(summarise(std::move(a)).mean);
@@ -38,12 +38,13 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     ComparedPair pair;
     pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
     pair.title = a.scenario.title;
-    pair.trials = std::min(a.trials, b.trials);
-    pair.a = side_of(chosen.a, chosen.file_a, pair.trials);
-    pair.b = side_of(chosen.b, chosen.file_b, pair.trials);
+    const CommonTrials common(a, b);
+    pair.trials = common.count();
+    pair.a = side_of(chosen.a, chosen.file_a, common.of_a(column_values(a, chosen.a.arm, column_status)));
+    pair.b = side_of(chosen.b, chosen.file_b, common.of_b(column_values(b, chosen.b.arm, column_status)));
     pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
     pair.differences = shown_differences(a.scenario, b.scenario);
-    add_means(pair, chosen);
+    add_means(pair, chosen, common);
     return pair;
 }
 

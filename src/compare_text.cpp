@@ -129,7 +129,7 @@ std::string pair_head(const ComparedPair& pair) {
     std::string text = "\n" + comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title) + "\n";
     text += "  A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
     if (pair.a.trials != pair.b.trials)
-        text += ", of the first " + std::to_string(pair.trials) + " trials: A has " + std::to_string(pair.a.trials) +
+        text += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
                 ", B has " + std::to_string(pair.b.trials);
     text += "\n";
     std::vector<std::string> parts;

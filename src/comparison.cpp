@@ -4,15 +4,38 @@
 
 namespace credence {
 
+CommonTrials::CommonTrials(const ScenarioResults& a, const ScenarioResults& b) {
+    for (std::size_t place = 0; place < a.blocks.size(); ++place) {
+        const std::optional<std::int64_t> row_b = first_row(b, a.blocks[place]);
+        if (!row_b) continue;
+        const std::int64_t row_a = block_size * static_cast<std::int64_t>(place);
+        const std::int64_t rows =
+            std::min(block_rows(a, place), block_rows(b, static_cast<std::size_t>(*row_b / block_size)));
+        count_ += rows;
+        if (!spans_.empty() && spans_.back().a + spans_.back().rows == row_a &&
+            spans_.back().b + spans_.back().rows == *row_b)
+            spans_.back().rows += rows;
+        else
+            spans_.push_back({row_a, *row_b, rows});
+    }
+}
+
+std::vector<double> CommonTrials::selected(const std::vector<double>& values, std::int64_t Span::* first) const {
+    std::vector<double> chosen;
+    chosen.reserve(static_cast<std::size_t>(count_));
+    for (const Span& span : spans_)
+        chosen.insert(chosen.end(), values.begin() + span.*first, values.begin() + span.*first + span.rows);
+    return chosen;
+}
+
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed) {
     Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
+    const CommonTrials common(a.results, b.results);
     for (std::size_t c = 0; c < a.results.columns.size(); ++c) {
         const Column& column = a.results.columns[c];
         if (!is_figure(column)) continue;
-        std::vector<double> of_a = figure_values(a.arm, c), of_b = figure_values(b.arm, c);
-        const std::size_t trials = std::min(of_a.size(), of_b.size());
-        of_a.resize(trials);
-        of_b.resize(trials);
+        const std::vector<double> of_a = common.of_a(figure_values(a.results, a.arm, c)),
+                                  of_b = common.of_b(figure_values(b.results, b.arm, c));
         const std::string figure = comparison.scenario + "/" + comparison.name() + "/" + column.name;
         comparison.figures.push_back({column.name, column.unit, compare_paired(of_a, of_b, root_seed, figure), 0});
     }

@@ -1,15 +1,15 @@
 #pragma once
 // Room 12: a file that appears under its name only when it is whole and on the disk.
 
-#include <cstddef>
+#include <functional>
 #include <string>
 
 namespace credence {
 
-/// Puts `size` bytes into the file `path`, replacing what is there: written aside as `PATH.partial`, synced, renamed,
-/// the folder synced. A crash leaves what was there before, and at worst the file aside, which the next writing takes
-/// over.
-/// Throws Failure where the system refuses; then what was there is untouched and nothing is left aside.
-void write_durably(const std::string& path, const void* bytes, std::size_t size);
+/// Makes the file `path`, replacing what is there: `write` fills an empty file aside, `PATH.partial`, given its
+/// descriptor, and returns 0 or an error of the system; it is synced and renamed, and the folder synced. A crash leaves
+/// what was there before, and at worst the file aside, which the next writing takes over. Throws Failure where the
+/// system refuses, and what `write` throws; then what was there is untouched and nothing is left aside.
+void write_durably(const std::string& path, const std::function<int(int descriptor)>& write);
 
 }  // namespace credence

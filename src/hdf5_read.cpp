@@ -190,6 +190,16 @@ void Dataset::read_into(hid_t memory_type, void* values) const {
           "is damaged: HDF5 cannot read its values");
 }
 
+void Dataset::read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const {
+    const std::string problem = "is damaged: HDF5 cannot read its values";
+    if (extents_.size() != 1 || first > extents_[0] || count > extents_[0] - first) throw Error(place_, "is too short");
+    if (count == 0) return;
+    const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, problem),
+        memory(H5Screate_simple(1, &count, nullptr), H5Sclose, place_, problem);
+    check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr), place_, problem);
+    check(H5Dread(dataset_.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, values), place_, problem);
+}
+
 std::string extents_text(const Extents& extents) {
     std::string text;
     for (const hsize_t extent : extents) text += (text.empty() ? "[" : ", ") + std::to_string(extent);

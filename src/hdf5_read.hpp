@@ -48,10 +48,23 @@ public:
     /// All values, row-major; the type in the file must be exactly T's.
     template <class T>
     std::vector<T> read() const {
-        require_type(type_of<T>().file);
+        require<T>();
         std::vector<T> values(count_);
         read_into(type_of<T>().memory, values.data());
         return values;
+    }
+    /// Of a list: values first ... first + count - 1, which are there; the type as for read().
+    template <class T>
+    std::vector<T> read_some(hsize_t first, hsize_t count) const {
+        require<T>();
+        std::vector<T> values(count);
+        read_some_into(type_of<T>().memory, first, count, values.data());
+        return values;
+    }
+    /// Throws unless the type in the file is exactly T's.
+    template <class T>
+    void require() const {
+        require_type(type_of<T>().file);
     }
     /// All values, row-major, of any floating-point type.
     std::vector<double> read_real() const;
@@ -60,6 +73,7 @@ private:
     void check_storage() const;
     void require_type(hid_t type) const;
     void read_into(hid_t memory_type, void* values) const;
+    void read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const;
 
     std::string place_;
     Handle dataset_, type_;
@@ -70,17 +84,22 @@ private:
 /// `[3, 2]`
 std::string extents_text(const Extents& extents);
 
-/// Opens a file and returns what `read` makes of it. Throws InputError `FILE: PLACE: PROBLEM. REMEDY.`
+/// What `read` returns of a file. Throws its Error as InputError `FILE: PLACE: PROBLEM. REMEDY.`
 template <class Read>
-auto read_file(const std::string& path, const std::string& usual_remedy, Read read) {
+auto translated(const std::string& path, const std::string& usual_remedy, Read read) {
     try {
         const QuietErrors quiet;
-        const Handle root = open_file(path);
-        return read(root);
+        return read();
     } catch (const Error& error) {
         const std::string& remedy = error.remedy().empty() ? usual_remedy : error.remedy();
         throw InputError(path + ": " + error.what() + ". " + remedy + ".");
     }
+}
+
+/// Opens a file and returns what `read` makes of it, its errors translated.
+template <class Read>
+auto read_file(const std::string& path, const std::string& usual_remedy, Read read) {
+    return translated(path, usual_remedy, [&] { return read(open_file(path)); });
 }
 
 }  // namespace credence::hdf5

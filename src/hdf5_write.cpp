@@ -30,27 +30,6 @@ Handle dataspace(const Extents& extents, const std::string& place) {
 
 }  // namespace
 
-Handle new_image() {
-    constexpr std::size_t growth = std::size_t{4} << 20;
-    const std::string place = "/", problem = "HDF5 could not make a file in memory";
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, place, problem);
-    check(H5Pset_fapl_core(access.id(), growth, false), place, problem);
-    check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), place, problem);
-    const Handle creation = creation_properties(H5P_FILE_CREATE, place);
-    return {H5Fcreate("image", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose, place, problem};
-}
-
-std::vector<unsigned char> take_image(Handle file) {
-    const std::string place = "/", problem = "HDF5 could not give its file in memory";
-    check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), place, problem);
-    const ssize_t size = H5Fget_file_image(file.id(), nullptr, 0);
-    if (size <= 0) throw Error(place, problem);
-    std::vector<unsigned char> image(static_cast<std::size_t>(size));
-    if (H5Fget_file_image(file.id(), image.data(), image.size()) != size) throw Error(place, problem);
-    file.close();
-    return image;
-}
-
 Handle new_group(const Handle& parent, const std::string& name) {
     const std::string place = place_of(parent, name);
     const Handle creation = creation_properties(H5P_GROUP_CREATE, place);
@@ -78,15 +57,32 @@ void write_attribute(const Handle& object, const std::string& name, Type type, c
     attribute.close();
 }
 
-Handle write_dataset(const Handle& group, const std::string& name, Type type, const void* values,
-                     const Extents& extents, const Description& description) {
+Handle new_dataset(const Handle& group, const std::string& name, Type type, const Extents& extents,
+                   const Description& description) {
     const std::string place = place_of(group, name), problem = "HDF5 could not make this dataset";
     const Handle space = dataspace(extents, place), creation = creation_properties(H5P_DATASET_CREATE, place);
+    // Every value is written; without this HDF5 would write its fill values first.
+    check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER), place, problem);
     Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.file, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                    H5Dclose, place, problem);
-    check(H5Dwrite(dataset.id(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), place, problem);
     write_text(dataset, "long_name", description.long_name);
     write_text(dataset, "units", description.units);
+    return dataset;
+}
+
+void write_values(const Handle& dataset, Type type, hsize_t first, hsize_t count, const void* values) {
+    const std::string place = place_of(dataset), problem = "HDF5 could not write its values";
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose, place, problem),
+        memory(H5Screate_simple(1, &count, nullptr), H5Sclose, place, problem);
+    check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr), place, problem);
+    check(H5Dwrite(dataset.id(), type.memory, memory.id(), space.id(), H5P_DEFAULT, values), place, problem);
+}
+
+Handle write_dataset(const Handle& group, const std::string& name, Type type, const void* values,
+                     const Extents& extents, const Description& description) {
+    Handle dataset = new_dataset(group, name, type, extents, description);
+    check(H5Dwrite(dataset.id(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), place_of(dataset),
+          "HDF5 could not write its values");
     return dataset;
 }
 

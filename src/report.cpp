@@ -33,7 +33,7 @@ bool has_bootstrap(const std::string& column) { return column != "nees_ratio" &&
 FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
-    std::vector<double> values = figure_values(arm, c);
+    std::vector<double> values = figure_values(results, arm, c);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
                         place_of(results.scenario, column.name, arm.name, values)};
     if (has_bootstrap(column.name))
@@ -49,7 +49,7 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, margin);
-    for (const double status : arm.columns[column_status]) {
+    for (const double status : column_values(results, arm, column_status)) {
         report.failed += failed(static_cast<Status>(static_cast<int>(status)));
         report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
     }

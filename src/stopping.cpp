@@ -14,16 +14,14 @@ namespace credence {
 namespace {
 
 /// The first trials' values.
-std::vector<double> first_values(const ArmResults& arm, std::size_t column, std::int64_t trials) {
-    std::vector<double> values = figure_values(arm, column);
-    values.resize(static_cast<std::size_t>(trials));
-    return values;
-}
-
 std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trials) {
-    std::vector<double> values = first_values(*subject.arm, subject.column, trials);
-    if (subject.subtracted == nullptr) return values;
-    return paired_differences(values, first_values(*subject.subtracted, subject.column, trials));
+    const auto first_values = [&](const ArmResults& arm) {
+        std::vector<double> values = figure_values(*subject.results, arm, subject.column);
+        values.resize(static_cast<std::size_t>(trials));
+        return values;
+    };
+    if (subject.subtracted == nullptr) return first_values(*subject.arm);
+    return paired_differences(first_values(*subject.arm), first_values(*subject.subtracted));
 }
 
 std::string name_of(const StoppingSubject& subject) {
@@ -118,11 +116,22 @@ const GoalState& widest(const Look& look) {
                              [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
 }
 
+namespace {
+
+/// Nothing is decided by trials that were stopped half way, and no further look is taken.
+Look interrupted_look(std::int64_t trials, int number) {
+    Look look{trials, number, look_alpha(number), {}, false};
+    look.interrupted = true;
+    return look;
+}
+
+}  // namespace
+
 Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look) {
     Look last;
     for (const std::int64_t trials : look_trials(rule.ceiling, rule.first_look)) {
         last = look(trials, last.number + 1);
-        if (last.met) break;
+        if (last.met || last.interrupted) break;
     }
     return last;
 }
@@ -132,10 +141,9 @@ Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
     check_goals(rule.goals, study);
     return run_looks(rule, [&](std::int64_t trials, int number) {
         // All scenarios of a study get as many trials: those of the one that has most, where that is more.
-        options.trials = trials;
-        for (const ScenarioResults& results : study.scenarios)
-            options.trials = std::max(options.trials, results.trials);
+        options.trials = std::max(trials, least_trials(study));
         run_study(study, options);
+        if (!study.complete) return interrupted_look(trials, number);
         Look look = look_at(study, rule.goals, trials, number);
         if (after_look) after_look(look);
         return look;

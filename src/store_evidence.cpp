@@ -62,9 +62,9 @@ void write_products(const Handle& group, const hdf5::Dimension& part, const Scen
 
 void write_errors(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
                   const ArmResults& arm) {
-    const auto detailed = numbered<std::int64_t>(group, "detailed_trial", 0,
-                                                 static_cast<std::size_t>(results.detailed()),
-                                                 "trials whose errors are kept: the first ones of the study");
+    const auto detailed =
+        hdf5::new_dimension(group, "detailed_trial", trial_numbers(results, 0, results.detailed()),
+                            {"trials whose errors are kept: of the first ones of the study those in the file", "1"});
     const auto component = numbered<std::int32_t>(group, "component", 0,
                                                   static_cast<std::size_t>(results.state_size()),
                                                   "component of the state");
@@ -157,7 +157,8 @@ void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t 
     }
     if (lags(results) > 0) check_numbered<std::int32_t>(group, "lag", 1, lags(results));
     read_products(group, results, parts, arm);
-    check_numbered<std::int64_t>(group, "detailed_trial", 0, detailed);
+    if (read_as<std::int64_t>(group, "detailed_trial", {detailed}) != trial_numbers(results, 0, results.detailed()))
+        throw Error(hdf5::place_of(group, "detailed_trial"), "does not name the first of the trials that are there");
     check_numbered<std::int32_t>(group, "component", 0, size);
     arm.nees = read_single(group, "detailed_nees", {detailed, steps});
     arm.errors = read_single(group, "detailed_error", {detailed, steps, size});

@@ -6,6 +6,7 @@
 #include <credence/store.hpp>
 
 #include "durable_file.hpp"
+#include "hdf5_driver.hpp"
 #include "hdf5_write.hpp"
 
 #include <cmath>
@@ -54,19 +55,22 @@ hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T f
     return hdf5::new_dimension(group, name, values, {long_name, "1"});
 }
 
-/// Builds a file in memory and puts it under its name. HDF5 only refuses there for want of memory.
+/// Builds an HDF5 file aside and puts it under its name. HDF5 itself only refuses for want of memory.
 template <class Build>
 void write_file(const std::string& path, Build build) {
-    std::vector<unsigned char> image;
-    try {
-        const hdf5::QuietErrors quiet;
-        hdf5::Handle root = hdf5::new_image();
-        build(root);
-        image = hdf5::take_image(std::move(root));
-    } catch (const hdf5::Error& error) {
-        throw Failure("cannot write " + path + " (" + error.what() + "). Free some memory.");
-    }
-    write_durably(path, image.data(), image.size());
+    write_durably(path, [&](int descriptor) {
+        ByteFile bytes(descriptor);
+        try {
+            const hdf5::QuietErrors quiet;
+            hdf5::Handle root = hdf5::new_file(bytes);
+            build(root);
+            root.close();
+        } catch (const hdf5::Error& error) {
+            if (bytes.error() == 0)
+                throw Failure("cannot write " + path + " (" + error.what() + "). Free some memory.");
+        }
+        return bytes.error();
+    });
 }
 
 }  // namespace credence

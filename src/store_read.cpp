@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 namespace credence {
 
@@ -42,23 +44,65 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
+/// What is asked of a damaged file.
+const char* const another_copy = "Run the study again, or give an undamaged copy";
+
+/// Rows that are read at once where all are looked at: they bound the memory that long columns take.
+constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
+
 template <class T>
-std::vector<double> read_values(const Handle& group, const std::string& name, const Extents& extents) {
-    const std::vector<T> values = read_as<T>(group, name, extents);
+std::vector<double> read_rows(const Dataset& dataset, std::int64_t first, std::int64_t count) {
+    const std::vector<T> values = dataset.read_some<T>(static_cast<hsize_t>(first), static_cast<hsize_t>(count));
     return {values.begin(), values.end()};
 }
 
-std::vector<double> read_column(const Handle& group, const Column& column, hsize_t trials) {
+std::vector<double> read_rows(const Dataset& dataset, const Column& column, std::int64_t first, std::int64_t count) {
     switch (column.type) {
-        case ColumnType::real: return read_values<double>(group, column.name, {trials});
-        case ColumnType::integer: return read_values<std::int32_t>(group, column.name, {trials});
+        case ColumnType::real: return read_rows<double>(dataset, first, count);
+        case ColumnType::integer: return read_rows<std::int32_t>(dataset, first, count);
         case ColumnType::status: break;
     }
-    std::vector<double> values = read_values<std::int8_t>(group, column.name, {trials});
+    std::vector<double> values = read_rows<std::int8_t>(dataset, first, count);
     for (const double value : values)
         if (value < 0 || value >= static_cast<double>(status_names().size()))
-            throw Error(hdf5::place_of(group, column.name), "holds " + to_text(value) + ", which is no status");
+            throw Error(dataset.place(), "holds " + to_text(value) + ", which is no status");
     return values;
+}
+
+/// The columns of an arm in a file that stays open for them.
+class ColumnsOfFile : public KeptColumns {
+public:
+    ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns)
+        : file_(std::move(file)), path_(std::move(path)), group_(std::move(group)), columns_(std::move(columns)) {}
+
+    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
+        return hdf5::translated(path_, another_copy, [&] {
+            const Dataset dataset(hdf5::open_group(*file_, group_), columns_[column].name);
+            return read_rows(dataset, columns_[column], first, count);
+        });
+    }
+
+private:
+    std::shared_ptr<const Handle> file_;
+    std::string path_, group_;
+    std::vector<Column> columns_;
+};
+
+/// Throws where a column has another shape or type, or holds a status that is none. Returns how many trials did not
+/// fail, of the status column.
+std::optional<std::int64_t> check_column(const Handle& group, const Column& column, std::int64_t trials) {
+    const Dataset dataset(group, column.name);
+    dataset.require_extents({static_cast<hsize_t>(trials)});
+    switch (column.type) {
+        case ColumnType::real: dataset.require<double>(); return std::nullopt;
+        case ColumnType::integer: dataset.require<std::int32_t>(); return std::nullopt;
+        case ColumnType::status: break;
+    }
+    std::int64_t counted = 0;
+    for (std::int64_t first = 0; first < trials; first += rows_at_once)
+        for (const double status : read_rows(dataset, column, first, std::min(rows_at_once, trials - first)))
+            counted += !failed(static_cast<Status>(static_cast<int>(status)));
+    return counted;
 }
 
 /// Names of the datasets that an arm's group holds.
@@ -75,52 +119,84 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
     return names;
 }
 
-/// Throws where the totals do not hold as many trials as the columns say did not fail.
-void check_counted(const Handle& group, const ScenarioResults& results, const ArmResults& arm) {
-    for (std::size_t c = 0; c < results.columns.size(); ++c) {
-        if (results.columns[c].type != ColumnType::status) continue;
-        const auto counted = std::count_if(arm.columns[c].begin(), arm.columns[c].end(), [](double status) {
-            return !failed(static_cast<Status>(static_cast<int>(status)));
-        });
-        if (counted != arm.counted)
+/// The blocks that the trials in a file make. Throws where a block is not whole, but for the study's last.
+std::vector<std::int64_t> read_blocks(const Handle& group, std::int64_t asked) {
+    const Dataset dataset(group, "trial");
+    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
+    const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
+    std::vector<std::int64_t> blocks;
+    std::int64_t next = 0, end = 0;  // the trial that must come, and the first beyond its block
+    for (std::int64_t first = 0; first < rows; first += rows_at_once) {
+        const auto count = static_cast<hsize_t>(std::min(rows_at_once, rows - first));
+        for (const std::int64_t trial : dataset.read_some<std::int64_t>(static_cast<hsize_t>(first), count)) {
+            if (next == end) {
+                if (trial < next || trial >= asked || trial % block_size != 0)
+                    throw Error(dataset.place(), "does not go on with a block of trials");
+                blocks.push_back(trial / block_size);
+                next = trial;
+                end = trial + trials_in_block(asked, blocks.back());
+            }
+            if (trial != next++) throw Error(dataset.place(), "does not count on by one within a block");
+        }
+    }
+    if (next != end) throw Error(dataset.place(), "ends within a block");
+    return blocks;
+}
+
+/// Throws where the arm's columns are not those of its scenario, or hold another number of trials than the totals.
+void check_columns(const Handle& group, const ScenarioResults& results, const ArmResults& arm) {
+    for (const Column& column : results.columns) {
+        const std::optional<std::int64_t> counted = check_column(group, column, results.trials);
+        if (counted && *counted != arm.counted)
             throw Error(hdf5::attribute_place(group, "counted_trials"),
-                        "is " + std::to_string(arm.counted) + ", but " + std::to_string(counted) +
+                        "is " + std::to_string(arm.counted) + ", but " + std::to_string(*counted) +
                             " trials did not fail");
     }
 }
 
-/// `trials` is unknown (-1) until the first arm has told it.
-ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results) {
+/// A study and the file that it is read from.
+struct Source {
+    std::shared_ptr<const Handle> file;
+    std::string path;
+    std::int64_t asked = 0;  ///< trials of each scenario that were asked for
+};
+
+FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t steps, hsize_t parts) {
+    const std::string total = figure.name + "_total", square = figure.name + "_square_total";
+    FigureTotals totals;
+    totals.sum = figure.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
+    if (!figure.integer) totals.square_sum = read_sums(group, square, {steps, parts});
+    totals.run_square_sum = read_sums(group, figure.name + "_run_square_total", {parts}).front();
+    return totals;
+}
+
+/// The first arm tells which trials are there, the others must agree.
+ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
+                    const Source& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
     require_links(group, arm_links(results));
-    const hsize_t trials = read_numbered<std::int64_t>(group, "trial", 0);
+    const std::vector<std::int64_t> blocks = read_blocks(group, source.asked);
+    if (results.arms.empty()) set_blocks(results, blocks, source.asked);
+    if (blocks != results.blocks) throw Error(hdf5::place_of(group, "trial"), "is not the same in every arm");
     const hsize_t steps = read_numbered<std::int32_t>(group, "step", 1);
     const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
-    if (results.trials < 0) results.trials = static_cast<std::int64_t>(trials);
-    Dataset(group, "trial").require_extents({static_cast<hsize_t>(results.trials)});
     Dataset(group, "step").require_extents({static_cast<hsize_t>(results.steps())});
     if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
 
     ArmResults arm;
     arm.name = name;
     arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
-    for (const Column& column : results.columns) arm.columns.push_back(read_column(group, column, trials));
-    for (const Figure& figure : results.figures) {
-        const std::string total = figure.name + "_total", square = figure.name + "_square_total";
-        FigureTotals totals;
-        totals.sum = figure.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
-        if (!figure.integer) totals.square_sum = read_sums(group, square, {steps, parts});
-        totals.run_square_sum = read_sums(group, figure.name + "_run_square_total", {parts}).front();
-        arm.totals.push_back(std::move(totals));
-    }
-    check_counted(group, results, arm);
+    check_columns(group, results, arm);
+    const std::string place = results.scenario.name + "/" + name;
+    arm.kept = std::make_shared<ColumnsOfFile>(source.file, source.path, place, results.columns);
+    for (const Figure& figure : results.figures) arm.totals.push_back(read_figure(group, figure, steps, parts));
     read_evidence(group, results, parts, arm);
     return arm;
 }
 
-ScenarioResults read_scenario_results(const Handle& root, const std::string& name, const std::string& path) {
-    const Handle group = hdf5::open_group(root, name);
-    const std::string origin = path + ": " + hdf5::attribute_place(group, "scenario");
+ScenarioResults read_scenario_results(const std::string& name, const Source& source) {
+    const Handle group = hdf5::open_group(*source.file, name);
+    const std::string origin = source.path + ": " + hdf5::attribute_place(group, "scenario");
     const Scenario scenario = read_scenario_text(hdf5::read_text(group, "scenario"), origin, "scenario");
     const auto agree = [&](const std::string& attribute, const std::string& found, const std::string& expected) {
         if (found != expected)
@@ -129,11 +205,11 @@ ScenarioResults read_scenario_results(const Handle& root, const std::string& nam
     agree("scenario", scenario.name, name);
     agree("title", hdf5::read_text(group, "title"), scenario.title);
     agree("length_unit", hdf5::read_text(group, "length_unit"), scenario.length_unit);
-    ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, -1};
+    ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, 0, {}};
     std::vector<std::string> arms;
     for (const Arm& arm : arms_of(scenario)) arms.push_back(arm_name(arm));
     require_links(group, arms);
-    for (const std::string& arm : arms) results.arms.push_back(read_arm(group, arm, results));
+    for (const std::string& arm : arms) results.arms.push_back(read_arm(group, arm, results, source));
     return results;
 }
 
@@ -147,31 +223,47 @@ void check_header(const Handle& root) {
                     "Use the release that wrote the file, or run the study again");
 }
 
-StoredStudy read_study(const Handle& root, const std::string& path) {
-    check_header(root);
+/// Whether every trial that was asked for is there. Throws where the file says so of one that lacks some.
+bool read_complete(const Handle& root, const Study& study) {
+    const int complete = hdf5::read_number<std::int8_t>(root, "complete");
+    if (complete != 0 && complete != 1) throw Error("/@complete", "is neither 0 nor 1");
+    for (const ScenarioResults& results : study.scenarios)
+        if (complete == 1 && results.blocks.size() != static_cast<std::size_t>(block_count(study.trials)))
+            throw Error("/@complete", "is 1, but trials are missing");
+    return complete == 1;
+}
+
+StoredStudy read_study(const Source& source) {
+    const Handle& root = *source.file;
     StoredStudy stored;
     Study& study = stored.study;
     study.root_seed = hdf5::read_number<std::uint64_t>(root, "root_seed");
     if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
         throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
-    const int complete = hdf5::read_number<std::int8_t>(root, "complete");
-    if (complete != 0 && complete != 1) throw Error("/@complete", "is neither 0 nor 1");
-    study.complete = complete == 1;
+    study.trials = source.asked;
     for (const std::string& name : hdf5::link_names(root))
-        if (name != run_group) study.scenarios.push_back(read_scenario_results(root, name, path));
+        if (name != run_group) study.scenarios.push_back(read_scenario_results(name, source));
     if (hdf5::read_text(root, "study_hash") != study_hash(study))
         throw Error("/@study_hash", "does not belong to these scenarios and this root seed");
+    study.complete = read_complete(root, study);
     const Handle run = hdf5::open_group(root, run_group);
     for (const std::string& name : hdf5::attribute_names(run))
         stored.run.emplace_back(name, hdf5::read_text(run, name));
     return stored;
 }
 
+Source open_results(const std::string& path) {
+    Source source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0};
+    check_header(*source.file);
+    source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
+    if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
+    return source;
+}
+
 }  // namespace
 
 StoredStudy read_results(const std::string& path) {
-    return hdf5::read_file(path, "Run the study again, or give an undamaged copy",
-                           [&](const Handle& root) { return read_study(root, path); });
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path)); });
 }
 
 }  // namespace credence

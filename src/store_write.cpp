@@ -16,32 +16,38 @@ namespace {
 using hdf5::Dimension;
 using hdf5::Handle;
 
+/// A column's values in the type of the file.
 template <class T>
-std::vector<T> converted(const std::vector<double>& values) {
-    std::vector<T> result(values.size());
-    std::transform(values.begin(), values.end(), result.begin(), [](double value) { return static_cast<T>(value); });
-    return result;
+hdf5::Handle write_values(const Handle& group, const Column& column, const ScenarioResults& results,
+                          const ArmResults& arm, std::size_t c) {
+    return hdf5::new_long_dataset<T>(group, column.name, results.trials, {column.long_name, column.unit},
+                                     [&](std::int64_t first, std::int64_t count) {
+                                         const std::vector<double> values = column_values(arm, c, first, count);
+                                         std::vector<T> converted(values.size());
+                                         std::transform(values.begin(), values.end(), converted.begin(),
+                                                        [](double value) { return static_cast<T>(one_nan(value)); });
+                                         return converted;
+                                     });
 }
 
-void write_column(const Handle& group, const Dimension& trial, const Column& column,
-                  const std::vector<double>& values) {
-    const hdf5::Description description{column.long_name, column.unit};
+void write_column(const Handle& group, const Dimension& trial, const ScenarioResults& results, const ArmResults& arm,
+                  std::size_t c) {
+    const Column& column = results.columns[c];
     switch (column.type) {
         case ColumnType::real: {
-            std::vector<double> reals(values.size());
-            std::transform(values.begin(), values.end(), reals.begin(), one_nan);
-            const Handle variable = hdf5::new_variable(group, column.name, reals, {&trial}, description);
+            const Handle variable = write_values<double>(group, column, results, arm, c);
+            hdf5::attach(variable, {&trial});
             return hdf5::write_numbers<double>(variable, "_FillValue", {one_nan(column.fill)});
         }
         case ColumnType::integer: {
-            const Handle variable =
-                hdf5::new_variable(group, column.name, converted<std::int32_t>(values), {&trial}, description);
+            const Handle variable = write_values<std::int32_t>(group, column, results, arm, c);
+            hdf5::attach(variable, {&trial});
             return hdf5::write_numbers<std::int32_t>(variable, "_FillValue", {static_cast<std::int32_t>(column.fill)});
         }
         case ColumnType::status: break;
     }
-    const Handle variable =
-        hdf5::new_variable(group, column.name, converted<std::int8_t>(values), {&trial}, description);
+    const Handle variable = write_values<std::int8_t>(group, column, results, arm, c);
+    hdf5::attach(variable, {&trial});
     std::vector<std::int8_t> codes;
     for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
     hdf5::write_numbers(variable, "flag_values", codes);
@@ -111,14 +117,17 @@ void write_figure(const Handle& group, const Dimension& step, const Dimension& p
 void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
     const Handle group = hdf5::new_group(scenario_group, arm.name);
     hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
-    const Dimension trial = numbered<std::int64_t>(group, "trial", 0, static_cast<std::size_t>(results.trials),
-                                                   "trial, counted over the whole study");
+    const Dimension trial = hdf5::as_dimension(
+        hdf5::new_long_dataset<std::int64_t>(
+            group, "trial", results.trials, {"trial, counted over the whole study", "1"},
+            [&](std::int64_t first, std::int64_t count) { return trial_numbers(results, first, count); }),
+        "trial", static_cast<hsize_t>(results.trials));
     const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
                                                   "pose that the step leads to");
     const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
                                                   "part of an exact total: 0 the total, the others what rounding left");
     for (std::size_t c = 0; c < results.columns.size(); ++c)
-        write_column(group, trial, results.columns[c], arm.columns[c]);
+        write_column(group, trial, results, arm, c);
     for (std::size_t f = 0; f < results.figures.size(); ++f)
         write_figure(group, step, part, results.figures[f], arm.totals[f]);
     write_evidence(group, {step, part}, results, arm);
@@ -129,6 +138,7 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
     hdf5::write_text(root, "study_hash", study_hash(study));
     hdf5::write_number<std::uint64_t>(root, "root_seed", study.root_seed);
     hdf5::write_text(root, "root_seed_text", std::to_string(study.root_seed));
+    hdf5::write_number<std::int64_t>(root, "trials", study.trials);
     hdf5::write_number<std::int8_t>(root, "complete", study.complete ? 1 : 0);
     for (const ScenarioResults& results : study.scenarios) {
         const Handle group = new_scenario_group(root, results.scenario);

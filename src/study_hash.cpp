@@ -6,12 +6,37 @@
 
 namespace credence {
 
-std::string study_hash(const Study& study) {
-    std::string text = "schema " + std::to_string(schema_version) + "\nroot_seed " + std::to_string(study.root_seed) +
-                       "\nkeep trials\n";
-    for (const ScenarioResults& results : study.scenarios) text += "\n" + scenario_text(results.scenario);
+StudyDefinition definition_of(const Study& study) {
+    StudyDefinition definition{study.root_seed, {}};
+    for (const ScenarioResults& results : study.scenarios) definition.scenarios.push_back(results.scenario);
+    return definition;
+}
+
+std::string study_hash(const StudyDefinition& definition) {
+    std::string text = "schema " + std::to_string(schema_version) + "\nroot_seed " +
+                       std::to_string(definition.root_seed) + "\nkeep trials\n";
+    for (const Scenario& scenario : definition.scenarios) text += "\n" + scenario_text(scenario);
     const boost::uuids::name_generator_sha1 generate(boost::uuids::ns::oid());
     return boost::uuids::to_string(generate(text));
+}
+
+std::string study_hash(const Study& study) { return study_hash(definition_of(study)); }
+
+std::string difference_of(const StudyDefinition& there, const StudyDefinition& here) {
+    if (study_hash(there) == study_hash(here)) return "";
+    if (there.root_seed != here.root_seed)
+        return "its root seed is " + std::to_string(there.root_seed) + ", not " + std::to_string(here.root_seed);
+    if (there.scenarios.size() != here.scenarios.size())
+        return "it has " + std::to_string(there.scenarios.size()) + " scenarios, not " +
+               std::to_string(here.scenarios.size());
+    for (std::size_t s = 0; s < there.scenarios.size(); ++s) {
+        const std::vector<KeyDifference> differences = key_differences(there.scenarios[s], here.scenarios[s]);
+        if (differences.empty()) continue;
+        const KeyDifference& first = differences.front();
+        return "scenario " + there.scenarios[s].name + ": " + first.key + " is " + first.a + " there and " + first.b +
+               " here";
+    }
+    return "it has other scenarios";
 }
 
 }  // namespace credence

@@ -11,7 +11,7 @@ using namespace credence::test;
 
 namespace {
 
-const std::string arm = "/first/greedy.ekf", other_arm = "/first/fixed.ekf";
+const std::string arm = "/first/greedy.ekf";
 
 const std::vector<Damage> header_damages{
     {"is not a results file", [](auto& r) { set_text(r, "/", "format", "credence trajectories"); }},
@@ -33,6 +33,9 @@ const std::vector<Damage> header_damages{
          H5Adelete(r.id(), "complete");
          hdf5::write_numbers<std::int8_t>(r, "complete", {1});
      }},
+    {"/trial: ends within a block", [](auto& r) { set_number<std::int64_t>(r, "/", "trials", 300); }},
+    {"/@trials: is no number of trials", [](auto& r) { set_number<std::int64_t>(r, "/", "trials", -1); }},
+    {"/@trials: is missing", [](auto& r) { H5Adelete(r.id(), "trials"); }},
     {"/run: is missing", [](auto& r) { remove(r, "/run"); }},
     {"/run: is no readable group", [](auto& r) { replace<double>(r, "/run", {1}, {}); }},
     {"/run@fact: is not text", [](auto& r) { set_number<double>(r, "/run", "fact", 1); }},
@@ -81,12 +84,14 @@ const std::vector<Damage> arm_damages{
      [](auto& r) { replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, -1}); }},
     {arm + "/trial: does not count on by one",
      [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {0, 1, 3, 4, 5}); }},
-    {arm + "/trial: does not count on by one",
+    {arm + "/trial: does not go on with a block",
      [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {1, 2, 3, 4, 5}); }},
-    {arm + "/trial: has extents [4], not [5]",
+    {arm + "/trial: does not go on with a block",
+     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {6}, {0, 1, 2, 3, 4, 5}); }},
+    {arm + "/trial: ends within a block",
      [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {4}, {0, 1, 2, 3}); }},
-    {other_arm + "/trace_P: has extents [5], not [4]",
-     [](auto& r) { replace<std::int64_t>(r, other_arm + "/trial", {4}, {0, 1, 2, 3}); }},
+    {arm + "/trial: is not the same in every arm",
+     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {0}, {}); }},
     {arm + "/step: has extents [2], not [3]", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {2}, {1, 2}); }},
     {arm + "/step: is not a list", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {3, 1}, {1, 2, 3}); }},
     {arm + "/part: is empty", [](auto& r) { replace<std::int32_t>(r, arm + "/part", {0}, {}); }},

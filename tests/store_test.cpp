@@ -26,8 +26,6 @@ bool same(const std::vector<ExactSum>& a, const std::vector<ExactSum>& b) {
 void require_same(const ArmResults& found, const ArmResults& expected) {
     REQUIRE(found.name == expected.name);
     CHECK(found.counted == expected.counted);
-    REQUIRE(found.columns.size() == expected.columns.size());
-    for (std::size_t c = 0; c < found.columns.size(); ++c) CHECK(same(found.columns[c], expected.columns[c]));
     REQUIRE(found.totals.size() == expected.totals.size());
     for (std::size_t f = 0; f < found.totals.size(); ++f) {
         INFO("figure " << f);
@@ -46,6 +44,7 @@ void require_same(const ArmResults& found, const ArmResults& expected) {
 
 void require_same(const Study& found, const Study& expected) {
     CHECK(found.root_seed == expected.root_seed);
+    CHECK(found.trials == expected.trials);
     CHECK(found.complete == expected.complete);
     CHECK(study_hash(found) == study_hash(expected));
     REQUIRE(found.scenarios.size() == expected.scenarios.size());
@@ -53,10 +52,15 @@ void require_same(const Study& found, const Study& expected) {
         const ScenarioResults &one = found.scenarios[s], &other = expected.scenarios[s];
         CHECK(scenario_text(one.scenario) == scenario_text(other.scenario));
         CHECK(one.trials == other.trials);
+        CHECK(one.blocks == other.blocks);
         CHECK(one.columns.size() == other.columns.size());
         CHECK(one.figures.size() == other.figures.size());
         REQUIRE(one.arms.size() == other.arms.size());
-        for (std::size_t a = 0; a < one.arms.size(); ++a) require_same(one.arms[a], other.arms[a]);
+        for (std::size_t a = 0; a < one.arms.size(); ++a) {
+            require_same(one.arms[a], other.arms[a]);
+            for (std::size_t c = 0; c < one.columns.size(); ++c)
+                CHECK(same(column_values(one, one.arms[a], c), column_values(other, other.arms[a], c)));
+        }
     }
 }
 

@@ -21,10 +21,14 @@ bool same_sums(const std::vector<ExactSum>& a, const std::vector<ExactSum>& b) {
     return true;
 }
 
-bool same_arm(const ArmResults& a, const ArmResults& b) {
-    if (a.name != b.name || a.counted != b.counted || a.columns.size() != b.columns.size()) return false;
+bool same_columns(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm) {
     for (std::size_t c = 0; c < a.columns.size(); ++c)
-        if (!same_bits(a.columns[c], b.columns[c])) return false;
+        if (!same_bits(column_values(a, a.arms[arm], c), column_values(b, b.arms[arm], c))) return false;
+    return true;
+}
+
+bool same_arm(const ArmResults& a, const ArmResults& b) {
+    if (a.name != b.name || a.counted != b.counted) return false;
     for (std::size_t f = 0; f < a.totals.size(); ++f)
         if (!same_sums(a.totals[f].sum, b.totals[f].sum) || !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
             !same_bits(a.totals[f].run_square_sum.parts(), b.totals[f].run_square_sum.parts()))
@@ -61,9 +65,11 @@ Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads) {
 bool same_results(const Study& a, const Study& b) {
     if (a.scenarios.size() != b.scenarios.size()) return false;
     for (std::size_t s = 0; s < a.scenarios.size(); ++s) {
-        if (a.scenarios[s].trials != b.scenarios[s].trials) return false;
+        if (a.scenarios[s].trials != b.scenarios[s].trials || a.scenarios[s].blocks != b.scenarios[s].blocks) return false;
         for (std::size_t i = 0; i < a.scenarios[s].arms.size(); ++i)
-            if (!same_arm(a.scenarios[s].arms[i], b.scenarios[s].arms[i])) return false;
+            if (!same_arm(a.scenarios[s].arms[i], b.scenarios[s].arms[i]) ||
+                !same_columns(a.scenarios[s], b.scenarios[s], i))
+                return false;
     }
     return true;
 }

@@ -32,6 +32,26 @@ struct ComparedArm {
     std::string label;
 };
 
+/// The trials that two results of the same world both have.
+class CommonTrials {
+public:
+    CommonTrials(const ScenarioResults& a, const ScenarioResults& b);
+    std::int64_t count() const { return count_; }
+    /// Of one value a trial of `a` or of `b`, those of the common trials.
+    std::vector<double> of_a(const std::vector<double>& values) const { return selected(values, &Span::a); }
+    std::vector<double> of_b(const std::vector<double>& values) const { return selected(values, &Span::b); }
+
+private:
+    /// Rows that follow each other in both.
+    struct Span {
+        std::int64_t a, b, rows;
+    };
+    std::vector<double> selected(const std::vector<double>& values, std::int64_t Span::* first) const;
+
+    std::vector<Span> spans_;
+    std::int64_t count_ = 0;
+};
+
 /// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap.
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed);
 

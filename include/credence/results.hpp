@@ -5,6 +5,7 @@
 #include <credence/exact_sum.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,10 +28,21 @@ struct ProductTotals {
     std::vector<std::int64_t> count;   ///< products
 };
 
+/// Columns of one arm that are kept in a file, because they may exceed the memory.
+class KeptColumns {
+public:
+    virtual ~KeptColumns() = default;
+    /// The values of rows first ... first + count - 1, which must be there. Throws InputError or Failure where the file
+    /// does not give them.
+    virtual std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const = 0;
+};
+
 /// One arm of a scenario: per-trial columns and per-step totals.
 struct ArmResults {
     std::string name;
-    std::vector<std::vector<double>> columns;  ///< [column_count][trials]; NaN or fill where a trial failed
+    /// [column_count][trials]; NaN or fill where a trial failed. Empty where `kept` has them: read column_values.
+    std::vector<std::vector<double>> columns;
+    std::shared_ptr<const KeptColumns> kept;
     std::vector<FigureTotals> totals;          ///< [figure_count]
     std::int64_t counted = 0;                  ///< trials in the totals: those that did not fail
     std::vector<std::int64_t> cells;           ///< [K - 1, shape_cells] trials by cell of the first nees figure
@@ -50,14 +62,14 @@ struct ScenarioResults {
     std::vector<Column> columns;
     std::vector<Figure> figures;
     std::vector<ArmResults> arms;
-    std::int64_t trials = 0;                   ///< 0 ... trials - 1 are there
+    std::int64_t trials = 0;                   ///< that are there: rows of the columns
+    /// The blocks that are there, rising: row r is trial blocks[r / 256] * 256 + r % 256. Only the last may be partial.
+    /// 0, 1, 2 ... but for shards and interrupted runs. Empty for a record.
+    std::vector<std::int64_t> blocks;
 
     int steps() const { return scenario.poses - 1; }
-    /// Trials whose errors are kept.
-    std::int64_t detailed() const {
-        const int most = detailed_trials(steps(), state_size());
-        return trials < most ? trials : most;
-    }
+    /// Trials that are there whose errors are kept: the rows of the details.
+    std::int64_t detailed() const;
     /// n
     int state_size() const { return figures.front().dimension; }
 };
@@ -68,8 +80,12 @@ ScenarioResults empty_results(const Scenario& scenario);
 /// Whether a column is a figure of the trial, not its status.
 bool is_figure(const Column& column);
 
-/// A column's values, failed trials as NaN whatever their fill.
-std::vector<double> figure_values(const ArmResults& arm, std::size_t column);
+/// A column's values as stored, of all rows or of `count` rows from `first` on; read where they are kept in a file.
+std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);
+std::vector<double> column_values(const ArmResults& arm, std::size_t column, std::int64_t first, std::int64_t count);
+
+/// The same, failed trials as NaN whatever their fill.
+std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);
 
 /// The arms that a name means: the one that has it, or all of that controller.
 std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name);
@@ -77,13 +93,29 @@ std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const 
 /// `fixed.X` beside `greedy.X`; nullptr where there is none, or where the arm is no greedy one.
 const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm);
 
-/// Makes room in the columns for trials up to `trials`.
+/// Trials in block `blocks[place]`.
+std::int64_t block_rows(const ScenarioResults& results, std::size_t place);
+
+/// The trials of rows first ... first + count - 1.
+std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count);
+
+/// The row at which a block begins; nothing where the block is not there.
+std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64_t block);
+
+/// Makes `blocks`, of a study of `trials` trials, those that are there: rows of blocks that were and stay are moved, rows
+/// of others hold anything until they are stored. Totals are not touched, nor columns that are kept in a file.
+void set_blocks(ScenarioResults& results, std::vector<std::int64_t> blocks, std::int64_t trials);
+
+/// All blocks of `trials` trials.
 void extend(ScenarioResults& results, std::int64_t trials);
 
-/// Adds a block's totals, and its columns at their trials. Columns of different blocks may be stored from several
-/// threads at once; totals may not.
+/// Adds a block's totals, and its details and columns (where they are not kept in a file) at their rows. Those of
+/// different blocks may be stored from several threads at once; totals may not.
 void store_columns(ScenarioResults& results, const Block& block);
 void add_totals(ScenarioResults& results, const Block& block);
+
+/// Adds the totals of other trials of the same arm.
+void add_totals(ArmResults& to, const ArmResults& from);
 
 /// Takes a block's totals back, exactly: a partial last block is computed again when a study grows.
 void remove_totals(ScenarioResults& results, const Block& block);

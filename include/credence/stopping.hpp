@@ -62,6 +62,7 @@ struct Look {
     double alpha = 0;                  ///< alpha_j
     std::vector<GoalState> states;     ///< at least one
     bool met = false;                  ///< every one of them
+    bool interrupted = false;          ///< the run was stopped on the way to it: no states
 };
 
 /// Reads `METRIC=HALFWIDTH` or `METRIC[ARM-ARM]=HALFWIDTH`, the half-width absolute (`0.01`) or relative (`0.5%`).

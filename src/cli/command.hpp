@@ -75,11 +75,13 @@ const Command& judge_command();
 const Command& compare_command();
 const Command& replay_command();
 const Command& show_command();
+const Command& merge_command();
 int run(const Parsed& parsed, const std::string& command_line);
 int report(const Parsed& parsed);
 int judge(const Parsed& parsed);
 int compare(const Parsed& parsed);
 int replay(const Parsed& parsed, const std::string& command_line);
 int show(const Parsed& parsed);
+int merge(const Parsed& parsed, const std::string& command_line);
 
 }  // namespace credence::cli

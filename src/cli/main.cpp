@@ -32,6 +32,7 @@ const std::vector<Subcommand>& subcommands() {
                                              {cli::judge_command, without_line<cli::judge>},
                                              {cli::compare_command, without_line<cli::compare>},
                                              {cli::replay_command, cli::replay},
+                                             {cli::merge_command, cli::merge},
                                              {cli::show_command, without_line<cli::show>}};
     return all;
 }
@@ -44,7 +45,7 @@ int help() {
         std::cout << "  " << command.name << std::string(9 - command.name.size(), ' ') << command.summary << "\n";
     }
     std::cout << "\n  --help   this\n  --version  the version and how it was built\n\n"
-                 "Exit codes: 0 done, 1 failed, 2 bad input.\n";
+                 "Exit codes: 0 done, 1 failed, 2 bad input, 3 stopped by a signal with everything kept.\n";
     return 0;
 }
 

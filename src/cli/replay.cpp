@@ -74,6 +74,15 @@ std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
     throw invalid_value("--arm", name, "not in the scenario", "It has " + joined(names));
 }
 
+/// Where the trial stands in the columns.
+std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
+    const std::optional<std::int64_t> first = first_row(results, trial / block_size);
+    if (!first || *first + trial % block_size >= results.trials)
+        throw invalid_value("--trial", std::to_string(trial), "the file is a part of a study and does not have it",
+                            "Give one that it has");
+    return *first + trial % block_size;
+}
+
 /// Bit for bit, any NaN being like another.
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
@@ -85,11 +94,11 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const Study study = read_results(parsed.arguments.front()).study;
     const ScenarioResults& results = find_scenario(study, scenario_name);
     const std::size_t a = find_arm(results, arm);
-    const std::int64_t trial = parsed.integer("trial", 0, 0, results.trials - 1);
+    const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
     const Problem problem(results.scenario);
     Trajectory trajectory = replay_trial(problem, arms_of(results.scenario)[a].controller, study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size(); ++c) {
-        const double stored = results.arms[a].columns[c][static_cast<std::size_t>(trial)];
+        const double stored = column_values(results.arms[a], c, row, 1).front();
         if (!same(stored, trajectory.columns[c]))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
                           results.columns[c].name + " is " + to_text(trajectory.columns[c]) + ", stored is " +

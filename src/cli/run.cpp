@@ -1,7 +1,9 @@
+#include "interrupt.hpp"
 #include "progress.hpp"
 #include "run_until.hpp"
 #include "version.hpp"
 
+#include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/store.hpp>
 #include <credence/text.hpp>
@@ -22,7 +24,9 @@ const Command& run_command() {
         "run",
         "SCENARIO.ini... [options]",
         "run a study: every scenario under all its arms",
-        "\nThe same scenarios and seed give the same results for any number of threads.\n",
+        "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
+        "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
+        "everything kept (exit code 3), and --resume goes on.\n",
         {output_option("results file (default credence.h5)"),
          {"trials", "N", "trials of each scenario (default 10000)"},
          {"seed", "N", "root seed, from 0 up (default 1)"},
@@ -33,9 +37,12 @@ const Command& run_command() {
           "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
           "all must be met",
           true},
+         {"shard", "I/N", "run block b of 256 trials where b mod N = I only; `credence merge` joins the files"},
          {"resume", "",
-          "run what is missing in the results file, also to a larger --trials; start where there is none"},
+          "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
+         {"commit-every", "BLOCKS",
+          "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},
          {"quiet", "", "no progress and no table"}}};
     return command;
@@ -43,17 +50,10 @@ const Command& run_command() {
 
 namespace {
 
-bool nothing_missing(const Study& study, std::int64_t trials) {
+bool nothing_missing(const Study& study, const RunOptions& options) {
     for (const ScenarioResults& results : study.scenarios)
-        if (results.trials < trials) return false;
-    return study.complete;
-}
-
-/// Of all scenarios together.
-std::int64_t trials_of(const Study& study) {
-    std::int64_t trials = 0;
-    for (const ScenarioResults& results : study.scenarios) trials += results.trials;
-    return trials;
+        if (!missing_blocks(results, options.trials, options.shard).empty()) return false;
+    return study.trials >= options.trials;
 }
 
 std::string now_text() {
@@ -78,46 +78,76 @@ int dry_run(const RunRequest& request, const Study& study) {
     double seconds = 0;
     std::int64_t blocks = 0;
     for (const ScenarioResults& results : study.scenarios) {
-        const std::int64_t missing = std::max<std::int64_t>(0, request.options.trials - results.trials);
-        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(missing);
-        blocks += block_count(missing);
+        std::int64_t trials = 0;
+        for (const std::int64_t block : missing_blocks(results, request.options.trials, request.options.shard)) {
+            trials += trials_in_block(request.options.trials, block);
+            ++blocks;
+        }
+        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(trials);
     }
     const std::int64_t at_once =
         std::min<std::int64_t>({request.options.threads, omp_get_num_procs(), std::max<std::int64_t>(1, blocks)});
-    const Footprint size = footprint(study, request.options.trials, request.options.threads);
+    const Footprint size = footprint(study, request.options.trials / request.options.shard.count, request.options.threads);
     std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
               << ", threads: " << request.options.threads << ". About "
               << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
               << " of memory, " << bytes_text(size.file) << " in " << request.output
+              << ", as much again in its journal meanwhile"
               << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
     return 0;
 }
 
 /// What a run did to its study.
 struct Work {
-    bool changed = true;
+    bool changed = false;
     double seconds = 0;
     std::optional<Look> last_look;  ///< with --until
 };
 
 /// Runs what is missing of what was asked for.
-Work work_on(Study& study, const RunRequest& request) {
-    const bool was_complete = study.complete;
-    const std::int64_t had = trials_of(study);
+Work work_on(StoredRun& stored, const RunRequest& request) {
     const auto start = std::chrono::steady_clock::now();
     Work work;
+    RunOptions options = request.options;
+    options.stop = Interrupt::came;
+    if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
+    options.keeper = &stored.begin(options.trials, request.commit_every);
     if (!request.goals.empty()) {
-        work.last_look = grow_until_precise(study, request);
-    } else if (!nothing_missing(study, request.options.trials)) {
-        RunOptions options = request.options;
+        work.last_look = grow_until_precise(stored.study(), request, options);
+    } else {
         ProgressLine progress(request.quiet);
         options.progress = [&](const Progress& now) { progress(now); };
-        run_study(study, options);
+        run_study(stored.study(), options);
         progress.finish();
     }
     work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    work.changed = !was_complete || trials_of(study) != had;
     return work;
+}
+
+RunFacts facts_of(const RunRequest& request, const Work& work, const std::string& started,
+                  const std::string& command_line) {
+    RunFacts facts = build_facts();
+    facts.emplace_back("started", started);
+    facts.emplace_back("threads", std::to_string(request.options.threads));
+    facts.emplace_back("wall_seconds", to_text(work.seconds));
+    facts.emplace_back("command_line", command_line);
+    return facts;
+}
+
+/// The command that goes on with a run that was stopped.
+std::string resuming(std::string command_line) {
+    const std::string overwrite = " --overwrite", resume = " --resume";
+    if (const std::size_t at = command_line.find(overwrite); at != std::string::npos)
+        command_line.erase(at, overwrite.size());
+    return command_line.find(resume) == std::string::npos ? command_line + resume : command_line;
+}
+
+int stopped(const StoredRun& stored, const RunRequest& request, const std::string& command_line) {
+    std::int64_t done = 0;
+    for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
+    std::cerr << "credence run: stopped by " << Interrupt::name() << " with " << done << " trials kept in "
+              << request.output << " (complete = 0). This goes on with them:\n  " << resuming(command_line) << "\n";
+    return 3;
 }
 
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
@@ -132,25 +162,32 @@ void print_table(const Study& study, const RunRequest& request, const Work& work
         std::cout << " has these trials already\n";
 }
 
+/// Runs and writes. Throws Failure with what is kept.
+Work keep(StoredRun& stored, const RunRequest& request, const std::string& command_line) {
+    const std::string started = now_text();
+    try {
+        Work work = work_on(stored, request);
+        work.changed = stored.finish(facts_of(request, work, started, command_line));
+        return work;
+    } catch (const Failure& failure) {
+        throw Failure(failure.what() + std::string(" What was committed is kept, and this goes on with it: ") +
+                      resuming(command_line));
+    }
+}
+
 }  // namespace
 
 int run(const Parsed& parsed, const std::string& command_line) {
-    const RunRequest request = read_request(parsed);
-    Study study = starting_study(request);
-    if (parsed.has("dry-run")) return dry_run(request, study);
+    RunRequest request = read_request(parsed);
+    const Interrupt interrupt;
+    StoredRun stored = starting_run(request);
+    if (parsed.has("dry-run")) return dry_run(request, stored.study());
 
-    RunFacts facts = build_facts();
-    facts.emplace_back("started", now_text());
-    const Work work = work_on(study, request);
-    if (work.changed) {
-        facts.emplace_back("threads", std::to_string(request.options.threads));
-        facts.emplace_back("wall_seconds", to_text(work.seconds));
-        facts.emplace_back("command_line", command_line);
-        write_results(request.output, study, facts);
-    }
+    const Work work = keep(stored, request, command_line);
+    if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
     if (work.last_look && !work.last_look->met)
         std::cerr << "credence run: " << imprecision_text(*work.last_look, request.rule()) << "\n";
-    if (!request.quiet) print_table(study, request, work);
+    if (!request.quiet) print_table(stored.study(), request, work);
     return 0;
 }
 

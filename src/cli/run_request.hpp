@@ -4,6 +4,7 @@
 #include "command.hpp"
 
 #include <credence/stopping.hpp>
+#include <credence/stored_run.hpp>
 
 #include <cstdint>
 #include <string>
@@ -17,7 +18,10 @@ struct RunRequest {
     std::uint64_t root_seed = 1;
     RunOptions options;
     std::vector<StoppingGoal> goals;  ///< of --until; none: run all of options.trials, else that is the ceiling
-    bool resume = false, overwrite = false, quiet = false;
+    bool trials_given = true;          ///< else a run that goes on does so to what it was asked for before
+    Start start = Start::fresh;
+    std::int64_t commit_every = 0;
+    bool quiet = false;
 
     StoppingRule rule() const { return {goals, options.trials}; }
 };
@@ -25,8 +29,8 @@ struct RunRequest {
 /// Throws InputError where the options are no request.
 RunRequest read_request(const Parsed& parsed);
 
-/// The study to go on with: new, or what the results file holds. Throws InputError where the output cannot be used, it
-/// holds another study, or the goals are not of this one.
-Study starting_study(const RunRequest& request);
+/// The run to begin or to go on with; sets the request's trials where they were not given. Throws InputError where the
+/// output cannot be used, holds another study, or the goals are not of this one.
+StoredRun starting_run(RunRequest& request);
 
 }  // namespace credence::cli

@@ -74,10 +74,9 @@ private:
 
 }  // namespace
 
-Look grow_until_precise(Study& study, const RunRequest& request) {
+Look grow_until_precise(Study& study, const RunRequest& request, RunOptions options) {
     const StoppingRule rule = request.rule();
     LookProgress progress(request.quiet, rule);
-    RunOptions options = request.options;
     options.progress = [&](const Progress& now) { progress(now); };
     return run_until(study, rule, options,
                      [&](const Look& look) { progress.look_done(look, study.scenarios.size()); });

@@ -7,7 +7,7 @@ namespace credence::cli {
 
 /// Grows the study until it is as precise as was asked or at the ceiling; the last look. A line on the standard error
 /// after every look, unless quiet.
-Look grow_until_precise(Study& study, const RunRequest& request);
+Look grow_until_precise(Study& study, const RunRequest& request, RunOptions options);
 
 /// At which look and count of trials the run stopped, and the interval of every asked mean there.
 std::string stopping_text(const Look& look);

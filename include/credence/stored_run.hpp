@@ -1,0 +1,67 @@
+#pragma once
+// Room 12: a run and what it keeps on the disk: the results file FILE.h5 and, until that is written, FILE.h5.journal
+// beside it. docs/durability.md says what is promised.
+
+#include <credence/store.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// What to do with what is there already.
+enum class Start {
+    fresh,      ///< refuse it
+    resume,     ///< go on with it
+    overwrite,  ///< replace it
+};
+
+class Journal;
+
+/// Keeps a run on the disk. One at a time for a file: the journal is locked.
+class StoredRun {
+public:
+    /// Looks at what is there, and reads it where the run is to go on; changes nothing but a journal's torn tail.
+    /// `study` is what is asked for, empty. Throws InputError where the output cannot be used: it is there (fresh), holds
+    /// another study, is damaged, or another program writes it.
+    StoredRun(const std::string& path, Study study, Start start);
+    StoredRun(StoredRun&&) noexcept;
+    ~StoredRun();
+
+    /// What has been computed so far.
+    Study& study() { return study_; }
+    const Study& study() const { return study_; }
+    /// Whether an interrupted run left a journal.
+    bool interrupted() const { return journal_ != nullptr; }
+
+    /// Begins or goes on with the journal, in which `commit_every` blocks make a commit (0: about half a second), and
+    /// returns it. Throws InputError and Failure.
+    BlockKeeper& begin(std::int64_t trials, std::int64_t commit_every = 0);
+
+    /// Writes the results file, unless it has all that the study has, and removes the journal. Returns whether it wrote.
+    /// Throws Failure where the system refuses; then the journal is there still.
+    bool finish(const RunFacts& facts);
+
+private:
+    /// What a results file has, to tell whether it has to be written.
+    struct Contents {
+        std::int64_t trials = 0;
+        std::vector<std::vector<std::int64_t>> blocks;  ///< by scenario
+
+        static Contents of(const Study& study);
+        bool operator==(const Contents&) const = default;
+    };
+
+    void open_journal();
+    void go_on();
+
+    std::string path_, journal_path_;
+    Start start_;
+    std::optional<Contents> in_file_;   ///< of the results file that the study goes on with
+    std::unique_ptr<Journal> journal_;  ///< outlives the study, whose columns it may hold
+    Study study_;
+};
+
+}  // namespace credence

@@ -1,0 +1,45 @@
+#include "command.hpp"
+#include "progress.hpp"
+#include "version.hpp"
+
+#include <credence/error.hpp>
+#include <credence/merge.hpp>
+
+#include <filesystem>
+#include <iostream>
+
+namespace credence::cli {
+
+const Command& merge_command() {
+    static const Command command{
+        "merge",
+        "SHARD.h5... -o FILE.h5 [options]",
+        "make one results file of the files of shards",
+        "\nThe files may come in any order, and may share blocks. The result is that of one run without shards. Exit code\n"
+        "1 where blocks are missing: their numbers b say which shards I/N to run or to resume, those with b mod N = I.\n",
+        {output_option("the results file to write"),
+         {"overwrite", "", "replace a results file that exists"},
+         {"quiet", "", "say nothing where it goes well"}}};
+    return command;
+}
+
+int merge(const Parsed& parsed, const std::string& command_line) {
+    if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
+    const std::optional<std::string> output = parsed.text("output");
+    if (!output) throw InputError("no -o given. Name the results file to write.");
+    check_output(*output, parsed.has("overwrite"), "Give another name or --overwrite");
+    const Study study = merge_results(parsed.arguments);
+    if (!study.complete)
+        throw Failure("blocks are missing: " + missing_text(study) +
+                      ". Run or resume the shards that have them, then merge again.");
+    RunFacts facts = build_facts();
+    facts.emplace_back("merged_files", std::to_string(parsed.arguments.size()));
+    facts.emplace_back("command_line", command_line);
+    write_results(*output, study, facts);
+    if (!parsed.has("quiet"))
+        std::cout << *output << ": " << study.trials << " trials of each scenario from " << parsed.arguments.size()
+                  << " files, " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*output))) << "\n";
+    return 0;
+}
+
+}  // namespace credence::cli

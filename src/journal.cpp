@@ -1,0 +1,197 @@
+#include "journal.hpp"
+
+#include <credence/error.hpp>
+
+#include "journal_totals.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+/// An arm's columns while they are in the journal, in the results file that it grows, or in both.
+class ColumnsOfRun : public KeptColumns {
+public:
+    ColumnsOfRun(const Journal& journal, std::size_t scenario, std::size_t arm)
+        : journal_(journal), scenario_(scenario), arm_(arm) {}
+    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
+        return journal_.values(scenario_, arm_, column, first, count);
+    }
+
+private:
+    const Journal& journal_;
+    std::size_t scenario_, arm_;
+};
+
+}  // namespace
+
+Journal::Journal(const std::string& path) : file_(path) {
+    const auto start_of = [&](std::size_t size) {
+        std::string bytes(std::min<std::size_t>(size, static_cast<std::size_t>(file_.size())), '\0');
+        file_.read(0, bytes.data(), bytes.size());
+        return bytes;
+    };
+    // A header is on the disk before the first record is written: one that is torn has nothing behind it.
+    try {
+        const std::size_t size = header_size(start_of(header_prefix), path);
+        header_ = read_header(start_of(size), path, header_size_);
+    } catch (const BadBytes&) {
+        return;
+    }
+    asked_ = header_->trials;
+}
+
+/// From here on the study's columns are read from where the journal has them.
+void Journal::keep_columns_of(Study& study) {
+    for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+        ScenarioResults& results = study.scenarios[s];
+        Kept kept{BlockLayout(results), {}, {}, {}, {}, {}, {}};
+        for (const Column& column : results.columns) kept.types.push_back(column.type);
+        for (std::size_t place = 0; place < results.blocks.size(); ++place)
+            kept.places[results.blocks[place]] = {block_rows(results, place),
+                                                  block_size * static_cast<std::int64_t>(place), true};
+        for (std::size_t a = 0; a < results.arms.size(); ++a) {
+            kept.in_file.push_back(results.arms[a].kept);
+            results.arms[a].kept = std::make_shared<ColumnsOfRun>(*this, s, a);
+        }
+        kept_.push_back(std::move(kept));
+    }
+}
+
+void Journal::begin(const JournalHeader& header, Study& study) {
+    keep_columns_of(study);
+    file_.cut(0);
+    file_.append(header_bytes(header));
+    sync_folder(folder_of(file_.path()), file_.path());
+    header_ = header;
+    asked_ = header.trials;
+    finished(study);
+}
+
+void Journal::take(std::size_t scenario, const Block& block) {
+    Kept& kept = kept_[scenario];
+    const auto trials = static_cast<std::size_t>(block.trials);
+    const std::size_t before = kept.pending_values.size();
+    kept.pending.push_back({block.index, block.trials});
+    for (const ArmBlock& arm : block.arms)
+        for (std::size_t c = 0; c < kept.types.size(); ++c)
+            put_values(kept.pending_values, kept.types[c], arm.columns.data() + c * trials, trials);
+    for (const ArmBlock& arm : block.arms) {
+        kept.pending_values.put_all(arm.errors);
+        kept.pending_values.put_all(arm.nees);
+    }
+    pending_size_ += kept.pending_values.size() - before;
+    ++pending_blocks_;
+}
+
+bool Journal::due() const {
+    constexpr std::chrono::duration<double> least(0.5), most(10.0);
+    constexpr std::size_t too_much = std::size_t{64} << 20;
+    if (committing_) return false;
+    if (commit_every_ > 0) return pending_blocks_ >= static_cast<std::size_t>(commit_every_);
+    // Totals are as large after one block as after a thousand: they are not to make up most of the journal.
+    const auto waited = std::chrono::steady_clock::now() - last_commit_;
+    return pending_size_ > too_much || (waited > least && (pending_size_ > totals_size_ / 4 || waited > most));
+}
+
+void Journal::put_record(std::size_t scenario, const Study& study) {
+    Kept& kept = kept_[scenario];
+    ByteWriter record, totals;
+    put_totals(totals, study.scenarios[scenario]);
+    const std::int64_t start = static_cast<std::int64_t>(record_start_size + kept.pending.size() * journal_block_size);
+    std::int64_t counted = 0;
+    std::int64_t position = file_.size() + static_cast<std::int64_t>(batch_.size() + record_head_size) + start;
+    for (const JournalBlock& block : kept.pending) {
+        kept.places[block.index] = {block.trials, position, false};
+        position += kept.layout.size(block);
+    }
+    for (const auto& [index, place] : kept.places) counted += place.trials;
+    put_record_head(record, {static_cast<std::uint32_t>(scenario),
+                             start + static_cast<std::int64_t>(kept.pending_values.size() + totals.size())});
+    put_record_start(record, {study.trials, counted, kept.pending});
+    record.put_raw(kept.pending_values.bytes().data(), kept.pending_values.size());
+    record.put_raw(totals.bytes().data(), totals.size());
+    totals_size_ += totals.size();
+    batch_ += record.bytes();
+    batch_.append(record_tail_size, '\0');
+    ends_.push_back(batch_.size());
+    kept.pending.clear();
+    kept.pending_values = {};
+}
+
+void Journal::prepare(const Study& study) {
+    const bool nothing_new = pending_blocks_ == 0 && study.trials <= asked_;
+    totals_size_ = 0;
+    for (std::size_t s = 0; s < kept_.size(); ++s)
+        if (!kept_[s].pending.empty() || (s == 0 && pending_blocks_ == 0 && !nothing_new)) put_record(s, study);
+    asked_ = std::max(asked_, study.trials);
+    pending_size_ = pending_blocks_ = 0;
+    last_commit_ = std::chrono::steady_clock::now();
+    committing_ = true;
+}
+
+void Journal::commit() {
+    std::size_t begin = 0;
+    for (const std::size_t end : ends_) {
+        const std::size_t size = end - begin - record_tail_size;
+        const std::uint32_t crc = checksum(batch_.data() + begin, size);
+        std::memcpy(batch_.data() + begin + size, &crc, sizeof crc);
+        begin = end;
+    }
+    if (!batch_.empty()) file_.append(batch_);
+    batch_.clear();
+    ends_.clear();
+    committing_ = false;
+}
+
+void Journal::finished(const Study& study) {
+    for (std::size_t s = 0; s < kept_.size(); ++s) {
+        kept_[s].rows.clear();
+        for (const std::int64_t block : study.scenarios[s].blocks) kept_[s].rows.push_back(kept_[s].places.at(block));
+    }
+}
+
+void Journal::read_column(const Kept& kept, const BlockPlace& place, std::int64_t at, std::int64_t skip,
+                          ColumnType type, double* values, std::int64_t count) const {
+    (void)kept;
+    std::string bytes(static_cast<std::size_t>(count * value_size(type)), '\0');
+    file_.read(place.position + at + skip * value_size(type), bytes.data(), bytes.size());
+    ByteReader from(bytes.data(), bytes.size());
+    try {
+        get_values(from, type, values, static_cast<std::size_t>(count));
+    } catch (const BadBytes& bad) {
+        throw InputError(file_.path() + ": is damaged: holds " + bad.what() + ". Remove it and run the study again.");
+    }
+}
+
+std::vector<double> Journal::values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
+                                    std::int64_t count) const {
+    const Kept& kept = kept_[scenario];
+    std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t row = first; row < first + count;) {
+        const BlockPlace& place = kept.rows[static_cast<std::size_t>(row / block_size)];
+        const std::int64_t skip = row % block_size, left = first + count - row;
+        std::int64_t some = std::min(place.trials - skip, left);
+        if (place.in_file) {
+            // Blocks that follow each other there too are read together.
+            for (auto next = static_cast<std::size_t>(row / block_size) + 1; some < left && next < kept.rows.size();
+                 ++next) {
+                const BlockPlace& other = kept.rows[next];
+                if (!other.in_file || other.position != place.position + skip + some) break;
+                some = std::min(some + other.trials, left);
+            }
+            const std::vector<double> read = kept.in_file[arm]->values(column, place.position + skip, some);
+            values.insert(values.end(), read.begin(), read.end());
+        } else {
+            values.resize(values.size() + static_cast<std::size_t>(some));
+            read_column(kept, place, kept.layout.column_offset(arm, column, place.trials), skip, kept.types[column],
+                        values.data() + values.size() - some, some);
+        }
+        row += some;
+    }
+    return values;
+}
+
+}  // namespace credence

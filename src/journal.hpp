@@ -1,0 +1,95 @@
+#pragma once
+// Room 12: the journal of a run: what the engine finished, committed while the run goes on. docs/durability.md says what
+// it promises.
+
+#include "journal_file.hpp"
+#include "journal_record.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace credence {
+
+/// Where the values of a block are: in the journal, or in the results file that the journal grows.
+struct BlockPlace {
+    std::int64_t trials = 0;
+    std::int64_t position = 0;  ///< in the journal: of the block's first byte; in the file: of its first row
+    bool in_file = false;
+};
+
+/// What a journal says of one scenario.
+struct JournalScenario {
+    std::map<std::int64_t, BlockPlace> places;
+    std::int64_t counted = 0;         ///< trials in the last totals
+    std::string totals;               ///< their bytes; empty: no record is of this scenario
+};
+
+class Journal : public BlockKeeper {
+public:
+    /// Opens the journal at `path`, or makes it, and locks it. Throws InputError where another program holds it, or it is
+    /// no journal of this version.
+    explicit Journal(const std::string& path);
+
+    /// The study that it belongs to; nothing where it is new, or was torn before anything could be committed.
+    const std::optional<JournalHeader>& header() const { return header_; }
+
+    /// Begins it anew, for `study`.
+    void begin(const JournalHeader& header, Study& study);
+    /// Goes on with it: adds what was committed to `study`, which holds what is in the results file that it grows. A torn
+    /// tail is left out, and cut. Throws InputError where it is damaged.
+    void load(Study& study);
+    /// Bytes of the torn tail that load() cut.
+    std::int64_t torn() const { return torn_; }
+    void remove() { file_.remove(); }
+
+    /// Blocks that make a commit due; 0: half a second, and more where there is little to commit.
+    void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
+
+    void take_back(std::size_t scenario, std::int64_t block) override { kept_[scenario].places.erase(block); }
+    void take(std::size_t scenario, const Block& block) override;
+    bool due() const override;
+    void prepare(const Study& study) override;
+    void commit() override;
+    void finished(const Study& study) override;
+
+    /// Values of a column by row, once finished() has said which blocks are there.
+    std::vector<double> values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
+                               std::int64_t count) const;
+
+private:
+    /// A scenario: how its blocks lie, where they are, and what the engine gave since the last commit.
+    struct Kept {
+        BlockLayout layout;
+        std::vector<ColumnType> types;
+        std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that is grown
+        std::map<std::int64_t, BlockPlace> places;
+        std::vector<BlockPlace> rows;                             ///< those that are there, in order
+        std::vector<JournalBlock> pending;
+        ByteWriter pending_values;
+    };
+
+    void keep_columns_of(Study& study);
+    std::vector<JournalScenario> scan(const Study& study);
+    void put_record(std::size_t scenario, const Study& study);
+    void read_details(std::size_t scenario, ScenarioResults& results) const;
+    void read_column(const Kept& kept, const BlockPlace& place, std::int64_t at, std::int64_t skip, ColumnType type,
+                     double* values, std::int64_t count) const;
+
+    JournalFile file_;
+    std::optional<JournalHeader> header_;
+    std::int64_t asked_ = 0, torn_ = 0, commit_every_ = 0;
+    std::size_t header_size_ = 0;
+    std::vector<Kept> kept_;
+
+    std::string batch_;              ///< records to be committed, their checksums still missing
+    std::vector<std::size_t> ends_;  ///< of those records in the batch
+    std::atomic<bool> committing_ = false;
+    std::size_t totals_size_ = 0;    ///< of the last commit
+    std::size_t pending_size_ = 0, pending_blocks_ = 0;
+    std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace credence

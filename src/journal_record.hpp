@@ -1,0 +1,89 @@
+#pragma once
+// Room 12: what a journal is made of: a header, then records, each the blocks of one scenario that one commit brought
+// and its totals after them [docs/durability.md, The journal].
+
+#include <credence/study.hpp>
+
+#include "bytes.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// What the run does with the results file that has its name.
+enum class JournalBase : std::uint8_t {
+    none,      ///< there was none
+    grown,     ///< it holds the study's first blocks, the journal the others
+    replaced,  ///< it goes, as --overwrite said
+};
+
+/// The study that a journal belongs to.
+struct JournalHeader {
+    JournalBase base = JournalBase::none;
+    std::int64_t trials = 0;  ///< that were asked for
+    StudyDefinition study;
+};
+std::string header_bytes(const JournalHeader& header);
+
+/// Reads the header that a file begins with; `size` becomes its own. Throws BadBytes where it is torn or damaged,
+/// InputError where the file is no journal of this version or its scenarios cannot be.
+JournalHeader read_header(const std::string& start, const std::string& path, std::size_t& size);
+/// As many bytes as tell how long the header is, and then how long.
+inline constexpr std::size_t header_prefix = 24;
+std::size_t header_size(const std::string& start, const std::string& path);
+
+/// One block of a record.
+struct JournalBlock {
+    std::int64_t index = 0;
+    std::int32_t trials = 0;
+};
+
+/// Where the values of a block lie, from the block's first byte on: columns by arm, then the details by arm.
+class BlockLayout {
+public:
+    explicit BlockLayout(const ScenarioResults& results);
+
+    std::int64_t size(const JournalBlock& block) const;
+    std::int64_t column_offset(std::size_t arm, std::size_t column, std::int64_t trials) const;
+    std::int64_t details_offset(std::size_t arm, std::int64_t trials) const;
+    bool detailed(std::int64_t index) const { return index < detailed_blocks_; }
+    /// Floats of details that a trial has: its errors, then its NEES.
+    std::int64_t errors() const { return errors_; }
+    std::int64_t nees() const { return nees_; }
+
+private:
+    std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column
+    std::int64_t arms_, detailed_blocks_, errors_, nees_;
+};
+
+/// Bytes of a value in a column, and the values of one put as bytes and taken from them.
+std::int64_t value_size(ColumnType type);
+void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count);
+/// Throws BadBytes for a status that is none.
+void get_values(ByteReader& from, ColumnType type, double* values, std::size_t count);
+
+/// What stands before a record's payload, and what stands in it before the blocks' values.
+struct RecordHead {
+    std::uint32_t scenario = 0;
+    std::int64_t payload = 0;  ///< bytes
+};
+inline constexpr std::size_t record_head_size = 16, record_tail_size = 4;
+void put_record_head(ByteWriter& to, const RecordHead& head);
+/// Throws BadBytes where no record begins there.
+RecordHead get_record_head(ByteReader& from);
+
+struct RecordStart {
+    std::int64_t trials = 0;           ///< that the study was asked for then
+    std::int64_t counted = 0;          ///< trials of the scenario that the totals hold
+    std::vector<JournalBlock> blocks;
+};
+void put_record_start(ByteWriter& to, const RecordStart& start);
+/// Throws BadBytes where the blocks cannot be.
+RecordStart get_record_start(ByteReader& from);
+inline constexpr std::size_t record_start_size = 20, journal_block_size = 12;
+
+/// CRC-32 of zlib, going on from `crc`.
+std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);
+
+}  // namespace credence

@@ -1,0 +1,79 @@
+#include "system_file.hpp"
+
+#include <credence/error.hpp>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <system_error>
+
+namespace credence {
+
+namespace {
+
+std::string remedy_for(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT: return "Free some space, or write to another place";
+        case EFBIG: return "Raise the limit on the size of files (ulimit -f), or write to another place";
+        case EACCES:
+        case EPERM:
+        case EROFS: return "Write to a folder that you may write to";
+        case ENOENT: return "Make its folder first";
+        case ENAMETOOLONG: return "Give a shorter name";
+        case EWOULDBLOCK: return "Let it end, or write to another place";
+        default: return "Write to another place";
+    }
+}
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::string words_for(int error) {
+    std::string words = std::generic_category().message(error);
+    if (!words.empty()) words.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(words.front())));
+    return words;
+}
+
+void fail_to_write(const std::string& path, const std::string& why, int error) {
+    throw Failure("cannot write " + path + " (" + why + "). " + remedy_for(error) + ".");
+}
+
+void fail_to_write(const std::string& path, int error) { fail_to_write(path, words_for(error), error); }
+
+bool same_file(const Descriptor& opened, const std::string& path) {
+    struct stat own {}, named {};
+    return fstat(opened.get(), &own) == 0 && stat(path.c_str(), &named) == 0 && own.st_ino == named.st_ino &&
+           own.st_dev == named.st_dev;
+}
+
+Descriptor open_locked(const std::string& path, const std::string& target) {
+    for (;;) {
+        Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+        if (file.get() < 0) fail_to_write(target, errno);
+        // File systems without locks are no reason not to write.
+        if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+            throw InputError("cannot write " + target +
+                             " (another program is writing it). Let it end, or write to another place.");
+        if (same_file(file, path)) return file;
+    }
+}
+
+void sync_folder(const std::filesystem::path& folder, const std::string& path) {
+    const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (opened.get() < 0 || fsync(opened.get()) == 0) return;
+    if (errno != EINVAL && errno != ENOTSUP) fail_to_write(path, errno);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace credence

@@ -1,0 +1,60 @@
+#pragma once
+// Room 12: what the system does with files, and what it says where it refuses.
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace credence {
+
+/// A file descriptor that closes itself.
+class Descriptor {
+public:
+    explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+    Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    Descriptor& operator=(Descriptor&&) = delete;
+    ~Descriptor();
+    int get() const { return descriptor_; }
+
+private:
+    int descriptor_;
+};
+
+/// The system's own words, such as `no space left on device`.
+std::string words_for(int error);
+
+/// `cannot write PATH (WHY). REMEDY.`, the remedy for that error of the system.
+[[noreturn]] void fail_to_write(const std::string& path, const std::string& why, int error);
+[[noreturn]] void fail_to_write(const std::string& path, int error);
+
+/// Beyond a limit on file sizes the system kills the process, unless it looks away; then write() says EFBIG.
+class FileSizeSignalIgnored {
+public:
+    FileSizeSignalIgnored() {
+        struct sigaction ignore {};
+        ignore.sa_handler = SIG_IGN;
+        sigaction(SIGXFSZ, &ignore, &before_);
+    }
+    ~FileSizeSignalIgnored() { sigaction(SIGXFSZ, &before_, nullptr); }
+
+private:
+    struct sigaction before_ {};
+};
+
+/// Whether the name still stands for the file that was opened.
+bool same_file(const Descriptor& opened, const std::string& path);
+
+/// Opens or makes a regular file for reading and writing, locked against a second writer, who may have renamed or removed
+/// it between our opening and locking. Throws Failure about `target` where the system refuses, InputError where another
+/// program holds the lock.
+Descriptor open_locked(const std::string& path, const std::string& target);
+
+/// Makes renaming and removing in a folder last. One that cannot be opened for reading, or a file system that syncs none,
+/// is left alone. Throws Failure about `path`.
+void sync_folder(const std::filesystem::path& folder, const std::string& path);
+
+/// `.` for a name alone.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
+}  // namespace credence
