@@ -62,6 +62,7 @@ Report make_report(const Study& study, double margin) {
     Report report;
     report.source = "study " + study_hash(study);
     report.root_seed = study.root_seed;
+    report.trials = study.trials;
     report.complete = study.complete;
     report.margin = margin;
     report.pairs = planned_against_fixed(study);

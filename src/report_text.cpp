@@ -112,7 +112,9 @@ std::string warnings_part(const Report& report) {
                     " diverged; they are in the figures.\n";
     }
     text += troubles_part(report);
-    if (!report.complete) text += "note: the study is not complete.\n";
+    if (!report.complete)
+        text += "note: the study is not complete: it was asked for " + std::to_string(report.trials) +
+                " trials of each arm.\n";
     return text;
 }
 

@@ -39,6 +39,7 @@ struct ArmReport {
 struct Report {
     std::string source;                     ///< `study UUID`, or `record FILE`
     std::optional<std::uint64_t> root_seed; ///< none for a record
+    std::int64_t trials = 0;  ///< of each scenario that were asked for
     bool complete = true;
     double margin = 0;
     std::vector<Scenario> scenarios;
