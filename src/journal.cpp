@@ -121,10 +121,10 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
 }
 
 void Journal::prepare(const Study& study) {
-    const bool nothing_new = pending_blocks_ == 0 && study.trials <= asked_;
     totals_size_ = 0;
     for (std::size_t s = 0; s < kept_.size(); ++s)
-        if (!kept_[s].pending.empty() || (s == 0 && pending_blocks_ == 0 && !nothing_new)) put_record(s, study);
+        if (!kept_[s].pending.empty()) put_record(s, study);
+    if (batch_.empty() && study.trials > asked_) put_record(0, study);  // what was asked for is worth a record without blocks
     asked_ = std::max(asked_, study.trials);
     pending_size_ = pending_blocks_ = 0;
     last_commit_ = std::chrono::steady_clock::now();
@@ -152,11 +152,9 @@ void Journal::finished(const Study& study) {
     }
 }
 
-void Journal::read_column(const Kept& kept, const BlockPlace& place, std::int64_t at, std::int64_t skip,
-                          ColumnType type, double* values, std::int64_t count) const {
-    (void)kept;
+void Journal::read_values(std::int64_t position, ColumnType type, double* values, std::int64_t count) const {
     std::string bytes(static_cast<std::size_t>(count * value_size(type)), '\0');
-    file_.read(place.position + at + skip * value_size(type), bytes.data(), bytes.size());
+    file_.read(position, bytes.data(), bytes.size());
     ByteReader from(bytes.data(), bytes.size());
     try {
         get_values(from, type, values, static_cast<std::size_t>(count));
@@ -165,31 +163,39 @@ void Journal::read_column(const Kept& kept, const BlockPlace& place, std::int64_
     }
 }
 
+/// Of `left` rows from row `skip` of block `at` on, those in the results file that can be read there at once: blocks that
+/// follow each other here may do so there.
+std::int64_t Journal::rows_in_file(const Kept& kept, std::size_t at, std::int64_t skip, std::int64_t left) {
+    const BlockPlace& place = kept.rows[at];
+    std::int64_t some = std::min(place.trials - skip, left);
+    while (some < left && ++at < kept.rows.size()) {
+        const BlockPlace& next = kept.rows[at];
+        if (!next.in_file || next.position != place.position + skip + some) break;
+        some = std::min(some + next.trials, left);
+    }
+    return some;
+}
+
 std::vector<double> Journal::values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
                                     std::int64_t count) const {
     const Kept& kept = kept_[scenario];
     std::vector<double> values;
     values.reserve(static_cast<std::size_t>(count));
-    for (std::int64_t row = first; row < first + count;) {
-        const BlockPlace& place = kept.rows[static_cast<std::size_t>(row / block_size)];
+    for (std::int64_t row = first, some = 0; row < first + count; row += some) {
+        const auto at = static_cast<std::size_t>(row / block_size);
+        const BlockPlace& place = kept.rows[at];
         const std::int64_t skip = row % block_size, left = first + count - row;
-        std::int64_t some = std::min(place.trials - skip, left);
         if (place.in_file) {
-            // Blocks that follow each other there too are read together.
-            for (auto next = static_cast<std::size_t>(row / block_size) + 1; some < left && next < kept.rows.size();
-                 ++next) {
-                const BlockPlace& other = kept.rows[next];
-                if (!other.in_file || other.position != place.position + skip + some) break;
-                some = std::min(some + other.trials, left);
-            }
+            some = rows_in_file(kept, at, skip, left);
             const std::vector<double> read = kept.in_file[arm]->values(column, place.position + skip, some);
             values.insert(values.end(), read.begin(), read.end());
         } else {
+            some = std::min(place.trials - skip, left);
             values.resize(values.size() + static_cast<std::size_t>(some));
-            read_column(kept, place, kept.layout.column_offset(arm, column, place.trials), skip, kept.types[column],
-                        values.data() + values.size() - some, some);
+            const ColumnType type = kept.types[column];
+            read_values(place.position + kept.layout.column_offset(arm, column, place.trials) + skip * value_size(type),
+                        type, values.data() + values.size() - some, some);
         }
-        row += some;
     }
     return values;
 }

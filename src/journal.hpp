@@ -75,8 +75,8 @@ private:
     std::vector<JournalScenario> scan(const Study& study);
     void put_record(std::size_t scenario, const Study& study);
     void read_details(std::size_t scenario, ScenarioResults& results) const;
-    void read_column(const Kept& kept, const BlockPlace& place, std::int64_t at, std::int64_t skip, ColumnType type,
-                     double* values, std::int64_t count) const;
+    static std::int64_t rows_in_file(const Kept& kept, std::size_t at, std::int64_t skip, std::int64_t left);
+    void read_values(std::int64_t position, ColumnType type, double* values, std::int64_t count) const;
 
     JournalFile file_;
     std::optional<JournalHeader> header_;

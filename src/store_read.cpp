@@ -4,6 +4,7 @@
 #include <credence/text.hpp>
 
 #include "hdf5_read.hpp"
+#include "store_columns.hpp"
 #include "store_evidence.hpp"
 #include "store_format.hpp"
 #include "store_sums.hpp"
@@ -44,67 +45,6 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
-/// What is asked of a damaged file.
-const char* const another_copy = "Run the study again, or give an undamaged copy";
-
-/// Rows that are read at once where all are looked at: they bound the memory that long columns take.
-constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
-
-template <class T>
-std::vector<double> read_rows(const Dataset& dataset, std::int64_t first, std::int64_t count) {
-    const std::vector<T> values = dataset.read_some<T>(static_cast<hsize_t>(first), static_cast<hsize_t>(count));
-    return {values.begin(), values.end()};
-}
-
-std::vector<double> read_rows(const Dataset& dataset, const Column& column, std::int64_t first, std::int64_t count) {
-    switch (column.type) {
-        case ColumnType::real: return read_rows<double>(dataset, first, count);
-        case ColumnType::integer: return read_rows<std::int32_t>(dataset, first, count);
-        case ColumnType::status: break;
-    }
-    std::vector<double> values = read_rows<std::int8_t>(dataset, first, count);
-    for (const double value : values)
-        if (value < 0 || value >= static_cast<double>(status_names().size()))
-            throw Error(dataset.place(), "holds " + to_text(value) + ", which is no status");
-    return values;
-}
-
-/// The columns of an arm in a file that stays open for them.
-class ColumnsOfFile : public KeptColumns {
-public:
-    ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns)
-        : file_(std::move(file)), path_(std::move(path)), group_(std::move(group)), columns_(std::move(columns)) {}
-
-    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
-        return hdf5::translated(path_, another_copy, [&] {
-            const Dataset dataset(hdf5::open_group(*file_, group_), columns_[column].name);
-            return read_rows(dataset, columns_[column], first, count);
-        });
-    }
-
-private:
-    std::shared_ptr<const Handle> file_;
-    std::string path_, group_;
-    std::vector<Column> columns_;
-};
-
-/// Throws where a column has another shape or type, or holds a status that is none. Returns how many trials did not
-/// fail, of the status column.
-std::optional<std::int64_t> check_column(const Handle& group, const Column& column, std::int64_t trials) {
-    const Dataset dataset(group, column.name);
-    dataset.require_extents({static_cast<hsize_t>(trials)});
-    switch (column.type) {
-        case ColumnType::real: dataset.require<double>(); return std::nullopt;
-        case ColumnType::integer: dataset.require<std::int32_t>(); return std::nullopt;
-        case ColumnType::status: break;
-    }
-    std::int64_t counted = 0;
-    for (std::int64_t first = 0; first < trials; first += rows_at_once)
-        for (const double status : read_rows(dataset, column, first, std::min(rows_at_once, trials - first)))
-            counted += !failed(static_cast<Status>(static_cast<int>(status)));
-    return counted;
-}
-
 /// Names of the datasets that an arm's group holds.
 std::vector<std::string> arm_links(const ScenarioResults& results) {
     std::vector<std::string> names{"trial", "step", "part"};
@@ -117,30 +57,6 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
     const std::vector<std::string> evidence = evidence_links(results);
     names.insert(names.end(), evidence.begin(), evidence.end());
     return names;
-}
-
-/// The blocks that the trials in a file make. Throws where a block is not whole, but for the study's last.
-std::vector<std::int64_t> read_blocks(const Handle& group, std::int64_t asked) {
-    const Dataset dataset(group, "trial");
-    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
-    const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
-    std::vector<std::int64_t> blocks;
-    std::int64_t next = 0, end = 0;  // the trial that must come, and the first beyond its block
-    for (std::int64_t first = 0; first < rows; first += rows_at_once) {
-        const auto count = static_cast<hsize_t>(std::min(rows_at_once, rows - first));
-        for (const std::int64_t trial : dataset.read_some<std::int64_t>(static_cast<hsize_t>(first), count)) {
-            if (next == end) {
-                if (trial < next || trial >= asked || trial % block_size != 0)
-                    throw Error(dataset.place(), "does not go on with a block of trials");
-                blocks.push_back(trial / block_size);
-                next = trial;
-                end = trial + trials_in_block(asked, blocks.back());
-            }
-            if (trial != next++) throw Error(dataset.place(), "does not count on by one within a block");
-        }
-    }
-    if (next != end) throw Error(dataset.place(), "ends within a block");
-    return blocks;
 }
 
 /// Throws where the arm's columns are not those of its scenario, or hold another number of trials than the totals.
@@ -188,7 +104,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
     check_columns(group, results, arm);
     const std::string place = results.scenario.name + "/" + name;
-    arm.kept = std::make_shared<ColumnsOfFile>(source.file, source.path, place, results.columns);
+    arm.kept = columns_of_file(source.file, source.path, place, results.columns);
     for (const Figure& figure : results.figures) arm.totals.push_back(read_figure(group, figure, steps, parts));
     read_evidence(group, results, parts, arm);
     return arm;

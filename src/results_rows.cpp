@@ -1,0 +1,128 @@
+// Which trials are there, and where: rows of columns and details.
+
+#include <credence/results.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace credence {
+
+namespace {
+
+/// Detailed trials of a block, from a row on.
+void store_details(const ArmBlock& from, std::int64_t row, std::size_t trials, ArmResults& to) {
+    const auto put = [&](const std::vector<float>& values, std::vector<double>& all) {
+        const auto width = static_cast<std::int64_t>(values.size() / trials);
+        std::copy(values.begin(), values.end(), all.begin() + row * width);
+    };
+    put(from.errors, to.errors);
+    put(from.nees, to.nees);
+}
+
+/// A block that stays: where its rows were, where they go, and how many.
+struct Move {
+    std::int64_t from, to, rows;
+};
+
+/// Rows of `width` values each.
+void move_rows(std::vector<double>& values, const std::vector<Move>& moves, std::int64_t rows, std::int64_t width) {
+    const bool in_place =
+        std::all_of(moves.begin(), moves.end(), [](const Move& move) { return move.from == move.to; });
+    if (in_place) return values.resize(static_cast<std::size_t>(rows * width));
+    std::vector<double> moved(static_cast<std::size_t>(rows * width));
+    for (const Move& move : moves)
+        std::copy_n(values.begin() + move.from * width, move.rows * width, moved.begin() + move.to * width);
+    values = std::move(moved);
+}
+
+}  // namespace
+
+std::vector<double> column_values(const ArmResults& arm, std::size_t column, std::int64_t first, std::int64_t count) {
+    if (arm.kept) return arm.kept->values(column, first, count);
+    const auto from = arm.columns[column].begin() + first;
+    return {from, from + count};
+}
+
+std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
+    return column_values(arm, column, 0, results.trials);
+}
+
+std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
+    std::vector<double> values = column_values(results, arm, column);
+    const std::vector<double> status = column_values(results, arm, column_status);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (failed(static_cast<Status>(static_cast<int>(status[i]))))
+            values[i] = std::numeric_limits<double>::quiet_NaN();
+    return values;
+}
+
+std::int64_t ScenarioResults::detailed() const {
+    const std::int64_t most = detailed_trials(steps(), state_size());
+    if (blocks.empty()) return std::min(trials, most);
+    const auto end = std::lower_bound(blocks.begin(), blocks.end(), most / block_size);
+    return std::min(trials, block_size * (end - blocks.begin()));
+}
+
+std::int64_t block_rows(const ScenarioResults& results, std::size_t place) {
+    return std::min<std::int64_t>(block_size, results.trials - block_size * static_cast<std::int64_t>(place));
+}
+
+std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t row = first; row < first + count; ++row)
+        numbers.push_back(results.blocks[static_cast<std::size_t>(row / block_size)] * block_size + row % block_size);
+    return numbers;
+}
+
+std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64_t block) {
+    const auto found = std::lower_bound(results.blocks.begin(), results.blocks.end(), block);
+    if (found == results.blocks.end() || *found != block) return std::nullopt;
+    return block_size * (found - results.blocks.begin());
+}
+
+void set_blocks(ScenarioResults& results, std::vector<std::int64_t> blocks, std::int64_t trials) {
+    std::vector<Move> moves, detailed_moves;
+    const std::int64_t most = detailed_trials(results.steps(), results.state_size()) / block_size;
+    std::int64_t rows = 0;
+    for (const std::int64_t block : blocks) {
+        const std::int64_t size = trials_in_block(trials, block);
+        if (const std::optional<std::int64_t> row = first_row(results, block)) {
+            const auto place = static_cast<std::size_t>(*row / block_size);
+            moves.push_back({*row, rows, std::min(size, block_rows(results, place))});
+            if (block < most) detailed_moves.push_back(moves.back());
+        }
+        rows += size;
+    }
+    results.blocks = std::move(blocks);
+    results.trials = rows;
+    const std::int64_t steps = results.steps(), detailed = results.detailed();
+    for (ArmResults& arm : results.arms) {
+        if (!arm.kept)
+            for (std::vector<double>& column : arm.columns) move_rows(column, moves, rows, 1);
+        move_rows(arm.nees, detailed_moves, detailed, steps);
+        move_rows(arm.errors, detailed_moves, detailed, steps * results.state_size());
+    }
+}
+
+void extend(ScenarioResults& results, std::int64_t trials) {
+    std::vector<std::int64_t> blocks(static_cast<std::size_t>(block_count(trials)));
+    std::iota(blocks.begin(), blocks.end(), 0);
+    set_blocks(results, std::move(blocks), trials);
+}
+
+void store_columns(ScenarioResults& results, const Block& block) {
+    const std::int64_t row = first_row(results, block.index).value();
+    const auto trials = static_cast<std::size_t>(block.trials);
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        ArmResults& arm = results.arms[a];
+        if (!block.arms[a].nees.empty()) store_details(block.arms[a], row, trials, arm);
+        if (arm.kept) continue;
+        for (std::size_t c = 0; c < results.columns.size(); ++c)
+            std::copy_n(block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c * trials), trials,
+                        arm.columns[c].begin() + row);
+    }
+}
+
+}  // namespace credence
