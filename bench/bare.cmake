@@ -1,0 +1,44 @@
+# The engine without its statistics beyond NEES, NIS and trace(P), so that their cost can be measured against it in one
+# run: a copy of the sources in which the lines below are taken out. Configuring stops where one of them is not found.
+set(bare_folder ${CMAKE_CURRENT_BINARY_DIR}/bare)
+file(COPY ${PROJECT_SOURCE_DIR}/include DESTINATION ${bare_folder})
+
+# without(FILE TEXT [TEXT INSTEAD]...): copies a file of the project with texts replaced.
+function(without file)
+  file(READ ${PROJECT_SOURCE_DIR}/${file} source)
+  set(pairs ${ARGN})
+  while(pairs)
+    list(POP_FRONT pairs text instead)
+    string(FIND "${source}" "${text}" found)
+    if(found EQUAL -1)
+      message(FATAL_ERROR "bench/bare.cmake: ${file} does not hold: ${text}")
+    endif()
+    string(REPLACE "${text}" "${instead}" source "${source}")
+  endwhile()
+  file(WRITE ${bare_folder}/${file} "${source}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
+endfunction()
+
+# Texts without semicolons, which CMake's lists take for their own.
+without(include/credence/judge.hpp
+  "        standardise(i)" "        (void)standardise"
+  "(n - i) % 2 == 0) standardise(i + one)" "(n - i) % 2 == 0) (void)0"
+  "judgement.standardised_error[0] * judgement.standardised_error[0]" "error[0] * error[0] / P.entry[0][0]"
+  "    write(update.nis_features)" "    (void)0"
+  "    write(update.nis_edges)" "    (void)0"
+  "    write(update.unseen)" "    write(trace_P)"
+  "    each(zero, n, [&](auto i) { square[i] = error[i] * error[i]" "    each(zero, n, [&](auto) { (void)square"
+  "    each(zero, n, [&](auto i) { square[i] = Real(reported) * belief.covariance.entry[i][i]" "    each(zero, n, [&](auto) { (void)square"
+  "    add_by_block(layout, square, write)" "    (void)square"
+  "    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
+without(include/credence/update.hpp
+  "    update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone)" "    (void)0"
+  "    update.nis_features = update.nis" "    (void)0")
+# What is left: NEES by block, NIS, its rows, trace(P).
+without(src/simulate_unit.cpp
+  "problem.figure_count" "(problem.block_count + 3)"
+  "            fold_coverage(unfolded, b, start, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
+
+credence_unit(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
+set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES ${bare_folder}/include SOURCES ${bare_folder}/src/simulate_unit.cpp)
+target_compile_options(credence_unit_bare PRIVATE -Wno-unused-but-set-variable)
