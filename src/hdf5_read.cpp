@@ -20,17 +20,6 @@ hsize_t file_size(const Handle& object) {
     return size;
 }
 
-/// Soft and external links could lead anywhere, and external ones to other files.
-const std::string& hard(const Handle& group, const std::string& name) {
-    H5L_info_t info;
-    if (H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) <= 0 ||
-        H5Lget_info(group.id(), name.c_str(), &info, H5P_DEFAULT) < 0)
-        throw Error(place_of(group, name), "is missing");
-    if (info.type != H5L_TYPE_HARD)
-        throw Error(place_of(group, name), "is a link to somewhere else", "Copy what it points to into the file");
-    return name;
-}
-
 std::string kind_text(hid_t type) {
     const std::size_t bits = 8 * H5Tget_size(type);
     switch (H5Tget_class(type)) {
@@ -54,6 +43,16 @@ void require_scalar(const Handle& attribute, const std::string& place) {
 }
 
 }  // namespace
+
+const std::string& hard(const Handle& group, const std::string& name) {
+    H5L_info_t info;
+    if (H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) <= 0 ||
+        H5Lget_info(group.id(), name.c_str(), &info, H5P_DEFAULT) < 0)
+        throw Error(place_of(group, name), "is missing");
+    if (info.type != H5L_TYPE_HARD)
+        throw Error(place_of(group, name), "is a link to somewhere else", "Copy what it points to into the file");
+    return name;
+}
 
 Handle open_file(const std::string& path) {
     constexpr std::array<unsigned char, 8> signature{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
@@ -88,6 +87,8 @@ std::vector<std::string> link_names(const Handle& group) {
         };
         std::string name(get(nullptr, 0), '\0');
         get(name.data(), name.size() + 1);
+        // HDF5 writes no such name, and would take it for a path, which could lead through links to other files.
+        if (name.find('/') != std::string::npos) throw Error(place_of(group, name), "has a name with a slash");
         names.push_back(hard(group, name));
     }
     return names;
@@ -145,27 +146,40 @@ Dataset::Dataset(const Handle& group, const std::string& name)
       dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_,
                "is no readable dataset"),
       type_(H5Dget_type(dataset_.id()), H5Tclose, place_, "HDF5 cannot read its type") {
+    const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place_, "HDF5 cannot read its layout");
+    const H5D_layout_t layout = own_layout(creation);  // before HDF5 opens other files for a virtual dataset's extents
     const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, "HDF5 cannot read its extents");
     const int rank = H5Sget_simple_extent_ndims(space.id());
     if (rank < 1) throw Error(place_, "has no extents");
     extents_.resize(static_cast<std::size_t>(rank));
     H5Sget_simple_extent_dims(space.id(), extents_.data(), nullptr);
-    check_storage();
+    if (layout == H5D_CHUNKED && H5Pget_chunk(creation.id(), 0, nullptr) != rank)
+        throw Error(place_, "is damaged: its chunks have other dimensions");
+    check_storage(layout);
     for (const hsize_t extent : extents_) count_ *= extent;
 }
 
-/// Throws where the file is too small to hold what the extents promise, or keeps it elsewhere.
-void Dataset::check_storage() const {
-    const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place_, "HDF5 cannot read its layout");
+/// How the values are kept; throws where that is in other files.
+H5D_layout_t Dataset::own_layout(const Handle& creation) const {
     const H5D_layout_t layout = H5Pget_layout(creation.id());
     if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
         throw Error(place_, "keeps its values in other files", "Copy them into this one");
+    return layout;
+}
+
+/// Throws where the file is too small to hold what the extents promise.
+void Dataset::check_storage(H5D_layout_t layout) const {
     if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
     hsize_t room = file_size(dataset_) * (layout == H5D_CHUNKED ? largest_compression : 1) /
                    std::max<hsize_t>(H5Tget_size(type_.id()), 1);
-    if (H5Dget_storage_size(dataset_.id()) == 0) throw Error(place_, "has no values");
+    const hsize_t stored = H5Dget_storage_size(dataset_.id());
+    if (stored == 0) throw Error(place_, "has no values");
     for (const hsize_t extent : extents_) room /= extent;
     if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into the file");
+    if (layout == H5D_CHUNKED) return;
+    hsize_t needed = H5Tget_size(type_.id());  // HDF5 itself would read on behind what is stored
+    for (const hsize_t extent : extents_) needed *= extent;
+    if (stored < needed) throw Error(place_, extents_text(extents_) + " is more than is stored");
 }
 
 void Dataset::require_extents(const Extents& extents) const {

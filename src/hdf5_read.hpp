@@ -20,6 +20,10 @@ std::vector<std::string> attribute_names(const Handle& object);
 bool has_link(const Handle& group, const std::string& name);
 bool has_attribute(const Handle& object, const std::string& name);
 
+/// `name`; throws unless it is a hard link. Soft ones could lead anywhere, external ones to other files:
+/// nothing is to be opened by name without this.
+const std::string& hard(const Handle& group, const std::string& name);
+
 Handle open_group(const Handle& parent, const std::string& name);
 
 /// A scalar attribute of fixed-length text, without the nulls that pad it.
@@ -70,7 +74,8 @@ public:
     std::vector<double> read_real() const;
 
 private:
-    void check_storage() const;
+    H5D_layout_t own_layout(const Handle& creation) const;
+    void check_storage(H5D_layout_t layout) const;
     void require_type(hid_t type) const;
     void read_into(hid_t memory_type, void* values) const;
     void read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const;

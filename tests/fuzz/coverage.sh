@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Which lines of a reader its seeds and kept inputs reach, in percent for each source file:
+#   bash tests/fuzz/coverage.sh scenario|noise|judge|results [--missed]      --missed: and every line that they do not
+# Inputs on which HDF5 crashes end a batch of 50, whose lines are then not counted.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+target=$1 missed=${2:-}
+source tests/fuzz/common.sh
+folder=build-fuzz-coverage
+flags="-fprofile-instr-generate -fcoverage-mapping"
+cmake --preset fuzz -B $folder -DCREDENCE_SANITIZE= -DCMAKE_CXX_FLAGS="$flags" >/dev/null
+nice -n 15 cmake --build $folder --target "fuzz_$target" -j "${FUZZ_JOBS:-1}" | tail -n 1
+
+declare -A readers=(
+  [scenario]="ini scenario scenario_keys scenario_values text"
+  [noise]="store_noise hdf5_read hdf5_handle"
+  [judge]="judgement_record judgement_file judgement_blocks judgement_check judgement_step judgement_totals
+    judgement_results hdf5_slab hdf5_read hdf5_handle"
+  [results]="store_read store_evidence store_sums study_hash exact_sum hdf5_read hdf5_handle"
+)
+sources=()
+for name in ${readers[$target]}; do sources+=(src/"$name".[ch]pp); done
+
+program=$folder/tests/fuzz/fuzz_$target
+{ find tests/fuzz/{seeds,found}/"$target" build-fuzz/corpus/"$target" -type f 2>/dev/null || true; } |
+  LLVM_PROFILE_FILE="$scratch/%p.profraw" xargs -n 50 sh -c '"$0" "$@" >/dev/null 2>&1 || true' "$program"
+llvm-profdata merge -sparse "$scratch"/*.profraw -o "$scratch/all.profdata"
+llvm-cov report "$program" -instr-profile="$scratch/all.profdata" "${sources[@]}" |
+  awk '$1 ~ /pp$|^TOTAL$/ {printf "%-28s %6s of lines, %6s of branches\n", $1, $10, $13}'
+[ "$missed" != --missed ] || llvm-cov show "$program" -instr-profile="$scratch/all.profdata" "${sources[@]}" |
+  grep -E '^(/.*:$| +[0-9]+\| +0\|)'

@@ -1,0 +1,50 @@
+// Files as records for judge: each is refused by an InputError of one line, or gets its verdict.
+
+#include "hdf5_checksums.hpp"
+#include "hdf5_mutator.hpp"
+#include "other_files.hpp"
+#include "require.hpp"
+#include "scratch_file.hpp"
+
+#include <credence/error.hpp>
+#include <credence/judgement_record.hpp>
+#include <credence/report.hpp>
+
+using namespace credence;
+using namespace credence::fuzz;
+
+namespace {
+
+/// A verdict takes bootstraps, ten times as long as reading: it is for one in eight inputs, and of what is soon done.
+bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
+bool is_small(const ScenarioResults& results) {
+    return results.trials <= 64 && results.steps() <= 16 && results.state_size() <= 16 && results.figures.size() <= 64;
+}
+
+void judge_file(const std::string& path, bool with_report) {
+    JudgedRecord record = read_judgement_record(path);
+    const ArmResults& arm = record.results.arms.at(0);
+    require(arm.counted + record.trouble_count == record.results.trials, "every trial counts or is in trouble");
+    if (!with_report || !is_small(record.results)) return;
+    const Report report = make_record_report(std::move(record), path, 0.05);
+    require(!report_text(report).empty() && !report_json(report).empty() && !report_csv(report).empty(),
+            "there is a report");
+}
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t room, unsigned seed) {
+    return mutate_hdf5(data, size, room, seed);
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const ScratchFile file(data, size);
+    const OnlyFile only(file.path());
+    try {
+        judge_file(file.path(), is_chosen({data, size}));
+    } catch (const InputError& error) {
+        require_one_line(error.what());
+    }
+    require_all_closed();
+    return 0;
+}

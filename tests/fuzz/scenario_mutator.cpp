@@ -1,0 +1,62 @@
+#include "scenario_mutator.hpp"
+
+#include <credence/scenario_keys.hpp>
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t room);
+
+namespace credence::fuzz {
+
+namespace {
+
+using Random = std::minstd_rand;
+
+template <class List>
+const auto& one_of(const List& list, Random& random) {
+    return list[random() % std::size(list)];
+}
+
+std::string any_number(Random& random) {
+    static const std::string numbers[] = {"0", "-0", "1", "2", "3", "0.5", "-1", "3.2", "-3.2", "10", "100", "101",
+                                          "1e-200", "1e-300", "1e9", "1.1e9", "1e400", "inf", "-inf", "nan", "0.1", "8",
+                                          "99999", "1e5"};
+    return one_of(numbers, random);
+}
+
+/// Words of choices stand in a key's help; lists need more.
+std::string any_value(const ScenarioKey& key, Random& random) {
+    static const std::string values[] = {"default", "none", "chain", "all", "0-1", "0-1, 1-2", "1-0", "0-1, 0-1",
+                                         "0-63", "0 0, 1 1", "1 2", "fixed", "greedy, fixed", "fixed, fixed", "ekf",
+                                         "kf", "ekf, kf", "fixed.ekf 1", "greedy.kf 2, fixed.kf 3", "a.b 1", "run", "dm",
+                                         "\xc3\xa9"};
+    switch (random() % 4) {
+        case 0: return one_of(values, random);
+        case 1: {
+            const std::vector<std::string> words = split_list(key.help);
+            return words.empty() ? "" : one_of(words, random);
+        }
+        case 2: return any_number(random) + ", " + any_number(random);
+        default: return any_number(random);
+    }
+}
+
+}  // namespace
+
+std::size_t mutate_scenario(std::uint8_t* text, std::size_t size, std::size_t room, unsigned seed) {
+    Random random(seed);
+    if (random() % 2 == 0) return LLVMFuzzerMutate(text, size, room);
+    const ScenarioKey& key = one_of(scenario_keys(), random);
+    const std::string more = override_separator + key.name + "=" + any_value(key, random);
+    // In the place of what was overridden before, now and then, so that texts do not only grow.
+    const std::uint8_t* end = std::find(text, text + size, static_cast<std::uint8_t>(override_separator));
+    if (random() % 2 == 0) size = static_cast<std::size_t>(end - text);
+    if (size + more.size() > room) return LLVMFuzzerMutate(text, size, room);
+    std::copy(more.begin(), more.end(), text + size);
+    return size + more.size();
+}
+
+}  // namespace credence::fuzz
