@@ -9,9 +9,20 @@ namespace credence::hdf5 {
 
 namespace {
 
-/// Deflate, the strongest of the usual filters, never shrinks by more.
-constexpr hsize_t largest_compression = 1100;
 constexpr hsize_t longest_text = hsize_t{64} << 20;
+
+Handle open_attribute(const Handle& object, const std::string& name) {
+    const std::string place = attribute_place(object, name);
+    if (!has_attribute(object, name)) throw Error(place, "is missing");
+    return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it"};
+}
+
+void require_scalar(const Handle& attribute, const std::string& place) {
+    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
+    if (H5Sget_simple_extent_type(space.id()) != H5S_SCALAR) throw Error(place, "is not a scalar");
+}
+
+}  // namespace
 
 hsize_t file_size(const Handle& object) {
     const Handle file(H5Iget_file_id(object.id()), H5Fclose, place_of(object), "HDF5 does not know its file");
@@ -30,19 +41,6 @@ std::string kind_text(hid_t type) {
         default: return "something else";
     }
 }
-
-Handle open_attribute(const Handle& object, const std::string& name) {
-    const std::string place = attribute_place(object, name);
-    if (!has_attribute(object, name)) throw Error(place, "is missing");
-    return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it"};
-}
-
-void require_scalar(const Handle& attribute, const std::string& place) {
-    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
-    if (H5Sget_simple_extent_type(space.id()) != H5S_SCALAR) throw Error(place, "is not a scalar");
-}
-
-}  // namespace
 
 const std::string& hard(const Handle& group, const std::string& name) {
     H5L_info_t info;
@@ -139,85 +137,6 @@ void read_attribute(const Handle& object, const std::string& name, Type type, vo
         throw Error(place, "holds " + kind_text(own.id()) + ", not " + kind_text(type.file));
     require_scalar(attribute, place);
     check(H5Aread(attribute.id(), type.memory, value), place, "HDF5 cannot read it");
-}
-
-Dataset::Dataset(const Handle& group, const std::string& name)
-    : place_(place_of(group, name)),
-      dataset_(H5Dopen2(group.id(), hard(group, name).c_str(), H5P_DEFAULT), H5Dclose, place_,
-               "is no readable dataset"),
-      type_(H5Dget_type(dataset_.id()), H5Tclose, place_, "HDF5 cannot read its type") {
-    const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place_, "HDF5 cannot read its layout");
-    const H5D_layout_t layout = own_layout(creation);  // before HDF5 opens other files for a virtual dataset's extents
-    const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, "HDF5 cannot read its extents");
-    const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (rank < 1) throw Error(place_, "has no extents");
-    extents_.resize(static_cast<std::size_t>(rank));
-    H5Sget_simple_extent_dims(space.id(), extents_.data(), nullptr);
-    if (layout == H5D_CHUNKED && H5Pget_chunk(creation.id(), 0, nullptr) != rank)
-        throw Error(place_, "is damaged: its chunks have other dimensions");
-    check_storage(layout);
-    for (const hsize_t extent : extents_) count_ *= extent;
-}
-
-/// How the values are kept; throws where that is in other files.
-H5D_layout_t Dataset::own_layout(const Handle& creation) const {
-    const H5D_layout_t layout = H5Pget_layout(creation.id());
-    if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
-        throw Error(place_, "keeps its values in other files", "Copy them into this one");
-    return layout;
-}
-
-/// Throws where the file is too small to hold what the extents promise.
-void Dataset::check_storage(H5D_layout_t layout) const {
-    if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
-    hsize_t room = file_size(dataset_) * (layout == H5D_CHUNKED ? largest_compression : 1) /
-                   std::max<hsize_t>(H5Tget_size(type_.id()), 1);
-    const hsize_t stored = H5Dget_storage_size(dataset_.id());
-    if (stored == 0) throw Error(place_, "has no values");
-    for (const hsize_t extent : extents_) room /= extent;
-    if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into the file");
-    if (layout == H5D_CHUNKED) return;
-    hsize_t needed = H5Tget_size(type_.id());  // HDF5 itself would read on behind what is stored
-    for (const hsize_t extent : extents_) needed *= extent;
-    if (stored < needed) throw Error(place_, extents_text(extents_) + " is more than is stored");
-}
-
-void Dataset::require_extents(const Extents& extents) const {
-    if (extents_ != extents)
-        throw Error(place_, "has extents " + extents_text(extents_) + ", not " + extents_text(extents));
-}
-
-void Dataset::require_type(hid_t type) const {
-    if (H5Tequal(type_.id(), type) <= 0)
-        throw Error(place_, "holds " + kind_text(type_.id()) + ", not " + kind_text(type));
-}
-
-std::vector<double> Dataset::read_real() const {
-    if (H5Tget_class(type_.id()) != H5T_FLOAT) throw Error(place_, "holds " + kind_text(type_.id()) + ", not floats");
-    std::vector<double> values(count_);
-    read_into(H5T_NATIVE_DOUBLE, values.data());
-    return values;
-}
-
-void Dataset::read_into(hid_t memory_type, void* values) const {
-    check(H5Dread(dataset_.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), place_,
-          "is damaged: HDF5 cannot read its values");
-}
-
-void Dataset::read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const {
-    const std::string problem = "is damaged: HDF5 cannot read its values";
-    if (extents_.size() != 1 || first > extents_[0] || count > extents_[0] - first) throw Error(place_, "is too short");
-    if (count == 0) return;
-    const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place_, problem),
-        memory(H5Screate_simple(1, &count, nullptr), H5Sclose, place_, problem);
-    check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr), place_, problem);
-    check(H5Dread(dataset_.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, values), place_, problem);
-}
-
-std::string extents_text(const Extents& extents) {
-    std::string text;
-    for (const hsize_t extent : extents) text += (text.empty() ? "[" : ", ") + std::to_string(extent);
-    return text + "]";
 }
 
 }  // namespace credence::hdf5

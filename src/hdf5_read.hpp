@@ -13,6 +13,12 @@ namespace credence::hdf5 {
 /// Opens a file for reading, after checks of our own: a regular file that starts with HDF5's signature.
 Handle open_file(const std::string& path);
 
+/// Of the file that the object is in.
+hsize_t file_size(const Handle& object);
+
+/// What a type is called in messages, such as `64-bit floats`.
+std::string kind_text(hid_t type);
+
 /// Names of a group's links, and of an object's attributes, in the order in which they were made. Links other than hard
 /// ones could lead to other files and are refused.
 std::vector<std::string> link_names(const Handle& group);

@@ -71,9 +71,9 @@ public:
 struct RunOptions {
     std::int64_t trials = 10000;
     int threads = 0;                    ///< 0: as many as the machine has
-    std::function<void(const Progress&)> progress;  ///< called from one thread at a time; may be empty
-    Shard shard;
-    std::function<bool()> stop;         ///< asked before every block, from several threads; may be empty
+    std::function<void(const Progress&)> progress{};  ///< called from one thread at a time; may be empty
+    Shard shard{};
+    std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
     BlockKeeper* keeper = nullptr;      ///< none: columns stay in memory
 };
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes the reader of one kind of file:
-#   bash tests/fuzz/run.sh scenario|noise|judge|results [SECONDS] [LIBFUZZER-OPTION...]
+#   bash tests/fuzz/run.sh scenario|noise|judge|results|journal [SECONDS] [LIBFUZZER-OPTION...]
 # Inputs that reach new code go to build-fuzz/corpus/TARGET, findings to build-fuzz/findings/TARGET; both outlive a run.
 # After a finding it goes on in a new process. Ends with 1 if there are findings that are not HDF5's own (triage.sh).
 set -euo pipefail

@@ -9,6 +9,6 @@ export FUZZ_JOBS=$(nproc)
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 1
 build-fuzz/tests/fuzz/fuzz_checksums tests/fuzz/seeds/*/*.h5 | { ! grep CHANGED; }
-for target in scenario noise judge results; do
+for target in scenario noise judge results journal; do
   bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-5}"
 done
