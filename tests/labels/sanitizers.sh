@@ -1,9 +1,20 @@
 #!/usr/bin/env bash
-# Label sanitizers: the core suite under the address and undefined-behaviour sanitizers, warnings as errors; but for the
-# tests marked [long], which only repeat the same code for more trials.
+# Label sanitizers: tests of everything that handles memory, and the fuzz targets, under clang's address and
+# undefined-behaviour sanitizers, warnings as errors. All tests but those marked [long]: `cmake --preset sanitizers`.
+# Of the fuzz targets: their checksums are HDF5's own, and a few seconds of each find nothing new (more: FUZZ_SECONDS).
+# Crashes within HDF5 do not count (tests/fuzz/triage.sh).
 set -euo pipefail
-cmake --preset sanitizers >/dev/null
-cmake --build --preset sanitizers --target credence_tests -j "$(nproc)" | tail -n 3
-cd build-sanitizers
-export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
-tests/credence_tests '~[long]' | tail -n 30
+for tool in clang++ llvm-symbolizer; do
+  command -v $tool >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
+done
+export FUZZ_JOBS=$(nproc)
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 3
+(
+  cd build-fuzz
+  ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1 tests/credence_tests '~[long]' | tail -n 30
+)
+build-fuzz/tests/fuzz/fuzz_checksums tests/fuzz/seeds/*/*.h5 | { ! grep CHANGED; }
+for target in scenario noise judge results journal; do
+  bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-4}"
+done
