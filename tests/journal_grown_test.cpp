@@ -121,7 +121,8 @@ TEST_CASE("journal: a run of several threads that is stopped goes on with what e
     for (int stops = 0; stops < 6; ++stops) {
         StoredRun run = opened(path, asked);
         std::atomic<int> left = 7;
-        run_study(run.study(), {asked.trials, 3, {}, {}, [&] { return left-- <= 0; }, &run.begin(asked.trials, 1 + stops)});
+        run_study(run.study(),
+                  {asked.trials, 3, {}, {}, [&] { return left-- <= 0; }, &run.begin(asked.trials, 1 + stops)});
         const std::int64_t there = blocks_in(run.study());
         CHECK(there == std::min(48, 7 * (stops + 1)));
         if (stops % 2 == 0) run.finish({});

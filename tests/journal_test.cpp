@@ -10,7 +10,8 @@ using namespace credence::test;
 
 namespace {
 
-/// Temporary folders are made in memory where there is such a place: thousands of syncs are none of the disk's business.
+/// Temporary folders are made in memory where there is such a place: thousands of syncs are nothing for a disk.
+/// business.
 class InMemory {
 public:
     InMemory() {
@@ -65,7 +66,8 @@ TEST_CASE("journal: cut at any byte, it has every record before the cut, and not
         const StoredRun resumed = opened(run.path, run.asked);
         REQUIRE(blocks_in(resumed.study()) == run.whole_records(size));
         const std::int64_t records = run.whole_records(size);
-        if (size >= run.ends.front()) REQUIRE(bytes_of(run.journal).size() == run.ends[static_cast<std::size_t>(records)]);
+        if (size >= run.ends.front())
+            REQUIRE(bytes_of(run.journal).size() == run.ends[static_cast<std::size_t>(records)]);
     }
 }
 
@@ -75,7 +77,8 @@ TEST_CASE("journal: cut anywhere, the study that goes on ends the same") {
     for (std::size_t size = 0; size <= run.bytes.size(); size += 131)
         REQUIRE(run.ends_the_same(run.bytes.substr(0, size), expected));
     for (const std::size_t end : run.ends)
-        for (const std::size_t size : {end - 1, end, end + 1}) REQUIRE(run.ends_the_same(run.bytes.substr(0, size), expected));
+        for (const std::size_t size : {end - 1, end, end + 1})
+            REQUIRE(run.ends_the_same(run.bytes.substr(0, size), expected));
     CHECK(run.ends_the_same(run.bytes + run.bytes.substr(0, 100), expected));
     CHECK(run.ends_the_same(run.bytes + std::string(100000, '\0'), expected));
 }

@@ -72,7 +72,8 @@ TEST_CASE("merge: details of trials come from whichever file has them") {
     const ArmResults& found = merged.scenarios.front().arms.front();
     REQUIRE(found.errors.size() == arm.errors.size());
     for (std::size_t i = 0; i < arm.errors.size(); ++i)
-        REQUIRE((found.errors[i] == arm.errors[i] || (found.errors[i] != found.errors[i] && arm.errors[i] != arm.errors[i])));
+        REQUIRE((found.errors[i] == arm.errors[i] ||
+                 (found.errors[i] != found.errors[i] && arm.errors[i] != arm.errors[i])));
 }
 
 TEST_CASE("merge: the same block with other values is refused by trials, arm and column") {
@@ -91,7 +92,8 @@ TEST_CASE("merge: the same block with other values is refused by trials, arm and
     }
     const std::string said = refused_to_merge({shards.shard(1, 2), good, bad});
     CAPTURE(said);
-    CHECK(said.starts_with("cannot merge " + bad + " with " + good + " (trials 512 to 767 of b/fixed.ekf differ in pose_error)"));
+    CHECK(said.starts_with("cannot merge " + bad + " with " + good +
+                           " (trials 512 to 767 of b/fixed.ekf differ in pose_error)"));
     CHECK_FALSE(refused_to_merge({bad, good}).empty());
 }
 
@@ -146,5 +148,6 @@ TEST_CASE("merge: shards without a block are taken, first and last") {
     const Study expected = undisturbed(shards.asked);
     CHECK(same_results(merge_results(paths), expected));
     CHECK(same_results(merge_results({paths[1], paths[2], paths[0]}), expected));
-    CHECK(missing_text(merge_results({paths[0]})) == "scenario a lacks blocks 0, 1 of 2; scenario b lacks blocks 0, 1 of 2");
+    CHECK(missing_text(merge_results({paths[0]})) ==
+          "scenario a lacks blocks 0, 1 of 2; scenario b lacks blocks 0, 1 of 2");
 }

@@ -19,7 +19,8 @@ const std::string slow_world = "[scenario]\nname = slow\nposes = 400\n";
 Outcome disturbed(const Workplace& here, const std::string& arguments, const std::string& signals,
                   const std::string& before = "") {
     return here.shell(before + CREDENCE_PROGRAM " run " + arguments + " & run=$!\n" +
-                      "until [ \"$(stat -c %s x.h5.journal 2>/dev/null || echo 0)\" -gt 20000 ] || ! kill -0 $run; do sleep 0.01; done\n" +
+                      "until [ \"$(stat -c %s x.h5.journal 2>/dev/null || echo 0)\" -gt 20000 ] || ! kill -0 $run; do "
+                      "sleep 0.01; done\n" +
                       signals + "\nwait $run; echo exit code $?");
 }
 
@@ -34,8 +35,9 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
         const Outcome stopped = disturbed(here, arguments, "kill -" + name + " $run");
         CAPTURE(name, stopped.err);
         CHECK(stopped.out == "exit code 3\n");
-        CHECK_THAT(stopped.err, Contains("credence run: stopped by SIG" + name + " with ") &&
-                                    Contains("trials kept in x.h5 (complete = 0). This goes on with them:\n  credence run"));
+        CHECK_THAT(stopped.err,
+                   Contains("credence run: stopped by SIG" + name + " with ") &&
+                       Contains("trials kept in x.h5 (complete = 0). This goes on with them:\n  credence run"));
         CHECK(here.names() == std::vector<std::string>{"small world.ini", "x.h5"});
         const Study study = read_results(here.path("x.h5")).study;
         CHECK_FALSE(study.complete);
@@ -45,8 +47,9 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
         std::string line = stopped.err.substr(stopped.err.find("\n  ") + 3);
         line = line.substr(0, line.find('\n'));
         CHECK_THAT(line, Contains("'small world.ini'") && Contains(" --resume"));
-        const Outcome again = here.shell("PATH=$(dirname " CREDENCE_PROGRAM "):$PATH\n" + line + " & run=$!\n" +
-                                         "until [ -s x.h5.journal ] || ! kill -0 $run; do sleep 0.01; done; kill -TERM $run; wait $run");
+        const Outcome again =
+            here.shell("PATH=$(dirname " CREDENCE_PROGRAM "):$PATH\n" + line + " & run=$!\n" +
+                       "until [ -s x.h5.journal ] || ! kill -0 $run; do sleep 0.01; done; kill -TERM $run; wait $run");
         CHECK(again.exit_code == 3);
         const Study more = read_results(here.path("x.h5")).study;
         CHECK(more.scenarios.front().trials >= study.scenarios.front().trials);
@@ -83,8 +86,9 @@ TEST_CASE("cli: a second signal ends the run at once, and nothing committed is l
 TEST_CASE("cli: a SIGHUP that nohup ignores stays ignored") {
     const Workplace here;
     here.write("small.ini", small_world);
-    const Outcome run = disturbed(here, "small.ini --trials 1e8 --quiet -o x.h5 --commit-every 1",
-                                  "kill -HUP $run; sleep 0.1; kill -HUP $run; sleep 0.1; kill -TERM $run", "trap '' HUP\n");
+    const Outcome run =
+        disturbed(here, "small.ini --trials 1e8 --quiet -o x.h5 --commit-every 1",
+                  "kill -HUP $run; sleep 0.1; kill -HUP $run; sleep 0.1; kill -TERM $run", "trap '' HUP\n");
     CAPTURE(run.err);
     CHECK(run.out == "exit code 3\n");
     CHECK_THAT(run.err, Contains("stopped by SIGTERM"));
@@ -94,8 +98,10 @@ TEST_CASE("cli: a signal while the results file is written does not leave half o
     const Workplace here;
     here.write("small.ini", small_world);
     for (const char* delay : {"0", "0.05", "0.1", "0.2", "0.3"}) {
-        const Outcome run = here.shell(std::string(CREDENCE_PROGRAM " run small.ini --trials 200000 --quiet -o x.h5 --threads 2 & "
-                                                   "run=$!; sleep ") + delay + "; kill -TERM $run; wait $run");
+        const Outcome run =
+            here.shell(std::string(CREDENCE_PROGRAM " run small.ini --trials 200000 --quiet -o x.h5 --threads 2 & "
+                                                    "run=$!; sleep ") +
+                       delay + "; kill -TERM $run; wait $run");
         CAPTURE(delay, run.err);
         // Before the program catches it, it ends the program; after the run's end there is nothing to stop.
         CHECK((run.exit_code == 0 || run.exit_code == 3 || run.exit_code == 143));

@@ -35,6 +35,13 @@ fail() {
   exit 1
 }
 
+# left_out N: of the changes 1 to `total` every one is looked at where the journal is written at one end, and at the
+# other where files are synced, renamed and removed; of the long middle only each `every`-th from `offset` on.
+first=17 last=7
+left_out() {
+  [ "$1" -gt $first ] && [ "$1" -le $((total - last)) ] && [ $(($1 % every)) -ne $((offset % every)) ]
+}
+
 # crashing "VARIABLE=value ..." ARGUMENTS...: the program with the library; sets `status`, what it says goes to ../said.
 crashing() {
   local environment=$1

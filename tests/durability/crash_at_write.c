@@ -5,7 +5,8 @@
    CRASH_ERROR=ENOSPC   not a kill: this change fails, and every later one
    CRASH_ONCE=1         only this one fails
    CRASH_SIGNAL_AT=n    SIGTERM is raised just before the n-th change, which then goes on
-   CRASH_LOG=file       a line `change path size` for every change that succeeded, the size after it; `refused - -1` for others
+   CRASH_LOG=file       a line `change path size` for every change that succeeded, the size after it, and one that
+                        begins with `refused` for every other
 
    Changes are those to descriptors above 2, and renaming and removing. A full disk does not keep a file from being
    removed or cut, so neither fails with ENOSPC, EDQUOT or EFBIG. */

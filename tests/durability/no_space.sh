@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The system refuses: at every change to a file in turn as a full disk does, at some with other errors, and for real where
-# this machine lets us. Each time one line says which file and what to do, the exit code is 1, and the run goes on later.
+# The system refuses: at every change to a file in turn as a full disk does, at some with other errors, and for real
+# where this machine lets us. Each time one line says which file and what to do, the exit code is 1, and the run goes on
+# later.
 # usage: no_space.sh CREDENCE [EVERY [OFFSET]]: as in sweep.sh
 set -euo pipefail
 source "$(dirname "$0")/common.sh"
 every=${2:-1} offset=${3:-0}
-first=17 last=7
 
 # One line, with the name of the file and after it a remedy; $2 is a part of it.
 check_message() {
@@ -24,7 +24,8 @@ check_file() {
 refuse_at() {
   local what="$name, $4 at change $1 of $total, half $2, once $3"
   start_with "$before"
-  crashing "CRASH_LOG=../log CRASH_AT=$1 ${2:+CRASH_HALF=$2} ${3:+CRASH_ONCE=$3} CRASH_ERROR=$4 OMP_NUM_THREADS=$((1 + $1 % 2))" "${command[@]}"
+  local environment="CRASH_LOG=../log CRASH_AT=$1 CRASH_ERROR=$4 ${2:+CRASH_HALF=$2} ${3:+CRASH_ONCE=$3}"
+  crashing "$environment OMP_NUM_THREADS=$((1 + $1 % 2))" "${command[@]}"
   runs=$((runs + 1))
   # What removes or cuts is not refused by a full disk, and with two threads a run may be shorter.
   if grep -q '^refused' ../log; then
@@ -48,9 +49,8 @@ refuse_everywhere() {
   [ $status -eq 0 ] || fail "$name: ended with $status undisturbed"
   total=$(wc -l <../log)
   for ((n = 1; n <= total; ++n)); do
-    if [ $n -gt $first ] && [ $n -le $((total - last)) ] && [ $((n % every)) -ne $((offset % every)) ]; then continue; fi
-    if [ $((n % 2)) -eq 0 ]; then refuse_at $n 1 "" ENOSPC "no space left on device"; continue; fi
-    refuse_at $n "" "" ENOSPC "no space left on device"
+    if left_out $n; then continue; fi
+    refuse_at $n "$([ $((n % 2)) -eq 1 ] || echo 1)" "" ENOSPC "no space left on device"
   done
   for n in 1 5 $((total / 2)) $((total - 4)) $((total - 3)) $((total - 1)) $total; do
     case $((n % 4)) in

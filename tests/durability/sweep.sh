@@ -6,18 +6,20 @@
 set -euo pipefail
 source "$(dirname "$0")/common.sh"
 every=${2:-1} offset=${3:-0}
-first=17 last=7  # never left out: the journal's changes at one end, syncing, renaming and removing at the other
 
-# Of the killed run, ../log: what had been committed when it died, in bytes of the journal and in commits of blocks (its
-# beginning, which is synced too, is none). Of the run that went on, ../log2: the least that it left of the journal, and
-# its appends.
+# Of the killed runs, ../log: what had been committed when the last died, in bytes of the journal and in commits of
+# blocks (its beginning, which is synced too, is none). Of the run that went on, ../log2: the least that it left of the
+# journal, and its appends. A journal that is shorter than before is another; the commits stay counted.
 read_logs() {
   read -r committed commits least appends < <(awk '
     $2 !~ /\.journal$/ { next }
-    FILENAME == "../log" && $1 == "fdatasync" { committed = $3; ++syncs }
     FILENAME == "../log2" && $1 != "unlink" && (least == "" || $3 < least) { least = $3 }
     FILENAME == "../log2" && $1 ~ /^pwrite/ { ++appends }
-    END { print committed + 0, (syncs > 1 ? syncs - 1 : 0), least == "" ? "none" : least, appends + 0 }' ../log ../log2)
+    FILENAME == "../log2" { next }
+    $3 < committed { begun = committed = 0 }
+    $1 ~ /^pwrite/ { written = 1 }
+    $1 == "fdatasync" { committed = $3; commits += begun && written; begun = begun || written; written = 0 }
+    END { print committed + 0, commits + 0, least == "" ? "none" : least, appends + 0 }' ../log ../log2)
 }
 
 # With a journal, going on leaves every byte of it that was committed. It runs on one thread, which appends block by
@@ -26,7 +28,7 @@ read_logs() {
 check_kept() {
   local what=$1
   read_logs
-  if [ "$committed" -eq 0 ]; then return; fi
+  if [ "$committed" -eq 0 ] && [ "$commits" -eq 0 ]; then return; fi
   kept=$((kept + commits))
   if [ $journal = there ]; then
     [ "$least" = none ] || [ "$least" -ge "$committed" ] || fail "$what: of $committed bytes $least were kept"
@@ -62,6 +64,8 @@ kill_at() {
   if [ -e x.h5 ] && ! { [ -n "$before" ] && cmp -s "$before" x.h5; }; then
     "$credence" report x.h5 >../said 2>&1 || fail "$what: the file is neither the old one nor readable"
   fi
+  # What goes on is killed too, a commit or so later: a journal is gone on with that was gone on with.
+  if [ "$blocks" -gt 0 ]; then crashing "CRASH_AT=6 CRASH_HALF=$2 CRASH_LOG=../log" "${again[@]}"; fi
   go_on "$what"
   check_kept "$what"
   check_whole "$what"
@@ -75,7 +79,7 @@ sweep() {
   [ $status -eq 0 ] || [ $status -eq 3 ] || fail "$name: ended with $status undisturbed"
   total=$(wc -l <../log)
   for ((n = 1; n <= total; ++n)); do
-    if [ $n -gt $first ] && [ $n -le $((total - last)) ] && [ $((n % every)) -ne $((offset % every)) ]; then continue; fi
+    if left_out $n; then continue; fi
     # The whole with one thread and half with two, then the other way round.
     kill_at $n 0 $((1 + n % 2))
     kill_at $n 1 $((2 - n % 2))
