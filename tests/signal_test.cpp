@@ -73,7 +73,7 @@ TEST_CASE("cli: a second signal ends the run at once, and nothing committed is l
     const Workplace here;
     here.write("slow.ini", slow_world);
     const std::string arguments = "slow.ini --trials 2100 --quiet --commit-every 1 --threads 2 ";
-    const Outcome ended = disturbed(here, arguments + "-o x.h5", "kill -TERM $run; sleep 0.05; kill -INT $run");
+    const Outcome ended = disturbed(here, arguments + "-o x.h5", "kill -TERM $run; kill -INT $run");
     CAPTURE(ended.err);
     CHECK(ended.out == "exit code 130\n");
     CHECK(ended.err.empty());
