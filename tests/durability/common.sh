@@ -1,0 +1,65 @@
+# Sourced by the scripts here, with the program as their first argument: the library that crashes it, a folder to work
+# in, a scenario whose file takes few writes, and what must be true of every file that a run leaves.
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+credence=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cc -O1 -Wall -Wextra -shared -fPIC -o "$work/crash.so" "$here/crash_at_write.c" -ldl
+mkdir "$work/at"
+cd "$work/at"
+
+cat >../tiny.ini <<'INI'
+[scenario]
+name = tiny
+poses = 5
+[arms]
+controllers = fixed
+[planner]
+speeds = 1
+INI
+trials=1500  # five blocks and a partial one
+study=(run ../tiny.ini --trials $trials --quiet -o x.h5 --commit-every 1)
+"$credence" run ../tiny.ini --trials $trials --quiet -o ../whole.h5
+"$credence" run ../tiny.ini --trials 700 --quiet -o ../less.h5  # two blocks and a partial one
+"$credence" run ../tiny.ini --trials 300 --seed 2 --quiet -o ../other.h5
+for shard in 0 1 2; do
+  "$credence" run ../tiny.ini --trials $trials --shard $shard/3 --quiet -o ../$shard.h5
+done
+shards=(../2.h5 ../0.h5 ../1.h5)
+
+fail() {
+  echo "FAILED: $*" >&2
+  echo "what the program said last:" >&2
+  tail -n 5 ../said >&2
+  ls -l >&2
+  exit 1
+}
+
+# left_out N: of the changes 1 to `total` every one is looked at where the journal is written at one end, and at the
+# other where files are synced, renamed and removed; of the long middle only each `every`-th from `offset` on.
+first=17 last=7
+left_out() {
+  [ "$1" -gt $first ] && [ "$1" -le $((total - last)) ] && [ $(($1 % every)) -ne $((offset % every)) ]
+}
+
+# crashing "VARIABLE=value ..." ARGUMENTS...: the program with the library; sets `status`, what it says goes to ../said.
+crashing() {
+  local environment=$1
+  shift
+  status=0
+  { env $environment LD_PRELOAD="$work/crash.so" "$credence" "$@" >../said 2>&1; } 2>/dev/null || status=$?
+}
+
+# Empties the folder, but for the file that the run starts with.
+start_with() {
+  rm -rf ./*
+  : >../log
+  : >../log2
+  if [ -n "$1" ]; then cp "$1" x.h5; fi
+}
+
+# The results are those of a run that nobody disturbed, and nothing else is there.
+check_whole() {
+  [ "$(ls -A)" = x.h5 ] || fail "$1: it left $(ls -A | tr '\n' ' ')"
+  h5diff --exclude-path /run ../whole.h5 x.h5 >../said 2>&1 || fail "$1: other results"
+}

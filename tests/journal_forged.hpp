@@ -1,0 +1,65 @@
+#pragma once
+// Journals that somebody made up, with right checksums.
+
+#include "journal_support.hpp"
+
+#include <optional>
+
+namespace credence::test {
+
+/// A record in its parts: each can be made up.
+struct Record {
+    std::uint32_t scenario = 0;
+    RecordStart start;
+    std::string values, totals;
+    std::optional<std::int64_t> payload;      ///< as its head says; none: as it is
+    std::optional<std::uint32_t> blocks;      ///< as its start says
+
+    std::string bytes() const {
+        ByteWriter begin, head;
+        put_record_start(begin, start);
+        if (blocks) begin.set(record_start_size - sizeof *blocks, *blocks);
+        const std::string all = begin.bytes() + values + totals;
+        put_record_head(head, {scenario, payload.value_or(static_cast<std::int64_t>(all.size()))});
+        return sealed(head.bytes() + all);
+    }
+};
+
+inline std::string totals_of(const ScenarioResults& results) {
+    ByteWriter bytes;
+    put_totals(bytes, results);
+    return bytes.take();
+}
+
+/// A run of one scenario of 3 trials, and the record that its journal has.
+struct Made {
+    Asked asked{3, 1, {}, {tiny("a")}, 1};
+    TemporaryFolder folder;
+    std::string path = folder / "x.h5", header;
+    Study study = undisturbed(asked);
+    Record record;
+
+    Made() {
+        run_and_die(path, asked);
+        const std::string bytes = bytes_of(path + ".journal");
+        const std::vector<std::size_t> ends = record_ends(bytes);
+        header = bytes.substr(0, ends[0]);
+        record.start = {3, 3, {{0, 3}}};
+        const BlockLayout layout(study.scenarios.front());
+        record.values = bytes.substr(ends[0] + record_head_size + record_start_size + journal_block_size,
+                                     static_cast<std::size_t>(layout.size({0, 3})));
+        record.totals = totals_of(study.scenarios.front());
+        REQUIRE(record.bytes() == bytes.substr(ends[0]));
+    }
+    /// What refuses a journal of these records.
+    std::string said(const std::vector<Record>& records) const {
+        std::string bytes = header;
+        for (const Record& one : records) bytes += one.bytes();
+        put_bytes(path + ".journal", bytes);
+        const std::string text = refused(path, asked);
+        std::filesystem::remove(path);
+        return text;
+    }
+};
+
+}  // namespace credence::test
