@@ -32,12 +32,15 @@ Journal::Journal(const std::string& path) : file_(path) {
         file_.read(0, bytes.data(), bytes.size());
         return bytes;
     };
-    // A header is on the disk before the first record is written: one that is torn has nothing behind it.
+    std::size_t size = header_prefix;
     try {
-        const std::size_t size = header_size(start_of(header_prefix), path);
+        size = header_size(start_of(header_prefix), path);
         header_ = read_header(start_of(size), path, header_size_);
-    } catch (const BadBytes&) {
-        return;
+    } catch (const BadBytes& bad) {
+        // A header is on the disk before the first record is written: one that is torn has nothing behind it.
+        if (file_.size() <= static_cast<std::int64_t>(size)) return;
+        throw InputError(path + ": is damaged: its header " + bad.what() +
+                         ". Remove it and run the study again, or give an undamaged copy.");
     }
     asked_ = header_->trials;
 }

@@ -23,8 +23,9 @@ struct BlockPlace {
 /// What a journal says of one scenario.
 struct JournalScenario {
     std::map<std::int64_t, BlockPlace> places;
+    std::int64_t asked = 0;           ///< trials that the study was asked for at the last totals
     std::int64_t counted = 0;         ///< trials in the last totals
-    std::string totals;               ///< their bytes; empty: no record is of this scenario
+    std::optional<std::string> totals;  ///< their bytes; none: no record is of this scenario
 };
 
 class Journal : public BlockKeeper {

@@ -56,8 +56,9 @@ std::optional<FoundRecord> find_record(const JournalFile& file, std::int64_t pos
     } catch (const BadBytes&) {
         return std::nullopt;
     }
+    if (head.payload > left) return std::nullopt;
     const std::int64_t payload = position + head_size, end = payload + head.payload;
-    if (head.payload > left || !checksum_is_right(file, position, end)) return std::nullopt;
+    if (!checksum_is_right(file, position, end)) return std::nullopt;
     std::uint32_t count = 0;
     file.read(payload + static_cast<std::int64_t>(record_start_size - sizeof count), &count, sizeof count);
     const auto start_size = static_cast<std::int64_t>(record_start_size + count * journal_block_size);
@@ -83,6 +84,7 @@ std::vector<JournalScenario> Journal::scan(const Study& study) {
             scenario.places[block.index] = {block.trials, values, false};
             values += size;
         }
+        scenario.asked = record->start.trials;
         scenario.counted = record->start.counted;
         scenario.totals = bytes_at(file_, values, record->end - values);
         asked_ = std::max(asked_, record->start.trials);
@@ -126,16 +128,15 @@ bool already_in_file(const std::map<std::int64_t, BlockPlace>& in_file, const Jo
     });
 }
 
-/// Adds the journal's blocks to those of the file, and leaves out a partial last one that was taken back since: the
-/// totals, which hold `counted` trials, tell. Throws BadBytes where they fit neither.
+/// Adds the journal's blocks to those of the file. A partial one that the study of the last totals has larger had been
+/// taken back before, and is left out. Throws BadBytes where blocks and totals do not agree.
 void add_places(std::map<std::int64_t, BlockPlace>& places, const JournalScenario& found) {
     for (const auto& [index, place] : found.places) places[index] = place;
+    std::erase_if(places, [&](const auto& entry) {
+        return entry.second.trials < trials_in_block(found.asked, entry.first);
+    });
     std::int64_t trials = 0;
     for (const auto& [index, place] : places) trials += place.trials;
-    if (trials != found.counted && !places.empty() && places.rbegin()->second.trials < block_size) {
-        trials -= places.rbegin()->second.trials;
-        places.erase(std::prev(places.end()));
-    }
     if (trials != found.counted) throw BadBytes("totals and blocks do not agree");
     for (const auto& [index, place] : places)
         if (place.trials != block_size && index != places.rbegin()->first)
@@ -154,14 +155,17 @@ void Journal::load(Study& study) {
     try {
         const std::vector<JournalScenario> found = scan(study);
         for (std::size_t s = 0; s < found.size(); ++s) {
-            if (found[s].totals.empty() || already_in_file(kept_[s].places, found[s])) continue;
+            if (!found[s].totals || already_in_file(kept_[s].places, found[s])) continue;
             ScenarioResults& results = study.scenarios[s];
             add_places(kept_[s].places, found[s]);
             std::vector<std::int64_t> blocks;
             for (const auto& [index, place] : kept_[s].places) blocks.push_back(index);
             set_blocks(results, std::move(blocks), trials_up_to(kept_[s].places));
-            ByteReader totals(found[s].totals.data(), found[s].totals.size());
+            ByteReader totals(found[s].totals->data(), found[s].totals->size());
             get_totals(totals, results);
+            for (const ArmResults& arm : results.arms)
+                if (arm.counted < 0 || arm.counted > found[s].counted)
+                    throw BadBytes("totals of an impossible number of trials");
             read_details(s, results);
         }
     } catch (const BadBytes& bad) {
@@ -169,7 +173,7 @@ void Journal::load(Study& study) {
     }
     study.trials = std::max(study.trials, asked_);
     study.complete = std::all_of(study.scenarios.begin(), study.scenarios.end(), [&](const ScenarioResults& results) {
-        return missing_blocks(results, study.trials).empty();
+        return results.trials == study.trials;
     });
     finished(study);
 }

@@ -44,7 +44,8 @@ StoredRun::StoredRun(StoredRun&&) noexcept = default;
 StoredRun::~StoredRun() = default;
 
 void StoredRun::open_journal() {
-    if (!std::filesystem::is_regular_file(journal_path_))
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(journal_path_, none))
         throw InputError("cannot write " + path_ + " (" + journal_path_ +
                          " is in the way of its journal). Remove that, or give another name.");
     if (start_ == Start::fresh)

@@ -65,7 +65,7 @@ struct ScenarioResults {
     std::int64_t trials = 0;                   ///< that are there: rows of the columns
     /// The blocks that are there, rising: row r is trial blocks[r / 256] * 256 + r % 256. Only the last may be partial.
     /// 0, 1, 2 ... but for shards and interrupted runs. Empty for a record.
-    std::vector<std::int64_t> blocks;
+    std::vector<std::int64_t> blocks{};
 
     int steps() const { return scenario.poses - 1; }
     /// Trials that are there whose errors are kept: the rows of the details.

@@ -111,7 +111,8 @@ Work work_on(StoredRun& stored, const RunRequest& request) {
     RunOptions options = request.options;
     options.stop = Interrupt::came;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
-    options.keeper = &stored.begin(options.trials, request.commit_every);
+    // With --until nobody knows yet how many trials will be asked for: each look asks for its own.
+    options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every);
     if (!request.goals.empty()) {
         work.last_look = grow_until_precise(stored.study(), request, options);
     } else {
