@@ -49,7 +49,7 @@ Journal::Journal(const std::string& path) : file_(path) {
 void Journal::keep_columns_of(Study& study) {
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         ScenarioResults& results = study.scenarios[s];
-        Kept kept{BlockLayout(results), {}, {}, {}, {}, {}, {}};
+        Kept kept{BlockLayout(results), {}, {}, {}, results.trials, {}, {}, {}};
         for (const Column& column : results.columns) kept.types.push_back(column.type);
         for (std::size_t place = 0; place < results.blocks.size(); ++place)
             kept.places[results.blocks[place]] = {block_rows(results, place),
@@ -70,6 +70,12 @@ void Journal::begin(const JournalHeader& header, Study& study) {
     header_ = header;
     asked_ = header.trials;
     finished(study);
+}
+
+void Journal::take_back(std::size_t scenario, std::int64_t block) {
+    const auto found = kept_[scenario].places.find(block);
+    kept_[scenario].counted -= found->second.trials;
+    kept_[scenario].places.erase(found);
 }
 
 void Journal::take(std::size_t scenario, const Block& block) {
@@ -103,16 +109,15 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     ByteWriter record, totals;
     put_totals(totals, study.scenarios[scenario]);
     const std::int64_t start = static_cast<std::int64_t>(record_start_size + kept.pending.size() * journal_block_size);
-    std::int64_t counted = 0;
     std::int64_t position = file_.size() + static_cast<std::int64_t>(batch_.size() + record_head_size) + start;
     for (const JournalBlock& block : kept.pending) {
         kept.places[block.index] = {block.trials, position, false};
+        kept.counted += block.trials;
         position += kept.layout.size(block);
     }
-    for (const auto& [index, place] : kept.places) counted += place.trials;
     put_record_head(record, {static_cast<std::uint32_t>(scenario),
                              start + static_cast<std::int64_t>(kept.pending_values.size() + totals.size())});
-    put_record_start(record, {study.trials, counted, kept.pending});
+    put_record_start(record, {study.trials, kept.counted, kept.pending});
     record.put_raw(kept.pending_values.bytes().data(), kept.pending_values.size());
     record.put_raw(totals.bytes().data(), totals.size());
     totals_size_ += totals.size();

@@ -49,7 +49,7 @@ public:
     /// Blocks that make a commit due; 0: half a second, and more where there is little to commit.
     void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
 
-    void take_back(std::size_t scenario, std::int64_t block) override { kept_[scenario].places.erase(block); }
+    void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
     bool due() const override;
     void prepare(const Study& study) override;
@@ -67,6 +67,7 @@ private:
         std::vector<ColumnType> types;
         std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that is grown
         std::map<std::int64_t, BlockPlace> places;
+        std::int64_t counted = 0;                                 ///< trials in them
         std::vector<BlockPlace> rows;                             ///< those that are there, in order
         std::vector<JournalBlock> pending;
         ByteWriter pending_values;

@@ -158,6 +158,7 @@ void Journal::load(Study& study) {
             if (!found[s].totals || already_in_file(kept_[s].places, found[s])) continue;
             ScenarioResults& results = study.scenarios[s];
             add_places(kept_[s].places, found[s]);
+            kept_[s].counted = found[s].counted;
             std::vector<std::int64_t> blocks;
             for (const auto& [index, place] : kept_[s].places) blocks.push_back(index);
             set_blocks(results, std::move(blocks), trials_up_to(kept_[s].places));

@@ -71,6 +71,7 @@ private:
         const auto size = static_cast<int>(block_rows(results, last));
         remove_totals(results, run_block(*problems_[s], study_.root_seed, results.blocks[last], size));
         if (options_.keeper != nullptr) options_.keeper->take_back(s, results.blocks[last]);
+        taken_back_.push_back({s, results.blocks[last]});
         set_blocks(results, {results.blocks.begin(), results.blocks.end() - 1}, options_.trials);
     }
 
@@ -93,6 +94,8 @@ private:
             }
         }
         if (trouble) std::rethrow_exception(trouble);
+        for (const Task& task : taken_back_)  // what was there is not lost to a stop
+            if (std::count(done_[task.scenario].begin(), done_[task.scenario].end(), task.block) == 0) run_task(task);
         if (options_.keeper == nullptr) return;
         options_.keeper->prepare(study_);
         options_.keeper->commit();
@@ -136,6 +139,7 @@ private:
     const RunOptions& options_;
     std::vector<std::unique_ptr<Problem>> problems_;
     std::vector<std::vector<std::int64_t>> done_;  ///< by scenario: blocks that are there
+    std::vector<Task> taken_back_;                 ///< partial blocks: computed again even where the run is stopped
     std::mutex mutex_;                             ///< of totals, done_, progress and the keeper
     Progress progress_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -172,7 +176,7 @@ std::vector<std::int64_t> missing_blocks(const ScenarioResults& results, std::in
         there = std::lower_bound(there, results.blocks.end(), block);
         if (there == results.blocks.end() || *there != block) missing.push_back(block);
     }
-    if (last_would_grow(results, trials) && results.blocks.back() % shard.count == shard.index)
+    if (last_would_grow(results, trials))
         missing.insert(std::lower_bound(missing.begin(), missing.end(), results.blocks.back()), results.blocks.back());
     return missing;
 }

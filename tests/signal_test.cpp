@@ -56,7 +56,7 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
     }
 }
 
-TEST_CASE("cli: the line that a stopped run prints ends with the results of one that nobody disturbed") {
+TEST_CASE("cli: the line that a stopped run prints ends with the results of one that nobody disturbed", "[long]") {
     const Workplace here;
     here.write("slow.ini", slow_world);
     const std::string arguments = "slow.ini --trials 2100 --quiet --commit-every 1 --threads 2 ";
@@ -69,7 +69,7 @@ TEST_CASE("cli: the line that a stopped run prints ends with the results of one 
     CHECK(here.shell("h5diff --exclude-path /run whole.h5 x.h5").exit_code == 0);
 }
 
-TEST_CASE("cli: a second signal ends the run at once, and nothing committed is lost") {
+TEST_CASE("cli: a second signal ends the run at once, and nothing committed is lost", "[long]") {
     const Workplace here;
     here.write("slow.ini", slow_world);
     const std::string arguments = "slow.ini --trials 2100 --quiet --commit-every 1 --threads 2 ";
@@ -94,7 +94,7 @@ TEST_CASE("cli: a SIGHUP that nohup ignores stays ignored") {
     CHECK_THAT(run.err, Contains("stopped by SIGTERM"));
 }
 
-TEST_CASE("cli: a signal while the results file is written does not leave half of it") {
+TEST_CASE("cli: a signal while the results file is written does not leave half of it", "[long]") {
     const Workplace here;
     here.write("small.ini", small_world);
     for (const char* delay : {"0", "0.05", "0.1", "0.2", "0.3"}) {
@@ -112,7 +112,7 @@ TEST_CASE("cli: a signal while the results file is written does not leave half o
     }
 }
 
-TEST_CASE("cli: run --until that was killed and goes on stops where it would have stopped") {
+TEST_CASE("cli: run --until that was killed and goes on stops where it would have stopped", "[long]") {
     const Workplace here;
     here.write("small.ini", small_world);
     const std::string arguments = "small.ini --until trace_P=0.5% --trials 2e6 --quiet --commit-every 1 --threads 2 ";

@@ -82,15 +82,15 @@ Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed)
 
 /// Runs what is missing of the shard's blocks of the first `options.trials` trials of every scenario; a partial last
 /// block is computed again. The same bits for any number of threads and any history. Returns early where `options.stop`
-/// says so: blocks under way are finished, the others are not there. Throws InputError where the study has been asked
+/// says so: blocks under way are finished, a partial one that was there is made whole, the others are not there. Throws InputError where the study has been asked
 /// for more trials already, and what the keeper throws.
 void run_study(Study& study, const RunOptions& options);
 
 /// Trials that the study has been asked for already, or that some scenario of it has: it cannot be asked for fewer.
 std::int64_t least_trials(const Study& study);
 
-/// The blocks of a shard that a scenario of the study lacks, of `trials` trials; a partial one that would be larger is
-/// among them.
+/// The blocks of a shard that a scenario of the study lacks, of `trials` trials; a partial one that is there and would be
+/// larger is among them, whosever it is.
 std::vector<std::int64_t> missing_blocks(const ScenarioResults& results, std::int64_t trials, const Shard& shard = {});
 
 /// Bytes of memory and of file that `trials` trials of the study take.
