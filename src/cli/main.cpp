@@ -97,7 +97,9 @@ int main(int argc, char** argv) {
     } catch (const InputError& error) {
         return complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
-        return complain(prefix + "out of memory. Ask for fewer trials; --dry-run says what they take.", 1);
+        return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
+                                                : "out of memory. The file holds more than fits."),
+                        1);
     } catch (const std::exception& error) {
         return complain(prefix + error.what(), 1);
     }

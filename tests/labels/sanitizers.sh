@@ -9,20 +9,15 @@ for tool in clang++ llvm-symbolizer; do
 done
 export FUZZ_JOBS=$(nproc)
 cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz --target credence credence_tests -j "$FUZZ_JOBS" | tail -n 3
-
-# The tests take one core for a while; the other builds the fuzz targets and runs them.
+cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 3
 (
-  cd build-fuzz
   export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
-  export LSAN_OPTIONS=suppressions=$PWD/../tests/labels/leaks.supp:print_suppressions=0
-  tests/credence_tests '~[long]' >tests.log 2>&1 || { tail -n 100 tests.log; exit 1; }
-  tail -n 3 tests.log
-) &
-tests=$!
-cmake --build --preset fuzz | tail -n 1
+  export LSAN_OPTIONS=suppressions=$PWD/tests/labels/leaks.supp:print_suppressions=0
+  log=build-fuzz/tests.log
+  ctest --test-dir build-fuzz -L core -j "$FUZZ_JOBS" --output-on-failure >$log 2>&1 || { tail -n 100 $log; exit 1; }
+  grep 'tests passed' $log
+)
 build-fuzz/tests/fuzz/fuzz_checksums tests/fuzz/seeds/*/*.h5 | { ! grep CHANGED; }
 for target in scenario noise judge results journal; do
   bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-4}"
 done
-wait $tests
