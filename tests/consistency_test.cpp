@@ -56,7 +56,7 @@ TEST_CASE("consistency: the same filter is undecided with few trials, and the tr
     CHECK(c.trials_to_decide < 20000);
 }
 
-TEST_CASE("consistency: few trials do not make a consistent filter look inconsistent") {
+TEST_CASE("consistency: few trials do not make a consistent filter look inconsistent", "[long]") {
     // 100 studies of N trials of the matched filter. The corrected level is 5 %: more than 12 of 100 has probability 4e-4.
     for (const std::int64_t trials : {20, 50, 100}) {
         int wrong = 0;
