@@ -30,7 +30,8 @@ void add_block(const Row& row, const std::string& name, const Unit& unit, const 
 void add_cells(const Row& row, const Effort& effort) {
     const auto cells = equiprobable_cells(row.problem.view().state_size);
     std::vector<double> nees;
-    for (const std::uint16_t cell : run_block(row.problem, 1, usual_block, row.trials).arms.front().cells)
+    const Block block = run_block(row.problem, 1, usual_block, row.trials);
+    for (const std::uint16_t cell : block.arms.front().cells)
         nees.push_back(cell == no_cell ? 0 : cells->upper()[cell] * 0.999);
     add(group_of(row) + "/cells", effort, [cells, nees](benchmark::State& state) {
         std::vector<std::uint16_t> found(nees.size());
