@@ -2,32 +2,14 @@
 
 #include <credence/error.hpp>
 
+#include "byte_file.hpp"
+
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 
 namespace credence {
-
-namespace {
-
-/// 0, or the error.
-int write_all(int descriptor, const char* bytes, std::size_t size, std::int64_t offset) {
-    constexpr std::size_t at_once = std::size_t{1} << 30;
-    while (size > 0) {
-        const ssize_t written = pwrite(descriptor, bytes, std::min(size, at_once), static_cast<off_t>(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return errno;
-        if (written == 0) return EIO;
-        bytes += written;
-        offset += written;
-        size -= static_cast<std::size_t>(written);
-    }
-    return 0;
-}
-
-}  // namespace
 
 JournalFile::JournalFile(const std::string& path) : path_(path), file_(open_locked(path, path)) {
     struct stat status {};
@@ -52,7 +34,9 @@ void JournalFile::read(std::int64_t position, void* bytes, std::size_t size) con
 
 void JournalFile::append(const std::string& bytes) {
     const FileSizeSignalIgnored ignored;
-    int error = write_all(file_.get(), bytes.data(), bytes.size(), size_);
+    ByteFile file(file_.get());
+    file.write(static_cast<std::uint64_t>(size_), bytes.data(), bytes.size());
+    int error = file.error();
     if (error == 0 && fdatasync(file_.get()) != 0) error = errno;
     if (error == 0) {
         size_ += static_cast<std::int64_t>(bytes.size());

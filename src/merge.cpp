@@ -120,7 +120,7 @@ private:
     void copy_details(const ScenarioResults& from, std::int64_t block) {
         const std::int64_t row = first_row(results_, block).value(), row_from = first_row(from, block).value();
         if (row >= results_.detailed() || row_from >= from.detailed()) return;
-        const std::int64_t rows = trials_in_block(least_rows(from), block);
+        const std::int64_t rows = block_rows(from, static_cast<std::size_t>(row_from / block_size));
         const auto copy = [&](const std::vector<double>& source, std::vector<double>& target, std::int64_t width) {
             std::copy_n(source.begin() + row_from * width, rows * width, target.begin() + row * width);
         };
@@ -128,11 +128,6 @@ private:
             copy(from.arms[a].nees, results_.arms[a].nees, from.steps());
             copy(from.arms[a].errors, results_.arms[a].errors, std::int64_t{from.steps()} * from.state_size());
         }
-    }
-
-    /// Trials of a study that has just the blocks of these results.
-    static std::int64_t least_rows(const ScenarioResults& from) {
-        return from.blocks.back() * block_size + block_rows(from, from.blocks.size() - 1);
     }
 
     ScenarioResults results_;

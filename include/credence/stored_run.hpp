@@ -33,8 +33,6 @@ public:
     /// What has been computed so far.
     Study& study() { return study_; }
     const Study& study() const { return study_; }
-    /// Whether an interrupted run left a journal.
-    bool interrupted() const { return journal_ != nullptr; }
 
     /// Begins or goes on with the journal, in which `commit_every` blocks make a commit (0: about half a second), and
     /// returns it. Throws InputError and Failure.
