@@ -60,7 +60,8 @@ void store_columns(const std::vector<Column>& declared, const std::vector<double
 /// What a unit fills, eight trials next to each other.
 struct Octets {
     std::size_t trials, padded, steps, figures, blocks, components, lags;
-    std::vector<double> columns, sums, square_sums, run_square_sums, covered, nees;
+    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
+    std::vector<std::int32_t> covered;
     std::vector<double> errors, product_sums, product_square_sums, product_counts;
 
     Octets(const ProblemView& problem, std::size_t count, bool detail)
@@ -75,8 +76,8 @@ struct Octets {
           sums(figures * steps * octet),
           square_sums(sums.size()),
           run_square_sums(figures * octet),
-          covered(blocks * steps * coverage_level_count * octet),
-          nees(steps * padded) {
+          nees(steps * padded),
+          covered(blocks * steps * coverage_level_count) {
         if (!detail) return;
         errors.resize(components * steps * padded);
         for (auto* products : {&product_sums, &product_square_sums, &product_counts}) products->resize(lags * octet);
@@ -143,7 +144,7 @@ ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t ro
     arm.sums = added_up(octets.sums);
     arm.square_sums = added_up(octets.square_sums);
     arm.run_square_sums = added_up(octets.run_square_sums);
-    for (const double count : added_up(octets.covered)) arm.covered.push_back(static_cast<std::int32_t>(count));
+    arm.covered = std::move(octets.covered);
     store_columns(trial_columns(problem.scenario()), octets.columns, octets.trials, arm);
     if (shape_counted(view.poses - 1)) store_cells(octets, *equiprobable_cells(view.state_size), arm);
     if (detailed(view, index)) store_details(octets, arm);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <credence/compare.hpp>
+#include <credence/error.hpp>
+#include <credence/text.hpp>
 
 #include "compare_choice.hpp"
 
@@ -33,12 +35,21 @@ void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials&
     }
 }
 
+/// Two shards of one study, say, share the draws of none of their trials.
+void require_common_trials(const ChosenPair& chosen, const CommonTrials& common) {
+    if (common.count() > 0 || chosen.a.results.trials == 0 || chosen.b.results.trials == 0) return;
+    throw InputError(chosen.file_a.path + " and " + chosen.file_b.path + ": have no trial of " +
+                     printable(chosen.a.results.scenario.name) +
+                     " in common. Merge the shards of each study, or compare the same shard of both.");
+}
+
 ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
+    const CommonTrials common(a, b);
+    require_common_trials(chosen, common);
     ComparedPair pair;
     pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
     pair.title = a.scenario.title;
-    const CommonTrials common(a, b);
     pair.trials = common.count();
     pair.a = side_of(chosen.a, chosen.file_a, common.of_a(column_values(a, chosen.a.arm, column_status)));
     pair.b = side_of(chosen.b, chosen.file_b, common.of_b(column_values(b, chosen.b.arm, column_status)));

@@ -80,20 +80,16 @@ void fold_figure(const Unfolded<Real>& unfolded, int f, int start, int steps, co
 
 /// Counts the trials whose NEES of block b lies below each coverage bound.
 template <class Real>
-void fold_coverage(const Unfolded<Real>& unfolded, int b, int start, int steps, const double* bounds,
-                   const Batch& batch) {
-    constexpr int stride = Unfolded<Real>::packs_per_octet;
+void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const double* bounds, const Batch& batch) {
     for (int cell = b * steps; cell < (b + 1) * steps; ++cell) {
-        double* to = batch.covered + cell * coverage_level_count * octet + start * lanes<Real>;
-        Real count[coverage_level_count];
-        for (int level = 0; level < coverage_level_count; ++level) count[level] = load<Real>(to + level * octet);
-        for (int pack = start; pack < unfolded.packs; pack += stride) {
+        int count[coverage_level_count] = {};
+        for (int pack = 0; pack < unfolded.packs; ++pack) {
             const Real value = unfolded.figures[pack * unfolded.cells + cell];
             for (int level = 0; level < coverage_level_count; ++level)
-                count[level] = count[level] + select(both(unfolded.counts[pack], value < Real(bounds[level])), Real(1),
-                                                     Real(0));
+                count[level] += lane_count(both(unfolded.counts[pack], value < Real(bounds[level])));
         }
-        for (int level = 0; level < coverage_level_count; ++level) store(count[level], to + level * octet);
+        std::int32_t* to = batch.covered + cell * coverage_level_count;
+        for (int level = 0; level < coverage_level_count; ++level) to[level] += count[level];
     }
 }
 
@@ -101,11 +97,10 @@ void fold_coverage(const Unfolded<Real>& unfolded, int b, int start, int steps, 
 template <class Real>
 void fold(Unfolded<Real>& unfolded, const ProblemView& problem, const Batch& batch) {
     const int steps = problem.poses - 1;
-    for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start) {
+    for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start)
         for (int f = 0; f < problem.figure_count; ++f) fold_figure(unfolded, f, start, steps, batch);
-        for (int b = 0; b < problem.block_count; ++b)
-            fold_coverage(unfolded, b, start, steps, problem.coverage_bounds + b * coverage_level_count, batch);
-    }
+    for (int b = 0; b < problem.block_count; ++b)
+        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
     unfolded.packs = 0;
 }
 

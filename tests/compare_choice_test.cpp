@@ -196,10 +196,13 @@ TEST_CASE("compare: the program compares, in every format") {
 
 TEST_CASE("compare: the program refuses bad input in one line with exit code 2, and writes nothing") {
     const Workplace here;
-    const std::string run = "run " + seed_scenario("ekf-circle-constant") + " --trials 20 --threads 1 --quiet ";
+    const std::string study = "run " + seed_scenario("ekf-circle-constant") + " --threads 1 --quiet ";
+    const std::string run = study + "--trials 20 ";
     REQUIRE(here.credence(run + "-o one.h5").exit_code == 0);
     REQUIRE(here.credence(run + "--seed 2 -o seed.h5").exit_code == 0);
     REQUIRE(here.credence(run + "--set noise.walk=0.31 -o walk.h5").exit_code == 0);
+    for (const char* shard : {"0/2 -o even.h5", "1/2 -o odd.h5"})
+        REQUIRE(here.credence(study + "--set scenario.poses=2 --trials 300 --shard " + shard).exit_code == 0);
     const std::vector<std::string> before = here.names();
     const auto refused_with = [&](const std::string& arguments, const std::string& what) {
         const Outcome outcome = here.credence("compare " + arguments);
@@ -219,6 +222,7 @@ TEST_CASE("compare: the program refuses bad input in one line with exit code 2, 
     refused_with("one.h5 --arms greedy.kf,fixed.kf -o t.txt", "no scenario of one.h5 has greedy.kf");
     refused_with("one.h5 seed.h5", "its root seed is 2, not 1");
     refused_with("one.h5 walk.h5", "noise.walk is 0.31 in walk.h5 and 0.3 in one.h5");
+    refused_with("even.h5 odd.h5", "odd.h5 and even.h5: have no trial of ekf-circle-constant in common");
     refused_with("one.h5 --arm x", "Did you mean --arms?");
     CHECK(here.names() == before);
 }

@@ -172,6 +172,20 @@ unsigned lane_bits(LaneMask<W> mask) {
     }
 }
 
+/// In how many lanes a mask is true.
+inline int lane_count(bool mask) { return mask; }
+template <int W>
+int lane_count(LaneMask<W> mask) {
+    const unsigned bits = lane_bits(mask);
+#if defined(__POPCNT__)
+    return __builtin_popcount(bits);
+#else
+    int count = 0;  // the builtin would be a call into a library
+    for (int i = 0; i < W; ++i) count += static_cast<int>(bits >> i & 1);
+    return count;
+#endif
+}
+
 template <int W>
 bool any(LaneMask<W> mask) { return lane_bits(mask) != 0; }
 

@@ -23,7 +23,7 @@ struct Batch {
     double* sums = nullptr;             ///< [figure_count, K - 1, 8], added to
     double* square_sums = nullptr;      ///< [figure_count, K - 1, 8], added to
     double* run_square_sums = nullptr;  ///< [figure_count, 8], added to: of each trial's sum over its steps
-    double* covered = nullptr;          ///< [blocks, K - 1, levels, 8], added to: trials below the coverage bounds
+    std::int32_t* covered = nullptr;    ///< [blocks, K - 1, levels], added to: trials below the coverage bounds
     double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
     // Of detailed trials only; null for others.
     double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too

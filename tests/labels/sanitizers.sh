@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Label sanitizers: tests of everything that handles memory, and the fuzz targets, under clang's address and
 # undefined-behaviour sanitizers, warnings as errors. All tests but those marked [long]: `cmake --preset sanitizers`.
-# Of the fuzz targets: their checksums are HDF5's own, and what is kept passes.
+# The program gives the bits of g++'s. Of the fuzz targets: their checksums are HDF5's own, and what is kept passes.
 set -euo pipefail
 for tool in clang++ llvm-symbolizer; do
   command -v $tool >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
@@ -16,6 +16,13 @@ cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 3
   ctest --test-dir build-fuzz -L core -j "$FUZZ_JOBS" --output-on-failure >$log 2>&1 || { tail -n 100 $log; exit 1; }
   grep 'tests passed' $log
 )
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+for compiler in build build-fuzz; do
+  ASAN_OPTIONS=detect_leaks=0 "$compiler/credence" run experiments/seed/*.ini --trials 300 --quiet -o "$work/$compiler.h5"
+done
+h5diff --exclude-path /run "$work/build.h5" "$work/build-fuzz.h5"
+echo "g++ and clang: the same bits in 8 scenarios"
 build-fuzz/tests/fuzz/fuzz_checksums tests/fuzz/seeds/*/*.h5 | { ! grep CHANGED; }
 # What is kept must pass. New findings of a few seconds are shown, and are for a person to look at: chance fails no build.
 for target in scenario noise judge results journal; do
