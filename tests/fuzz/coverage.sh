@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which lines of a reader its seeds and kept inputs reach, in percent for each source file:
-#   bash tests/fuzz/coverage.sh scenario|noise|judge|results [--missed]      --missed: and every line that they do not
+#   bash tests/fuzz/coverage.sh scenario|noise|judge|results|journal [--missed]      --missed: and every line that they do not
 # Inputs on which HDF5 crashes end a batch of 50, whose lines are then not counted.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -16,7 +16,8 @@ declare -A readers=(
   [noise]="store_noise hdf5_read hdf5_handle"
   [judge]="judgement_record judgement_file judgement_blocks judgement_check judgement_step judgement_totals
     judgement_results hdf5_slab hdf5_read hdf5_handle"
-  [results]="store_read store_evidence store_sums study_hash exact_sum hdf5_read hdf5_handle"
+  [results]="store_read store_columns store_evidence store_sums study_hash exact_sum hdf5_dataset hdf5_read hdf5_handle"
+  [journal]="journal_load journal_record journal_totals journal_file bytes"
 )
 sources=()
 for name in ${readers[$target]}; do sources+=(src/"$name".[ch]pp); done
