@@ -9,16 +9,16 @@ files <- list(study = nc_open(given[1]), trace = nc_open(given[2]))
 facts <- read.delim(given[3], header = FALSE, quote = "", colClasses = "character",
                     col.names = c("file", "path", "quantity", "value"))
 
-# ncdf4 names variables without the leading slash; a variable that is a dimension's coordinate it keeps with the dimension.
-values <- function(file, path) ncvar_get(file, sub("^/", "", path))
 group <- function(path) sub("/[^/]*$", "", path)
 
-attribute <- function(file, path, name) {
-  path <- sub("^/", "", path)
-  if (lengths(regmatches(path, gregexpr("/", path))) > 1) return(ncatt_get(file, path, name)$value)
-  number <- Find(function(g) g$fqgn == path, file$groups)$id  # a group's attribute: of "variable 0" in that group
-  ncdf4:::ncatt_get_inner(number, -1, name)$value
+quietly <- function(value) {  # ncdf4 prints a warning for each 64-bit integer
+  invisible(capture.output(found <- value))
+  found
 }
+
+# ncdf4 names variables and groups without the leading slash; coordinate variables it keeps with their dimensions.
+values <- function(file, path) ncvar_get(file, sub("^/", "", path))
+attribute <- function(file, path, name) quietly(ncatt_get(file, sub("^/", "", path), name)$value)
 
 quantity <- function(file, path, name) {
   if (startsWith(name, "attribute:")) return(attribute(file, path, sub("attribute:", "", name)))
