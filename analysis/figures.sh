@@ -14,4 +14,4 @@ for scenario in kf-{straight,circle}-{constant,ranged}; do
     "$credence" replay "$work/seed.h5" --scenario $scenario --arm $arm --trial 0 -o "$work/$scenario-$arm.h5"
   done
 done
-/usr/bin/env "${PYTHON:-python3}" analysis/figures.py "$work/seed.h5" "$work" "$output"
+"${PYTHON:-python3}" analysis/figures.py "$work/seed.h5" "$work" "$output"
