@@ -7,6 +7,7 @@
 Exit codes: 0 done, 2 bad input (nothing written).
 """
 import argparse
+import re
 import sys
 
 try:
@@ -56,7 +57,11 @@ def report_of(options):
 
 
 def study_figures(scenario, report):
-    """(stem, figure) of each picture of a scenario."""
+    """(stem, figure) of each picture of a scenario; none where an arm has no trial to show."""
+    for name, arm in scenario.items():
+        if arm.attrs["counted_trials"] == 0:
+            print(f"no pictures of {scenario.name[1:]}: every trial of {name} failed.", file=sys.stderr)
+            return
     for name, draw in STUDY_PICTURES.items():
         if (figure := draw(scenario)) is not None:
             yield f"{scenario.name[1:]}-{name}", figure
@@ -66,7 +71,8 @@ def study_figures(scenario, report):
 
 def trajectory_figures(scenario, ellipses):
     for name, arm in scenario.items():
-        stem = f"{scenario.name[1:]}-{name}-{results.text(arm, 'source').replace('root ', '').replace(', ', '-').replace(' ', '-')}"
+        source = re.sub("[^A-Za-z0-9]+", "-", results.text(arm, "source").removeprefix("root "))
+        stem = f"{scenario.name[1:]}-{name}-{source}"
         yield f"{stem}-path", trajectory.path(arm, ellipses)
         yield f"{stem}-judged", trajectory.judged(arm)
 

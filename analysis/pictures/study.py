@@ -181,7 +181,8 @@ def _draw_shape(axis, scenario, bins=32):
 
 def coverage(scenario):
     """Coverage of NEES by step and by block, and the shape of its distribution."""
-    figure, axes = style.new_figure(style.PAGE, 74, ncols=3)
+    blocks = len(results.figures(next(iter(scenario.values())), "nees"))
+    figure, axes = style.new_figure(style.PAGE, max(74, 34 + 3.6 * blocks), ncols=3)
     _draw_coverage(axes[0], scenario)
     _draw_blocks_coverage(axes[1], scenario)
     _draw_shape(axes[2], scenario)

@@ -79,7 +79,9 @@ def aside(index, count):
 
 
 def legend_above(axis, columns=2, **entries):
-    """A legend above the axes, where it hides nothing."""
+    """A legend above the axes, where it hides nothing; None where nothing has a label."""
+    if not entries.get("handles") and not axis.get_legend_handles_labels()[0]:
+        return None
     return axis.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=columns, borderaxespad=0.2,
                        columnspacing=1.2, **entries)
 

@@ -51,7 +51,7 @@ def _draw_overall(axis, parts):
         blocks = part["blocks"]
         mean = np.array([block["nees_ratio"] for block in blocks], dtype=float)
         bounds = np.array([block["ci95"] for block in blocks], dtype=float).T
-        axis.errorbar(mean, np.arange(len(blocks)) + style.aside(index, len(parts)), xerr=np.abs(bounds - mean),
+        axis.errorbar(mean, np.arange(len(blocks)) + style.aside(index, len(parts)), xerr=np.nan_to_num(np.abs(bounds - mean)),
                       fmt=style.ARM_MARKERS[index % 6], color=style.arm_style(index)["color"], elinewidth=1.1,
                       label=f"{part['arm']}: {part['verdict']}")
     axis.set_xlabel("NEES / dimension, all steps, with 95 % interval")
@@ -91,6 +91,7 @@ def blocks(scenario, report):
     _draw_overall(axes[0], parts)
     style.legend_above(axes[0], columns=1)
     reach = max([0.25] + [np.abs(np.log2(ratios[ratios > 0])).max(initial=0) for ratios in map(_ratios, parts)])
+    reach = min(reach, 2)  # a factor of 4 is the darkest
     for axis, part in zip(axes[1:], parts):
         image = _draw_steps(axis, part, reach)
     _colour_bar(figure, image, axes[1:], reach)
