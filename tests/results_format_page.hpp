@@ -134,6 +134,8 @@ inline void add_variable(const hdf5::Handle& dataset, const std::string& name, F
     }
     const std::string found = type_name(type.id(), name);
     facts.insert("variable " + general_name + " [" + dimension_names(dataset, name) + "]: " + found);
+    for (const char* needed : {"long_name", "units"})
+        if (hdf5::read_text(dataset, needed).empty()) facts.insert("variable " + name + " has no " + needed);
     add_attributes(dataset, "variable", found, facts);
 }
 

@@ -1,6 +1,8 @@
 """The modules of analysis/ against the program's own JSON, and every picture of plot.py looked through before it is saved.
 
     analysis_test.py CREDENCE STUDY.h5 REPORT.json TRACE.h5 FOLDER [OCTAVE.tsv PICTURE.svg]
+
+FOLDER, where the pictures go, has kf-circle-constant-ARM.h5 of a trial for the figure of the README.
 """
 import json
 import math
@@ -14,6 +16,7 @@ ANALYSIS = pathlib.Path(__file__).resolve().parents[2] / "analysis"
 sys.path.insert(0, str(ANALYSIS))
 
 import credence_results as results  # noqa: E402
+import figures  # noqa: E402
 import plot  # noqa: E402
 from pictures import study, style  # noqa: E402
 
@@ -56,7 +59,7 @@ def check_module(study_file, report):
 
 # Picture: panels, and the curves, patches and collections that each must have at least.
 PANELS = {"consistency": (2, 2), "distributions": (2, 2), "paired": (3, 1), "coverage": (3, 2), "blocks": (4, 1),
-          "path": (1, 6), "judged": (6, 1)}
+          "path": (1, 6), "judged": (6, 1), "figure": (5, 0)}
 seen = {}
 
 
@@ -70,7 +73,7 @@ def look_through(figure, folder, stem, vector="pdf"):
     for axis in figure.axes:
         marks = len(axis.lines) + len(axis.collections) + len(axis.patches)
         assert marks >= least, (stem, marks)
-        assert axis.get_xlabel() or axis.get_shared_x_axes().get_siblings(axis) != [axis], stem
+        assert axis.get_xlabel() or not axis.axison or axis.get_shared_x_axes().get_siblings(axis) != [axis], stem
     beyond = hidden_labels(figure)
     for text in figure.findobj(style.plt.Text):
         if text.get_visible() and text.get_text().strip() and text not in beyond:
@@ -97,6 +100,9 @@ def hidden_labels(figure):
 def check_pictures(credence, study_file, trace_file, folder):
     assert plot.main([study_file, "-o", folder, "--scenario", "kf-circle-constant", "--credence", credence]) == 0
     assert plot.main([trace_file, "-o", folder, "--vector", "svg"]) == 0
+    with results.open_file(study_file) as file:
+        scenario = file["kf-circle-constant"]
+        look_through(figures.draw(3, scenario, figures.open_traces(pathlib.Path(folder), "kf-circle-constant")), folder, "of-figure")
     assert {stem.rsplit("-", 1)[1] for stem in seen} == set(PANELS)
     for paths in seen.values():
         vector, picture = (path.read_bytes() for path in paths)

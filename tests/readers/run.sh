@@ -14,6 +14,11 @@ has() { command -v "$1" >/dev/null || { echo "SKIPPED: $1 is not installed"; ret
 "$credence" replay "$work/study.h5" --scenario ekf-circle-ranged --arm greedy.ekf --trial 17 --format json \
   -o "$work/trace.h5" >"$work/replay.json"
 /usr/bin/python3 $readers/expected.py "$work/report.json" "$work/replay.json" "$work/expected.tsv"
+mkdir "$work/pictures"
+for arm in fixed.kf greedy.kf; do
+  "$credence" replay "$work/study.h5" --scenario kf-circle-constant --arm $arm --trial 0 \
+    -o "$work/pictures/kf-circle-constant-$arm.h5" >/dev/null
+done
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
