@@ -62,7 +62,7 @@ def kind(file):
 
 
 def scenarios(file):
-    """(name, group) of each scenario, in the order of the study (h5py keeps that of file["/"], not that of the file)."""
+    """(name, group) of each scenario, in the order of the study, which h5py keeps for file["/"] only."""
     return [(name, group) for name, group in file["/"].items() if name != "run"]
 
 
@@ -88,7 +88,7 @@ def published(scenario_group, column_name):
 
 
 def column(arm, name):
-    """A number for each trial as double; NaN where the variable has its fill value: failed trials, and no status_pose."""
+    """A number for each trial as double; NaN where the variable has its fill value, as for failed trials."""
     values = arm[name][:].astype(float)
     if "_FillValue" in arm[name].attrs:
         values[values == arm[name].attrs["_FillValue"][0]] = np.nan
@@ -126,8 +126,8 @@ def _means(totals, square_totals, trials, dimension, level):
 
 
 def per_step(arm, figure, level=0.95):
-    """The mean over the counted trials of a figure at each step, with Student's interval (NaN for integer figures, whose
-    squares are not kept)."""
+    """The mean over the counted trials of a figure at each step, with Student's interval (NaN for integer figures,
+    whose squares are not kept)."""
     totals, squares = total(arm, f"{figure}_total"), f"{figure}_square_total"
     square_totals = total(arm, squares) if squares in arm else np.full_like(totals, np.nan)
     dimension = int(arm[f"{figure}_total"].attrs.get("dimension", 1))
@@ -135,10 +135,10 @@ def per_step(arm, figure, level=0.95):
 
 
 def over_steps(arm, figure, level=0.95):
-    """The mean over trials and steps, its interval from one number a trial, because the steps of a trial are correlated."""
-    totals, steps = total(arm, f"{figure}_total"), arm["step"].size
-    dimension = int(arm[f"{figure}_total"].attrs.get("dimension", 1))
-    means = _means(totals.sum(), total(arm, f"{figure}_run_square_total"), int(arm.attrs["counted_trials"]), dimension, level)
+    """The mean over trials and steps; its interval takes one number a trial, because steps are correlated."""
+    totals, squares = total(arm, f"{figure}_total"), total(arm, f"{figure}_run_square_total")
+    steps, dimension = arm["step"].size, int(arm[f"{figure}_total"].attrs.get("dimension", 1))
+    means = _means(totals.sum(), squares, int(arm.attrs["counted_trials"]), dimension, level)
     return Means(*(value / steps for value in means[:4]), dimension)
 
 
@@ -148,7 +148,8 @@ def degrees(arm, figure):
     if "dimension" in attributes:
         return np.full(arm["step"].size, trials * int(attributes["dimension"]), dtype=float)
     rows = text(arm[f"{figure}_total"], "rows")
-    return (total(arm, f"{rows}_total") if rows else 0) + np.full(arm["step"].size, float(attributes["more_rows"]) * trials)
+    more_rows = np.full(arm["step"].size, float(attributes["more_rows"]) * trials)
+    return more_rows + (total(arm, f"{rows}_total") if rows else 0)
 
 
 def chi_square_band(degrees_of_freedom, level=0.95):

@@ -20,7 +20,8 @@ DISTRIBUTIONS = (("trace_P", "trace(P) at the last pose"), ("unseen", "features 
 
 def open_traces(folder, scenario):
     """{arm: its group} of the trajectory files of a scenario, fixed path first."""
-    files = [results.open_file(folder / f"{scenario}-{arm}.h5", (results.TRAJECTORIES,)) for arm in ("fixed.kf", "greedy.kf")]
+    files = [results.open_file(folder / f"{scenario}-{arm}.h5", (results.TRAJECTORIES,))
+             for arm in ("fixed.kf", "greedy.kf")]
     return {arm: group for file in files for _, arm, group in results.arms(file)}
 
 
@@ -42,7 +43,7 @@ def grouped(traces):
     taken = []
     for arm, group in traces.items():
         for names, other in taken:
-            if np.array_equal(group["truth"][:], other["truth"][:]) and np.array_equal(group["mean"][:], other["mean"][:]):
+            if all(np.array_equal(group[name][:], other[name][:]) for name in ("truth", "mean")):
                 names.append(arm)
                 break
         else:
@@ -83,7 +84,8 @@ def draw(number, scenario, traces):
 def main(study_file, traces, output):
     with results.open_file(study_file, (results.STUDY,)) as file:
         for number, name in enumerate(FIGURES, 1):
-            style.save_png(draw(number, file[name], open_traces(pathlib.Path(traces), name)), output, f"figure-{number}", 160, colours=128)
+            figure = draw(number, file[name], open_traces(pathlib.Path(traces), name))
+            style.save_png(figure, output, f"figure-{number}", dots_per_inch=160, colours=128)
 
 
 if __name__ == "__main__":

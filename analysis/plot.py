@@ -87,7 +87,8 @@ def main(arguments):
                 raise ValueError(f"{options.file} has no trials (an empty part of a study). Merge the parts first.")
             report = report_of(options) if is_study else None
             for scenario in scenarios:
-                figures = study_figures(scenario, report) if is_study else trajectory_figures(scenario, options.ellipses)
+                figures = (study_figures(scenario, report) if is_study
+                           else trajectory_figures(scenario, options.ellipses))
                 for stem, figure in figures:
                     for path in style.save(figure, options.output, stem, options.vector):
                         print(path)

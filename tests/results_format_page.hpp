@@ -107,7 +107,8 @@ inline std::string dimension_names(const hdf5::Handle& dataset, const std::strin
 }
 
 /// What a file says of the attributes of an object.
-inline void add_attributes(const hdf5::Handle& object, const std::string& kind, const std::string& own_type, Facts& facts) {
+inline void add_attributes(const hdf5::Handle& object, const std::string& kind, const std::string& own_type,
+                           Facts& facts) {
     static const std::set<std::string> of_hdf5{"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"};
     static const std::set<std::string> of_figures{"figure", "role", "part_of", "dimension", "rows", "more_rows"};
     for (const std::string& name : hdf5::attribute_names(object)) {

@@ -47,7 +47,9 @@ TEST_CASE("results format: the documentation and the files say the same of every
                 of_trajectories = documented(part_of_page(page, "## Trajectories", "## Reading"));
     CHECK(common.size() + of_results.size() + of_trajectories.size() > 100);  // the tables were found
     // A trajectory's header and scenario are as in results, and are documented there.
-    const auto shared = [](const std::string& fact) { return fact.starts_with("root ") || fact.starts_with("scenario "); };
+    const auto shared = [](const std::string& fact) {
+        return fact.starts_with("root ") || fact.starts_with("scenario ");
+    };
     Facts headers;
     std::copy_if(of_results.begin(), of_results.end(), std::inserter(headers, headers.end()), shared);
 

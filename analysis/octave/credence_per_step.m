@@ -1,7 +1,7 @@
 function [step, average, low, high] = credence_per_step(file, arm, figure_name)
 % [STEP, AVERAGE, LOW, HIGH] = CREDENCE_PER_STEP(FILE, ARM, NAME): the mean over the counted trials of a figure such as
-% 'nees' at each step, with its two-sided 95 % interval (Student's). A total is exact in its parts: the first is all of it
-% but what rounding left. Dimensions come in reverse order, the part first.
+% 'nees' at each step, with its two-sided 95 % interval (Student's). A total is exact in its parts: the first is all of
+% it but what rounding left. Dimensions come in reverse order, the part first.
   trials = double(ncreadatt(file, arm, 'counted_trials'));
   step = double(ncread(file, [arm 'step']));
   totals = ncread(file, [arm figure_name '_total']);

@@ -1,6 +1,6 @@
 function plot_study(file, scenario, picture)
-% PLOT_STUDY(FILE, SCENARIO, PICTURE): NEES per dimension at each step, with the 95 % band of a consistent filter, and the
-% distribution of trace(P), for every arm of a scenario; PICTURE is an SVG file.
+% PLOT_STUDY(FILE, SCENARIO, PICTURE): NEES per dimension at each step, with the 95 % band of a consistent filter, and
+% the distribution of trace(P), for every arm of a scenario; PICTURE is an SVG file.
 %
 %   pkg load netcdf                                 % Octave only
 %   graphics_toolkit('gnuplot')                     % Octave without a screen

@@ -20,12 +20,12 @@ def title(figure, scenario, what=""):
 
 
 def _per_step(axis, scenario, figure, label):
-    """A ratio that is 1 for a consistent filter, with its interval (shade in the arm's colour) and its classical band."""
+    """A ratio that is 1 for a consistent filter, with its interval (shade of the arm's colour) and classical band."""
     for index, (arm, group) in enumerate(scenario.items()):
         degrees = results.degrees(group, figure)
         measured, line = degrees > 0, style.arm_style(index)
         step, means = group["step"][:][measured], results.per_step(group, figure)
-        scale = int(group.attrs["counted_trials"]) / degrees[measured]  # from a mean over trials to one over the degrees
+        scale = int(group.attrs["counted_trials"]) / degrees[measured]  # from a mean over trials to one over degrees
         axis.fill_between(step, *results.chi_square_band(degrees[measured]), color=style.BAND, linewidth=0, zorder=0,
                           label=None if index else "95 % band of a consistent filter")
         axis.fill_between(step, means.low[measured] * scale, means.high[measured] * scale, color=line["color"],

@@ -1,5 +1,5 @@
-"""What all pictures share: print sizes, colours that colour-blind readers tell apart, units, and files that come out the
-same each time."""
+"""What all pictures share: print sizes, colours that colour-blind readers tell apart, units, and files that come out
+the same each time."""
 import pathlib
 
 import matplotlib

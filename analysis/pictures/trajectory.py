@@ -43,7 +43,8 @@ def _ellipses(axis, centres, covariances, scale, colour, **drawn):
     widths = 2 * scale * np.sqrt(np.maximum(values, 0))
     angles = np.degrees(np.arctan2(vectors[:, 1, 1], vectors[:, 0, 1]))
     axis.add_collection(EllipseCollection(widths[:, 1], widths[:, 0], angles, units="xy", offsets=centres[there],
-                                          offset_transform=axis.transData, facecolors="none", edgecolors=colour, **drawn))
+                                          offset_transform=axis.transData, facecolors="none", edgecolors=colour,
+                                          **drawn))
 
 
 def _block(covariance, first):
@@ -59,7 +60,8 @@ def _draw_features(axis, features, seen):
                   label=f"feature {feature}, drifting" if features.shape[1] <= len(FEATURE_COLOURS) else None)
         axis.plot(*features[missed, feature].T, "o", color=own, markersize=2.2, markerfacecolor="white",
                   markeredgewidth=0.6, zorder=2.5)
-    axis.plot([], [], "o", color=style.GREY, markersize=2.4, markerfacecolor="white", markeredgewidth=0.6, label="not seen")
+    axis.plot([], [], "o", color=style.GREY, markersize=2.4, markerfacecolor="white", markeredgewidth=0.6,
+              label="not seen")
 
 
 def draw_path(axis, arm, ellipse="95"):

@@ -45,14 +45,16 @@ def _called(part, block):
 def _draw_overall(axis, parts):
     """NEES/dim over all steps by block, with its 95 % interval, beside the margin."""
     margin = parts[0]["margin"]
-    axis.axvspan(1 - margin, 1 + margin, color=style.BAND, linewidth=0, label=f"within the margin of {100 * margin:g} %")
+    axis.axvspan(1 - margin, 1 + margin, color=style.BAND, linewidth=0,
+                 label=f"within the margin of {100 * margin:g} %")
     axis.axvline(1, color=style.GREY, linewidth=0.6)
     for index, part in enumerate(parts):
         blocks = part["blocks"]
         mean = np.array([block["nees_ratio"] for block in blocks], dtype=float)
         bounds = np.array([block["ci95"] for block in blocks], dtype=float).T
-        axis.errorbar(mean, np.arange(len(blocks)) + style.aside(index, len(parts)), xerr=np.nan_to_num(np.abs(bounds - mean)),
-                      fmt=style.ARM_MARKERS[index % 6], color=style.arm_style(index)["color"], elinewidth=1.1,
+        axis.errorbar(mean, np.arange(len(blocks)) + style.aside(index, len(parts)),
+                      xerr=np.nan_to_num(np.abs(bounds - mean)), fmt=style.ARM_MARKERS[index % 6],
+                      color=style.arm_style(index)["color"], elinewidth=1.1,
                       label=f"{part['arm']}: {part['verdict']}")
     axis.set_xlabel("NEES / dimension, all steps, with 95 % interval")
 
@@ -87,7 +89,8 @@ def blocks(scenario, report):
     parts = [report[scenario.name[1:], arm] for arm in scenario]
     names = [block["block"] for block in parts[0]["blocks"]]
     height = 36 + 8 * max(4, min(len(names), 24))
-    figure, axes = style.new_figure(style.PAGE, height, ncols=1 + len(parts), sharey=True, width_ratios=[1.6] + [1] * len(parts))
+    figure, axes = style.new_figure(style.PAGE, height, ncols=1 + len(parts), sharey=True,
+                                    width_ratios=[1.6] + [1] * len(parts))
     _draw_overall(axes[0], parts)
     style.legend_above(axes[0], columns=1)
     reach = max([0.25] + [np.abs(np.log2(ratios[ratios > 0])).max(initial=0) for ratios in map(_ratios, parts)])

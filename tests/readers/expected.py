@@ -2,7 +2,7 @@
 
     expected.py REPORT.json REPLAY.json EXPECTED.tsv
 
-A line is FILE (study or trace), PATH, QUANTITY, VALUE, parted by tabs. tests/readers/ has the readers, each with the same
+A line is FILE (study or trace), PATH, QUANTITY, VALUE, parted by tabs. The readers beside this know the same
 quantities:
   mean, median       of the variable's values that are not missing
   missing            number of values that are (the fill value)

@@ -22,7 +22,7 @@ done
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
-octave_run() { OMP_NUM_THREADS=1 octave-cli --quiet "$@" 2>"$work/octave.err" || { cat "$work/octave.err"; return 1; }; }
+octave_run() { octave-cli --quiet "$@" 2>"$work/octave.err" || { cat "$work/octave.err"; return 1; }; }
 with_octave() {
   octave_run $readers/readers.m "${files[@]}"
   octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/octave.svg" >"$work/octave.tsv"
