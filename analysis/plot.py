@@ -28,6 +28,8 @@ def parse_arguments(arguments):
     parser.add_argument("-o", "--output", metavar="DIR", default="pictures", help="folder for them (default: pictures)")
     parser.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
     parser.add_argument("--vector", choices=("pdf", "svg"), default="pdf", help="vector format (default: pdf)")
+    parser.add_argument("--width", type=int, choices=(style.COLUMN, style.PAGE), default=style.PAGE,
+                        help="millimetres: a page (default) or a column, for all pictures but -blocks and -judged")
     parser.add_argument("--ellipses", choices=tuple(trajectory.ELLIPSES), default="95",
                         help="ellipses of a trajectory: 95 %% (default) or 1-sigma")
     parser.add_argument("--credence", metavar="PATH", help="the program, which says the verdicts "
@@ -56,24 +58,24 @@ def report_of(options):
         return None
 
 
-def study_figures(scenario, report):
+def study_figures(scenario, report, width):
     """(stem, figure) of each picture of a scenario; none where an arm has no trial to show."""
     for name, arm in scenario.items():
         if arm.attrs["counted_trials"] == 0:
             print(f"no pictures of {scenario.name[1:]}: every trial of {name} failed.", file=sys.stderr)
             return
     for name, draw in STUDY_PICTURES.items():
-        if (figure := draw(scenario)) is not None:
+        if (figure := draw(scenario, width)) is not None:
             yield f"{scenario.name[1:]}-{name}", figure
     if report:
         yield f"{scenario.name[1:]}-blocks", verdicts.blocks(scenario, report)
 
 
-def trajectory_figures(scenario, ellipses):
+def trajectory_figures(scenario, ellipses, width):
     for name, arm in scenario.items():
         source = re.sub("[^A-Za-z0-9]+", "-", results.text(arm, "source").removeprefix("root "))
         stem = f"{scenario.name[1:]}-{name}-{source}"
-        yield f"{stem}-path", trajectory.path(arm, ellipses)
+        yield f"{stem}-path", trajectory.path(arm, ellipses, width)
         yield f"{stem}-judged", trajectory.judged(arm)
 
 
@@ -87,8 +89,8 @@ def main(arguments):
                 raise ValueError(f"{options.file} has no trials (an empty part of a study). Merge the parts first.")
             report = report_of(options) if is_study else None
             for scenario in scenarios:
-                figures = (study_figures(scenario, report) if is_study
-                           else trajectory_figures(scenario, options.ellipses))
+                figures = (study_figures(scenario, report, options.width) if is_study
+                           else trajectory_figures(scenario, options.ellipses, options.width))
                 for stem, figure in figures:
                     for path in style.save(figure, options.output, stem, options.vector):
                         print(path)

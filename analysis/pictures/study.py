@@ -16,7 +16,7 @@ def caption(scenario):
 
 
 def title(figure, scenario, what=""):
-    figure.suptitle(caption(scenario) + what, x=0.01, ha="left", fontsize=8)
+    style.headline(figure, caption(scenario) + what)
 
 
 def _per_step(axis, scenario, figure, label):
@@ -36,9 +36,9 @@ def _per_step(axis, scenario, figure, label):
     axis.set_ylabel(label)
 
 
-def consistency(scenario):
+def consistency(scenario, width=style.PAGE):
     """NEES and NIS per step with their bands."""
-    figure, (left, right) = style.new_figure(style.PAGE, 68, ncols=2)
+    figure, (left, right) = style.panels(2, 68, width)
     _per_step(left, scenario, "nees", "NEES / state dimension")
     _per_step(right, scenario, "nis", "NIS / measurement rows")
     arms, labels = left.get_legend_handles_labels()
@@ -80,9 +80,9 @@ def draw_distribution(axis, scenario, name, label, runs=None):
         style.logarithmic(axis.xaxis, lowest / 1.1, highest * 1.1)
 
 
-def distributions(scenario):
+def distributions(scenario, width=style.PAGE):
     """Distributions of trace(P) and unseen per arm, with the published single run marked."""
-    figure, (left, right) = style.new_figure(style.PAGE, 84, ncols=2)
+    figure, (left, right) = style.panels(2, 84, width)
     draw_distribution(left, scenario, "trace_P", "trace(P) at the last pose")
     draw_distribution(right, scenario, "unseen", "features unseen, summed over the poses")
     for axis in (left, right):
@@ -122,11 +122,11 @@ def _draw_difference(axis, scenario, name, label):
     axis.set(xlabel=label + style.unit_text(unit), ylabel="trials at or below [%]", ylim=(0, 100))
 
 
-def paired(scenario):
+def paired(scenario, width=style.PAGE):
     """Paired differences planned - fixed of trace(P), unseen and pose error; None where no arms pair."""
     if not pairs(scenario):
         return None
-    figure, axes = style.new_figure(style.PAGE, 74, ncols=3)
+    figure, axes = style.panels(3, 74, width)
     for axis, name, label in zip(axes, ("trace_P", "unseen", "pose_error"),
                                  ("difference of trace(P)", "difference of unseen", "difference of pose error")):
         _draw_difference(axis, scenario, name, label)
@@ -179,10 +179,10 @@ def _draw_shape(axis, scenario, bins=32):
     axis.set(xlabel="share of χ² below NEES\n(all steps)", ylabel="density", xlim=(0, 1), ylim=(0, None))
 
 
-def coverage(scenario):
+def coverage(scenario, width=style.PAGE):
     """Coverage of NEES by step and by block, and the shape of its distribution."""
     blocks = len(results.figures(next(iter(scenario.values())), "nees"))
-    figure, axes = style.new_figure(style.PAGE, max(74, 34 + 3.6 * blocks), ncols=3)
+    figure, axes = style.panels(3, max(74, 34 + 3.6 * blocks), width)
     _draw_coverage(axes[0], scenario)
     _draw_blocks_coverage(axes[1], scenario)
     _draw_shape(axes[2], scenario)

@@ -1,6 +1,7 @@
 """What all pictures share: print sizes, colours that colour-blind readers tell apart, units, and files that come out
 the same each time."""
 import pathlib
+import textwrap
 
 import matplotlib
 import numpy as np
@@ -28,6 +29,19 @@ plt.rcParams.update({
 def new_figure(width, height, **subplots):
     """A figure of millimetres, with its axes."""
     return plt.subplots(figsize=(width / 25.4, height / 25.4), **subplots)
+
+
+def panels(count, height, width):
+    """A figure with that many panels: side by side on a page, one below the other in a column."""
+    if width >= PAGE:
+        return new_figure(width, height, ncols=count)
+    return new_figure(width, 12 + 0.82 * height * count, nrows=count)
+
+
+def headline(figure, words):
+    """A line above the panels, or two where the figure is narrow."""
+    letters = int(figure.get_figwidth() * 25.4 / 1.5)  # a letter of 8 points takes about 1.5 mm
+    figure.suptitle(textwrap.fill(words, letters), x=0.01, ha="left", fontsize=8)
 
 
 def arm_style(index):

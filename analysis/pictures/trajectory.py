@@ -101,18 +101,18 @@ def extent(axis, arm, ellipse="95"):
     return (high[0] - low[0]) / (high[1] - low[1])
 
 
-def path(arm, ellipse="95"):
+def path(arm, ellipse="95", width=style.PAGE):
     """The document's own figure: one trial in the plane, in a figure as high as the path asks for."""
-    figure, axis = style.new_figure(style.PAGE, 100)
+    figure, axis = style.new_figure(width, 100)
     draw_path(axis, arm, ellipse)
-    ratio = extent(axis, arm, ellipse)
-    if ratio > 1.6:
-        figure.set_figheight((40 + 160 / ratio) / 25.4)
-        style.legend_above(axis, columns=4)
+    ratio, narrow = extent(axis, arm, ellipse), width < style.PAGE
+    if narrow or ratio > 1.6:
+        figure.set_figheight(((48 if narrow else 40) + (width - 15) / ratio) / 25.4)
+        style.legend_above(axis, columns=2 if narrow else 4)
     else:
         figure.set_figheight(min(220, 18 + 110 / ratio) / 25.4)
         style.legend_right(axis)
-    figure.suptitle(caption(arm), x=0.01, ha="left", fontsize=8)
+    style.headline(figure, caption(arm))
     return figure
 
 
@@ -139,7 +139,8 @@ def _draw_squared(axis, arm, name, degrees, label):
 
 
 def judged(arm):
-    """What a single trial says of its filter: errors of the robot, NEES, NIS, trace(P) and what was seen, by pose."""
+    """What a single trial says of its filter: errors of the robot, NEES, NIS, trace(P) and what was seen, by pose; as
+    wide as a page."""
     figure, axes = style.new_figure(style.PAGE, 100, nrows=2, ncols=3, sharex=True)
     first, first_feature = robot_axes(arm)
     for axis, component in zip(axes[0], range(first_feature)):
@@ -156,5 +157,5 @@ def judged(arm):
     axes[1, 2].set(ylabel="trace(P)" + style.unit_text(results.units(arm, "trace_P")), ylim=(0, None))
     for axis in axes[1]:
         style.step_axis(axis, arm["pose"][:], "pose")
-    figure.suptitle(f"{caption(arm)}; grey: where 95 % of a consistent filter's are", x=0.01, ha="left", fontsize=8)
+    style.headline(figure, f"{caption(arm)}; grey: where 95 % of a consistent filter's are")
     return figure

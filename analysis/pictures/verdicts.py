@@ -85,7 +85,7 @@ def _colour_bar(figure, image, axes, reach):
 
 
 def blocks(scenario, report):
-    """Verdicts by block of the state, over all steps and at each."""
+    """Verdicts by block of the state, over all steps and at each; as wide as a page."""
     parts = [report[scenario.name[1:], arm] for arm in scenario]
     names = [block["block"] for block in parts[0]["blocks"]]
     height = 36 + 8 * max(4, min(len(names), 24))

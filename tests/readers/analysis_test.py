@@ -64,13 +64,13 @@ PANELS = {"consistency": (2, 2), "distributions": (2, 2), "paired": (3, 1), "cov
 seen = {}
 
 
-def look_through(figure, folder, stem, vector="pdf"):
-    """Instead of style.save: every panel has marks and labels, and no text is cut off or smaller than print allows."""
+def look_through(figure, stem, width=style.PAGE):
+    """Every panel has marks and labels, and no text is cut off or smaller than print allows."""
     figure.canvas.draw()
     name, box = stem.rsplit("-", 1)[1], figure.bbox
     panels, least = PANELS[name]
     assert len(figure.axes) == panels, (stem, len(figure.axes))
-    assert figure.get_figwidth() * 25.4 <= 175.01, stem
+    assert figure.get_figwidth() * 25.4 <= width + 0.01, stem
     for axis in figure.axes:
         marks = len(axis.lines) + len(axis.collections) + len(axis.patches)
         assert marks >= least, (stem, marks)
@@ -82,6 +82,11 @@ def look_through(figure, folder, stem, vector="pdf"):
             inside = extent.x0 >= -1 and extent.y0 >= -1 and extent.x1 <= box.x1 + 1 and extent.y1 <= box.y1 + 1
             assert text.get_fontsize() >= 7, (stem, text.get_text(), text.get_fontsize())
             assert inside, (stem, text.get_text(), extent, box)
+
+
+def look_through_and_save(figure, folder, stem, vector="pdf"):
+    """Instead of style.save."""
+    look_through(figure, stem)
     seen[stem] = saved(figure, folder, stem, vector)
     return seen[stem]
 
@@ -103,7 +108,9 @@ def check_pictures(credence, study_file, trace_file, folder):
     assert plot.main([trace_file, "-o", folder, "--vector", "svg"]) == 0
     with results.open_file(study_file) as file:
         traces = figures.open_traces(pathlib.Path(folder), "kf-circle-constant")
-        look_through(figures.draw(3, file["kf-circle-constant"], traces), folder, "of-figure")
+        look_through_and_save(figures.draw(3, file["kf-circle-constant"], traces), folder, "of-figure")
+        for name, draw in plot.STUDY_PICTURES.items():
+            look_through(draw(file["ekf-circle-ranged"], style.COLUMN), f"column-{name}", style.COLUMN)
     assert {stem.rsplit("-", 1)[1] for stem in seen} == set(PANELS)
     for paths in seen.values():
         vector, picture = (path.read_bytes() for path in paths)
@@ -143,7 +150,7 @@ def check_octave(study_file, said, picture):
 
 
 saved = style.save
-style.save = look_through
+style.save = look_through_and_save
 
 
 def main(credence, study_file, report_file, trace_file, folder, *octave):
