@@ -2,8 +2,10 @@
 // Room 12: what the two files that the store writes have in common. docs/results-format.md describes them.
 
 #include <credence/error.hpp>
+#include <credence/record.hpp>
 #include <credence/scenario_keys.hpp>
 #include <credence/store.hpp>
+#include <credence/text.hpp>
 
 #include "durable_file.hpp"
 #include "hdf5_driver.hpp"
@@ -53,6 +55,23 @@ hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T f
     std::vector<T> values(count);
     for (T& value : values) value = first++;
     return hdf5::new_dimension(group, name, values, {long_name, "1"});
+}
+
+/// What `units` says of a state, whose components differ in units where one is a heading.
+inline std::string state_units(const Scenario& scenario) {
+    return scenario.process == Process::heading ? "see component_units" : scenario.length_unit;
+}
+
+/// A dimension along the components of the state, which says what they are and in which units.
+inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const Scenario& scenario,
+                                               const std::string& name, const std::string& long_name) {
+    const std::vector<std::string> names = component_names(scenario);
+    std::vector<std::string> units(names.size(), scenario.length_unit);
+    if (scenario.process == Process::heading) units.front() = "rad";
+    hdf5::Dimension dimension = numbered<std::int32_t>(group, name, 0, names.size(), long_name);
+    hdf5::write_text(dimension.scale, "component_names", joined(names, " "));
+    hdf5::write_text(dimension.scale, "component_units", joined(units, " "));
+    return dimension;
 }
 
 /// Builds an HDF5 file aside and puts it under its name. HDF5 itself only refuses for want of memory.

@@ -1,8 +1,6 @@
 #pragma once
 // Room 12: the group of one arm in a trajectory file: its dimensions, and variables that have a value for each pose.
 
-#include <credence/text.hpp>
-
 #include "store_format.hpp"
 
 namespace credence {
@@ -16,21 +14,13 @@ struct TrajectoryGroup {
           pose(number("pose", recorded.steps.size(), "pose")),
           feature(number("feature", recorded.scenario.features.positions.size(), "feature")),
           axis(number("axis", 2, "axis: 0 is x, 1 is y")),
-          component(number("component", component_count(), "component of the state")),
-          component_2(number("component_2", component_count(), "component of the state, along columns")) {
-        const bool heading = recorded.scenario.process == Process::heading;
-        length_unit = recorded.scenario.length_unit;
-        state_unit = heading ? "see component_units" : length_unit;
-        covariance_unit = heading ? "products of component_units" : length_unit + "^2";
-        std::vector<std::string> units(component_count(), length_unit);
-        if (heading) units.front() = "rad";
-        for (const hdf5::Dimension* dimension : {&component, &component_2}) {
-            hdf5::write_text(dimension->scale, "component_names", joined(component_names(recorded.scenario), " "));
-            hdf5::write_text(dimension->scale, "component_units", joined(units, " "));
-        }
-    }
-
-    std::size_t component_count() const { return static_cast<std::size_t>(state_size(trajectory.scenario)); }
+          component(new_component_dimension(group, recorded.scenario, "component", "component of the state")),
+          component_2(new_component_dimension(group, recorded.scenario, "component_2",
+                                              "component of the state, along columns")),
+          length_unit(recorded.scenario.length_unit),
+          state_unit(state_units(recorded.scenario)),
+          covariance_unit(recorded.scenario.process == Process::heading ? "products of component_units"
+                                                                        : length_unit + "^2") {}
 
     /// A dimension 0 ... count - 1.
     hdf5::Dimension number(const std::string& name, std::size_t count, const std::string& long_name) const {

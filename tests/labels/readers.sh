@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Label readers: the scripts of analysis/, on the languages that run them.
+# Label readers: the files of credence in other people's hands, and the scripts of analysis/, on the languages that run
+# them.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }
+bash tests/readers/run.sh build/credence
 bash tests/record_example.sh build/credence /usr/bin/python3 analysis/record/write_record.py
 records=$(mktemp -d)
 trap 'rm -rf "$records"' EXIT

@@ -1,0 +1,158 @@
+"""Reads the files that credence writes, with h5py; docs/results-format.md says what is in them.
+
+    import credence_results as results
+
+    with results.open_file("study.h5") as file:
+        for scenario, arm, group in results.arms(file):
+            trace = results.column(group, "trace_P")          # one number a trial
+            nees = results.per_step(group, "nees")            # one mean a step, with its 95 % interval
+            print(scenario, arm, trace.mean(), results.units(group, "trace_P"), nees.mean / nees.dimension)
+
+Needs h5py, NumPy and SciPy. The variables stay what they are: `group["trace_P"]` is the plain h5py dataset.
+"""
+import configparser
+import pathlib
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+from scipy import stats
+
+SCHEMA_VERSION = 2
+STUDY, TRAJECTORIES = "credence results", "credence trajectories"
+
+
+class Means(NamedTuple):
+    """Means over the counted trials, with standard errors and two-sided intervals; dimension is that of their block."""
+    mean: np.ndarray
+    standard_error: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    dimension: int
+
+
+def open_file(path, kinds=(STUDY, TRAJECTORIES)):
+    """The open file. Raises ValueError where it is none of credence's, or of another schema version."""
+    if not pathlib.Path(path).is_file():
+        raise ValueError(f"there is no file {path}. Give one that credence wrote.")
+    if not h5py.is_hdf5(path):
+        raise ValueError(f"{path} is no HDF5 file. Give one that credence wrote.")
+    file = h5py.File(path, "r")
+    kind, version = file.attrs.get("format"), file.attrs.get("schema_version")
+    kind = kind.decode() if isinstance(kind, bytes) else kind
+    if kind not in kinds:
+        file.close()
+        raise ValueError(f"{path} is none of {', '.join(kinds)} (format={kind}). Give one.")
+    if version != SCHEMA_VERSION:
+        file.close()
+        raise ValueError(f"{path} has schema version {version}, not {SCHEMA_VERSION}. "
+                         "Take the analysis folder of the credence that wrote it.")
+    return file
+
+
+def text(thing, name):
+    """A text attribute; empty text is one null character in HDF5."""
+    value = thing.attrs[name]
+    return (value.decode() if isinstance(value, bytes) else str(value)).rstrip("\0")
+
+
+def kind(file):
+    """STUDY or TRAJECTORIES."""
+    return text(file, "format")
+
+
+def scenarios(file):
+    """(name, group) of each scenario, in the order of the study, which h5py keeps for file["/"] only."""
+    return [(name, group) for name, group in file["/"].items() if name != "run"]
+
+
+def arms(file):
+    """(scenario, arm, group) of each arm."""
+    return [(scenario, arm, group) for scenario, groups in scenarios(file) for arm, group in groups.items()]
+
+
+def setting(scenario_group, section, key):
+    """A key of the scenario, as text."""
+    parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
+    parser.optionxform = str
+    parser.read_string(text(scenario_group, "scenario"))
+    return parser[section][key]
+
+
+def published(scenario_group, column_name):
+    """{arm: value} of the published single run, where the scenario names one."""
+    if column_name not in ("trace_P", "unseen", "pose_error"):
+        return {}
+    pairs = [pair.split() for pair in setting(scenario_group, "published", column_name).split(",") if pair.strip()]
+    return {arm: float(value) for arm, value in pairs}
+
+
+def column(arm, name):
+    """A number for each trial as double; NaN where the variable has its fill value, as for failed trials."""
+    values = arm[name][:].astype(float)
+    if "_FillValue" in arm[name].attrs:
+        values[values == arm[name].attrs["_FillValue"][0]] = np.nan
+    return values
+
+
+def units(arm, name):
+    """The units of a variable; `1` without a dimension."""
+    return text(arm[name], "units")
+
+
+def flags(variable):
+    """{value: meaning} of a variable that holds codes."""
+    return dict(zip(variable.attrs["flag_values"].tolist(), text(variable, "flag_meanings").split()))
+
+
+def figures(arm, role):
+    """Figures of that role, such as `nees`: those with totals over the trials, in the file's order."""
+    ends = "_run_square_total"
+    return [text(v, "figure") for name, v in arm.items() if name.endswith(ends) and text(v, "role") == role]
+
+
+def total(arm, name):
+    """A total as double: part 0 is all of it but what rounding left."""
+    variable = arm[name]
+    return variable[:].astype(float) if variable.dtype.kind == "i" else variable[..., 0]
+
+
+def _means(totals, square_totals, trials, dimension, level):
+    mean = totals / trials
+    spread = np.maximum(square_totals / trials - mean**2, 0)
+    error = np.sqrt(spread / (trials - 1)) if trials > 1 else np.full_like(mean, np.nan)
+    half = stats.t.ppf(0.5 + level / 2, max(trials - 1, 1)) * error
+    return Means(mean, error, mean - half, mean + half, dimension)
+
+
+def per_step(arm, figure, level=0.95):
+    """The mean over the counted trials of a figure at each step, with Student's interval (NaN for integer figures,
+    whose squares are not kept)."""
+    totals, squares = total(arm, f"{figure}_total"), f"{figure}_square_total"
+    square_totals = total(arm, squares) if squares in arm else np.full_like(totals, np.nan)
+    dimension = int(arm[f"{figure}_total"].attrs.get("dimension", 1))
+    return _means(totals, square_totals, int(arm.attrs["counted_trials"]), dimension, level)
+
+
+def over_steps(arm, figure, level=0.95):
+    """The mean over trials and steps; its interval takes one number a trial, because steps are correlated."""
+    totals, squares = total(arm, f"{figure}_total"), total(arm, f"{figure}_run_square_total")
+    steps, dimension = arm["step"].size, int(arm[f"{figure}_total"].attrs.get("dimension", 1))
+    means = _means(totals.sum(), squares, int(arm.attrs["counted_trials"]), dimension, level)
+    return Means(*(value / steps for value in means[:4]), dimension)
+
+
+def degrees(arm, figure):
+    """Degrees of freedom of the chi-square that the figure's total follows at each step, under a consistent filter."""
+    attributes, trials = arm[f"{figure}_total"].attrs, int(arm.attrs["counted_trials"])
+    if "dimension" in attributes:
+        return np.full(arm["step"].size, trials * int(attributes["dimension"]), dtype=float)
+    rows = text(arm[f"{figure}_total"], "rows")
+    more_rows = np.full(arm["step"].size, float(attributes["more_rows"]) * trials)
+    return more_rows + (total(arm, f"{rows}_total") if rows else 0)
+
+
+def chi_square_band(degrees_of_freedom, level=0.95):
+    """Bounds of a chi-square over its degrees of freedom: the classical band of ANEES and NIS/m."""
+    tails = [(1 - level) / 2, (1 + level) / 2]
+    return [stats.chi2.ppf(tail, degrees_of_freedom) / degrees_of_freedom for tail in tails]

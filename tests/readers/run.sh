@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# run.sh CREDENCE: a results file and a trajectory file read by everything that opens them, each against the JSON of the
+# program, and the modules and pictures of analysis/. Says SKIPPED for a reader that is not installed.
+set -euo pipefail
+credence=$1
+readers=tests/readers
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+has() { command -v "$1" >/dev/null || { echo "SKIPPED: $1 is not installed"; return 1; }; }
+
+"$credence" run experiments/seed/kf-circle-constant.ini experiments/seed/ekf-circle-ranged.ini --trials 600 --seed 1 \
+  --quiet -o "$work/study.h5"
+"$credence" report "$work/study.h5" --format json >"$work/report.json"
+"$credence" replay "$work/study.h5" --scenario ekf-circle-ranged --arm greedy.ekf --trial 17 --format json \
+  -o "$work/trace.h5" >"$work/replay.json"
+/usr/bin/python3 $readers/expected.py "$work/report.json" "$work/replay.json" "$work/expected.tsv"
+mkdir "$work/pictures"
+for arm in fixed.kf greedy.kf; do
+  "$credence" replay "$work/study.h5" --scenario kf-circle-constant --arm $arm --trial 0 \
+    -o "$work/pictures/kf-circle-constant-$arm.h5" >/dev/null
+done
+files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
+
+# Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
+octave_run() { octave-cli --quiet "$@" 2>"$work/octave.err" || { cat "$work/octave.err"; return 1; }; }
+with_octave() {
+  octave_run $readers/readers.m "${files[@]}"
+  octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/octave.svg" >"$work/octave.tsv"
+}
+others=()
+if has octave-cli && has gnuplot; then with_octave & others+=($!); fi
+if has Rscript; then Rscript $readers/readers.R "${files[@]}" & others+=($!); fi
+for reader in h5py netcdf4 xarray-netcdf4 xarray-h5netcdf h5dump ncdump; do
+  /usr/bin/python3 $readers/readers.py $reader "${files[@]}"
+done
+for other in "${others[@]}"; do wait "$other"; done
+
+if /usr/bin/python3 -c 'import h5py, scipy, matplotlib' 2>/dev/null; then
+  said=()
+  [ ! -f "$work/octave.tsv" ] || said=("$work/octave.tsv" "$work/octave.svg")
+  /usr/bin/python3 $readers/analysis_test.py "$credence" "$work/study.h5" "$work/report.json" "$work/trace.h5" \
+    "$work/pictures" "${said[@]}" | tail -n 1
+else
+  echo "SKIPPED: python3-matplotlib is not installed"
+fi
