@@ -33,6 +33,23 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
     check_says(look, opened(path, small(1000)).study());
 }
 
+TEST_CASE("watch: a journal that begins like the last one but has other records is read from its start") {
+    const TemporaryFolder folder;
+    const Asked asked = small(2000);
+    const std::string path = folder / "x.h5";
+    RunWatch watch(path);
+    run_and_die(path, asked, 2);  // a block a commit
+    CHECK(watch.look().trials_done() == 2 * block_size);
+    std::filesystem::remove(path + ".journal");
+    {
+        StoredRun run = opened(path, asked);
+        run_study(run.study(), {asked.trials, 1, {}, {}, after(4), &run.begin(asked.trials, 2)});  // two
+    }
+    const WatchLook look = watch.look();
+    CHECK(look.trials_done() == 4 * block_size);
+    check_says(look, opened(path, asked).study());
+}
+
 TEST_CASE("watch: a run is neither locked out nor kept waiting, and nothing is written") {
     const TemporaryFolder folder;
     const std::string path = folder / "x.h5", journal = path + ".journal";
