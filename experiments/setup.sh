@@ -25,7 +25,7 @@ install_missing() {
 }
 
 build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev"
-test_packages="catch2 librandom123-dev hdf5-tools"
+test_packages="catch2 librandom123-dev hdf5-tools mandoc"
 
 # build DIRECTORY TARGET [cmake arguments]: configures and builds, showing the log only where it fails.
 build() {

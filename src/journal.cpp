@@ -2,6 +2,7 @@
 
 #include <credence/error.hpp>
 
+#include "journal_scan.hpp"
 #include "journal_totals.hpp"
 
 #include <algorithm>
@@ -27,21 +28,10 @@ private:
 }  // namespace
 
 Journal::Journal(const std::string& path) : file_(path) {
-    const auto start_of = [&](std::size_t size) {
-        std::string bytes(std::min<std::size_t>(size, static_cast<std::size_t>(file_.size())), '\0');
-        file_.read(0, bytes.data(), bytes.size());
-        return bytes;
-    };
-    std::size_t size = header_prefix;
-    try {
-        size = header_size(start_of(header_prefix), path);
-        header_ = read_header(start_of(size), path, header_size_);
-    } catch (const BadBytes& bad) {
-        // A header is on the disk before the first record is written: one that is torn has nothing behind it.
-        if (file_.size() <= static_cast<std::int64_t>(size)) return;
-        throw InputError(path + ": is damaged: its header " + bad.what() +
-                         ". Remove it and run the study again, or give an undamaged copy.");
-    }
+    const std::optional<FoundHeader> found = find_header(file_);
+    if (!found) return;
+    header_ = found->header;
+    header_size_ = found->size;
     asked_ = header_->trials;
 }
 
@@ -117,7 +107,7 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     }
     put_record_head(record, {static_cast<std::uint32_t>(scenario),
                              start + static_cast<std::int64_t>(kept.pending_values.size() + totals.size())});
-    put_record_start(record, {study.trials, kept.counted, kept.pending});
+    put_record_start(record, {study.trials, kept.counted, kept.pending, shard_});
     record.put_raw(kept.pending_values.bytes().data(), kept.pending_values.size());
     record.put_raw(totals.bytes().data(), totals.size());
     totals_size_ += totals.size();

@@ -48,6 +48,8 @@ public:
 
     /// Blocks that make a commit due; 0: half a second, and more where there is little to commit.
     void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
+    /// What the run works on, for whoever follows it.
+    void works_on(const Shard& shard) { shard_ = shard; }
 
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
@@ -82,8 +84,8 @@ private:
 
     JournalFile file_;
     std::optional<JournalHeader> header_;
-    std::int64_t asked_ = 0, torn_ = 0, commit_every_ = 0;
-    std::size_t header_size_ = 0;
+    std::int64_t asked_ = 0, torn_ = 0, commit_every_ = 0, header_size_ = 0;
+    Shard shard_;
     std::vector<Kept> kept_;
 
     std::string batch_;              ///< records to be committed, their checksums still missing

@@ -4,21 +4,60 @@
 
 #include "byte_file.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <ctime>
 
 namespace credence {
 
-JournalFile::JournalFile(const std::string& path) : path_(path), file_(open_locked(path, path)) {
+namespace {
+
+struct stat status_of(const Descriptor& file, const std::string& path) {
     struct stat status {};
-    if (fstat(file_.get(), &status) != 0) fail_to_write(path_, errno);
+    if (fstat(file.get(), &status) != 0)
+        throw InputError(path + ": cannot be read (" + words_for(errno) + "). Check the disk.");
+    return status;
+}
+
+}  // namespace
+
+JournalBytes::JournalBytes(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {
+    const struct stat status = status_of(file_, path_);
     if (!S_ISREG(status.st_mode)) throw InputError(path_ + ": is not a regular file. Remove it, or give another name.");
     size_ = status.st_size;
 }
 
-void JournalFile::read(std::int64_t position, void* bytes, std::size_t size) const {
+std::optional<JournalBytes> JournalBytes::open(const std::string& path) {
+    // Not to wait for somebody at the other end of a pipe.
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+    if (file.get() < 0 && errno == ENOENT) return std::nullopt;
+    if (file.get() < 0)
+        throw InputError(path + ": cannot be read (" + words_for(errno) + "). Check its permissions.");
+    return JournalBytes(path, std::move(file));
+}
+
+double JournalBytes::seconds_since_change() const {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    const timespec changed = status_of(file_, path_).st_mtim;
+    const double seconds = static_cast<double>(now.tv_sec - changed.tv_sec) +
+                           1e-9 * static_cast<double>(now.tv_nsec - changed.tv_nsec);
+    return std::max(0.0, seconds);  // another machine's clock may be ahead
+}
+
+std::string JournalBytes::read(std::int64_t position, std::int64_t size) const {
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    read(position, bytes.data(), bytes.size());
+    return bytes;
+}
+
+JournalFile::JournalFile(const std::string& path) : JournalBytes(path, open_locked(path, path)) {}
+
+void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) const {
     auto to = static_cast<char*>(bytes);
     while (size > 0) {
         const ssize_t got = pread(file_.get(), to, size, static_cast<off_t>(position));

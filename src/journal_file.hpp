@@ -4,20 +4,40 @@
 #include "system_file.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace credence {
 
-/// A file that is only ever appended to, locked against a second writer while it is open.
-class JournalFile {
+/// A file to read, as long as it was when it was opened.
+class JournalBytes {
 public:
-    /// Opens it, or makes it. Throws InputError where another program holds it, Failure where the system refuses.
-    explicit JournalFile(const std::string& path);
+    /// Opens it for reading only and without a lock, so that whoever writes it neither waits nor fails; nothing where
+    /// there is none. Throws InputError where it cannot be read.
+    static std::optional<JournalBytes> open(const std::string& path);
 
     const std::string& path() const { return path_; }
     std::int64_t size() const { return size_; }
     /// Exactly `size` bytes from `position` on. Throws InputError where they are not there or cannot be read.
     void read(std::int64_t position, void* bytes, std::size_t size) const;
+    std::string read(std::int64_t position, std::int64_t size) const;
+    /// Seconds since something was written into it, by the system's clock; at least 0.
+    double seconds_since_change() const;
+
+protected:
+    JournalBytes(std::string path, Descriptor file);
+
+    std::string path_;
+    Descriptor file_;
+    std::int64_t size_ = 0;
+};
+
+/// A file that is only ever appended to, locked against a second writer while it is open.
+class JournalFile : public JournalBytes {
+public:
+    /// Opens it, or makes it. Throws InputError where another program holds it, Failure where the system refuses.
+    explicit JournalFile(const std::string& path);
+
     /// Appends and syncs: when it returns the bytes are on the disk. Throws Failure where the system refuses; then what
     /// had been there before is there still, and nothing else.
     void append(const std::string& bytes);
@@ -25,11 +45,6 @@ public:
     void cut(std::int64_t size);
     /// Removes it. Throws Failure.
     void remove();
-
-private:
-    std::string path_;
-    Descriptor file_;
-    std::int64_t size_ = 0;
 };
 
 }  // namespace credence

@@ -4,94 +4,29 @@
 
 #include <credence/error.hpp>
 
+#include "journal_scan.hpp"
 #include "journal_totals.hpp"
 
 #include <algorithm>
 
 namespace credence {
 
-namespace {
-
-[[noreturn]] void damaged(const std::string& path, const std::string& why) {
-    throw InputError(path + ": is damaged: " + why + ". Remove it and run the study again, or give an undamaged copy.");
-}
-
-/// A record whose checksum is right.
-struct FoundRecord {
-    std::uint32_t scenario;
-    RecordStart start;
-    std::int64_t values = 0;  ///< where the blocks' values begin in the file
-    std::int64_t end = 0;     ///< of the payload
-};
-
-std::string bytes_at(const JournalFile& file, std::int64_t position, std::int64_t size) {
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    file.read(position, bytes.data(), bytes.size());
-    return bytes;
-}
-
-/// Whether the file's bytes have the checksum that follows them.
-bool checksum_is_right(const JournalFile& file, std::int64_t begin, std::int64_t end) {
-    constexpr std::int64_t at_once = std::int64_t{1} << 20;
-    std::uint32_t crc = 0, stored = 0;
-    for (std::int64_t at = begin; at < end; at += at_once) {
-        const std::string some = bytes_at(file, at, std::min(at_once, end - at));
-        crc = checksum(some.data(), some.size(), crc);
-    }
-    file.read(end, &stored, sizeof stored);
-    return crc == stored;
-}
-
-/// The record that begins at `position`; nothing where it is torn. Throws BadBytes for one that cannot be.
-std::optional<FoundRecord> find_record(const JournalFile& file, std::int64_t position) {
-    constexpr auto head_size = static_cast<std::int64_t>(record_head_size),
-                   tail_size = static_cast<std::int64_t>(record_tail_size);
-    const std::int64_t left = file.size() - position - head_size - tail_size;
-    if (left < static_cast<std::int64_t>(record_start_size)) return std::nullopt;
-    const std::string head_bytes = bytes_at(file, position, head_size);
-    RecordHead head;
-    try {
-        ByteReader from(head_bytes.data(), head_bytes.size());
-        head = get_record_head(from);
-    } catch (const BadBytes&) {
-        return std::nullopt;
-    }
-    if (head.payload > left) return std::nullopt;
-    const std::int64_t payload = position + head_size, end = payload + head.payload;
-    if (!checksum_is_right(file, position, end)) return std::nullopt;
-    std::uint32_t count = 0;
-    file.read(payload + static_cast<std::int64_t>(record_start_size - sizeof count), &count, sizeof count);
-    const auto start_size = static_cast<std::int64_t>(record_start_size + count * journal_block_size);
-    if (start_size > head.payload) throw BadBytes("a record has more blocks than bytes");
-    const std::string start_bytes = bytes_at(file, payload, start_size);
-    ByteReader from(start_bytes.data(), start_bytes.size());
-    return FoundRecord{head.scenario, get_record_start(from), payload + start_size, end};
-}
-
-}  // namespace
-
 /// Reads all records up to a torn one, which is cut with what is behind it.
 std::vector<JournalScenario> Journal::scan(const Study& study) {
     std::vector<JournalScenario> found(study.scenarios.size());
-    auto position = static_cast<std::int64_t>(header_size_);
-    while (const std::optional<FoundRecord> record = find_record(file_, position)) {
-        if (record->scenario >= found.size()) throw BadBytes("a record is of a scenario that the study does not have");
-        JournalScenario& scenario = found[record->scenario];
-        std::int64_t values = record->values;
-        for (const JournalBlock& block : record->start.blocks) {
-            const std::int64_t size = kept_[record->scenario].layout.size(block);
-            if (size > record->end - values) throw BadBytes("a record has fewer values than its blocks");
-            scenario.places[block.index] = {block.trials, values, false};
-            values += size;
-        }
-        scenario.asked = record->start.trials;
-        scenario.counted = record->start.counted;
-        scenario.totals = bytes_at(file_, values, record->end - values);
-        asked_ = std::max(asked_, record->start.trials);
-        position = record->end + static_cast<std::int64_t>(record_tail_size);
-    }
-    torn_ = file_.size() - position;
-    file_.cut(position);
+    std::vector<BlockLayout> layouts;
+    for (const Kept& kept : kept_) layouts.push_back(kept.layout);
+    const std::int64_t end = scan_records(file_, header_size_, layouts, [&](const FoundRecord& record) {
+        JournalScenario& scenario = found[record.scenario];
+        for (std::size_t b = 0; b < record.places.size(); ++b)
+            scenario.places[record.start.blocks[b].index] = {record.start.blocks[b].trials, record.places[b], false};
+        scenario.asked = record.start.trials;
+        scenario.counted = record.start.counted;
+        scenario.totals = file_.read(record.totals, record.end - record.totals);
+        asked_ = std::max(asked_, record.start.trials);
+    });
+    torn_ = file_.size() - end;
+    file_.cut(end);
     return found;
 }
 
@@ -104,8 +39,8 @@ void Journal::read_details(std::size_t scenario, ScenarioResults& results) const
         const std::int64_t row = block_size * static_cast<std::int64_t>(at);
         for (std::size_t a = 0; a < results.arms.size(); ++a) {
             const std::int64_t errors = place.trials * kept.layout.errors(), nees = place.trials * kept.layout.nees();
-            const std::string bytes = bytes_at(file_, place.position + kept.layout.details_offset(a, place.trials),
-                                               (errors + nees) * static_cast<std::int64_t>(sizeof(float)));
+            const std::string bytes = file_.read(place.position + kept.layout.details_offset(a, place.trials),
+                                                 (errors + nees) * static_cast<std::int64_t>(sizeof(float)));
             ByteReader from(bytes.data(), bytes.size());
             const auto put = [&](std::vector<double>& to, std::int64_t width, std::int64_t count) {
                 const std::vector<float> values = from.get_all<float>(static_cast<std::size_t>(count));
@@ -170,7 +105,7 @@ void Journal::load(Study& study) {
             read_details(s, results);
         }
     } catch (const BadBytes& bad) {
-        damaged(file_.path(), bad.what());
+        refuse_damaged(file_.path(), bad.what());
     }
     study.trials = std::max(study.trials, asked_);
     study.complete = std::all_of(study.scenarios.begin(), study.scenarios.end(), [&](const ScenarioResults& results) {

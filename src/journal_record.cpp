@@ -13,8 +13,19 @@ namespace credence {
 namespace {
 
 const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 1, record_magic = 0x6b636f6c;
+constexpr std::uint32_t journal_version = 2, record_magic = 0x6b636f6c;
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
+
+void put_shard(ByteWriter& to, const Shard& shard) {
+    to.put(shard.index);
+    to.put(shard.count);
+}
+
+Shard get_shard(ByteReader& from) {
+    const Shard shard{from.get<std::int64_t>(), from.get<std::int64_t>()};
+    if (shard.index < 0 || shard.index >= shard.count) throw BadBytes("an impossible shard");
+    return shard;
+}
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
     throw InputError(path + ": " + why + ". " + remedy + ".");
@@ -31,6 +42,7 @@ std::string header_bytes(const JournalHeader& header) {
     body.put(static_cast<std::int32_t>(schema_version));
     body.put(static_cast<std::uint8_t>(header.base));
     body.put(header.trials);
+    put_shard(body, header.shard);
     body.put(header.study.root_seed);
     body.put_count(header.study.scenarios.size());
     for (const Scenario& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
@@ -72,6 +84,7 @@ JournalHeader read_header(const std::string& start, const std::string& path, std
     header.base = static_cast<JournalBase>(base);
     header.trials = body.get<std::int64_t>();
     if (header.trials < 0 || header.trials > most_trials) throw BadBytes("an impossible number of trials");
+    header.shard = get_shard(body);
     header.study.root_seed = body.get<std::uint64_t>();
     for (std::uint64_t left = body.get_count(); left > 0; --left)
         header.study.scenarios.push_back(read_scenario_text(body.get_text(), path + ": scenario", "scenario"));
@@ -141,6 +154,7 @@ RecordHead get_record_head(ByteReader& from) {
 void put_record_start(ByteWriter& to, const RecordStart& start) {
     to.put(start.trials);
     to.put(start.counted);
+    put_shard(to, start.shard);
     to.put(static_cast<std::uint32_t>(start.blocks.size()));
     for (const JournalBlock& block : start.blocks) {
         to.put(block.index);
@@ -154,6 +168,7 @@ RecordStart get_record_start(ByteReader& from) {
     start.counted = from.get<std::int64_t>();
     if (start.trials < 0 || start.trials > most_trials || start.counted < 0 || start.counted > start.trials)
         throw BadBytes("an impossible number of trials");
+    start.shard = get_shard(from);
     for (auto left = from.get<std::uint32_t>(); left > 0; --left) {
         JournalBlock block{from.get<std::int64_t>(), from.get<std::int32_t>()};
         if (block.index < 0 || block.index >= block_count(start.trials) ||

@@ -22,6 +22,7 @@ enum class JournalBase : std::uint8_t {
 struct JournalHeader {
     JournalBase base = JournalBase::none;
     std::int64_t trials = 0;  ///< that were asked for
+    Shard shard;              ///< of them
     StudyDefinition study;
 };
 std::string header_bytes(const JournalHeader& header);
@@ -77,11 +78,12 @@ struct RecordStart {
     std::int64_t trials = 0;           ///< that the study was asked for then
     std::int64_t counted = 0;          ///< trials of the scenario that the totals hold
     std::vector<JournalBlock> blocks;
+    Shard shard{};                     ///< that the run works on
 };
 void put_record_start(ByteWriter& to, const RecordStart& start);
 /// Throws BadBytes where the blocks cannot be.
 RecordStart get_record_start(ByteReader& from);
-inline constexpr std::size_t record_start_size = 20, journal_block_size = 12;
+inline constexpr std::size_t record_start_size = 36, journal_block_size = 12;
 
 /// CRC-32 of zlib, going on from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);

@@ -34,6 +34,13 @@ std::string with_interval(double mean, const Interval& interval) {
     return std::isnan(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
 }
 
+std::string duration_text(double seconds) {
+    if (seconds < 10) return number(seconds, 1) + " s";
+    if (seconds < 120) return number(seconds, 0) + " s";
+    if (seconds < 7200) return number(seconds / 60, 0) + " min";
+    return number(seconds / 3600, 1) + " h";
+}
+
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
     constexpr std::size_t width = 118;
     std::string text = head;

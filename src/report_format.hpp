@@ -20,6 +20,9 @@ int decimals_for(double uncertainty);
 /// `mean ± half-width`
 std::string with_interval(double mean, const Interval& interval);
 
+/// `75 s`, `12 min`, `3.4 h`.
+std::string duration_text(double seconds);
+
 /// `head` and the parts between commas, wrapped and indented.
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent);
 

@@ -71,7 +71,8 @@ void add_noise_keys(Keys& keys) {
                             from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
     keys.push_back({"noise.truncate", "none, or the multiple of sigma beyond which a draw is redrawn (0.1 to 8)",
                     [](Scenario& s, const std::string& v) { s.noise.truncate = parse_truncate(v); },
-                    [](const Scenario& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; }});
+                    [](const Scenario& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; },
+                    {"none"}});
 }
 
 void add_rule_keys(Keys& keys) {
@@ -81,7 +82,7 @@ void add_rule_keys(Keys& keys) {
                                          [](auto& s) -> auto& { return s.truth.edge_noise; }));
     keys.push_back({"edges.graph", "all, chain, none, or a list of pairs `0-1, 1-2`",
                     [](Scenario& s, const std::string& v) { s.edges = parse_graph(v); },
-                    [](const Scenario& s) { return graph_text(s.edges); }});
+                    [](const Scenario& s) { return graph_text(s.edges); }, {"all", "chain", "none"}});
 }
 
 void add_filter_keys(Keys& keys) {
@@ -100,6 +101,12 @@ void add_filter_keys(Keys& keys) {
            [](auto& s) -> auto& { return s.filter.covariance; });
 }
 
+std::vector<std::string> estimators_to_offer() {
+    std::vector<std::string> names = estimator_names();
+    names.push_back("default");
+    return names;
+}
+
 void add_control_keys(Keys& keys) {
     keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
                                          [](auto& s) -> auto& { return s.fixed_path; }));
@@ -109,21 +116,24 @@ void add_control_keys(Keys& keys) {
              s.planner.speeds.reset();
              if (v != "default") s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
          },
-         [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; }});
+         [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; },
+         {"default"}});
     keys.push_back({"planner.turns",
                     "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
                     [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
-                    [](const Scenario& s) { return turns_text(s.planner.turns); }});
+                    [](const Scenario& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
     keys.push_back(integer_key("planner.horizon", "steps planned ahead: 1", 1, 1,
                                [](auto& s) -> auto& { return s.planner.horizon; }));
     keys.push_back({"arms.controllers", "fixed, greedy",
                     [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
-                    [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); }});
+                    [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
+                    controller_names()});
     keys.push_back({"arms.estimators", "ekf (heading) or kf (translation); default the process's own",
                     [](Scenario& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
                     [](const Scenario& s) {
                         return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";
-                    }});
+                    },
+                    estimators_to_offer()});
 }
 
 void add_published_keys(Keys& keys) {

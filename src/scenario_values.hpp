@@ -73,7 +73,7 @@ template <class Enum, class Field>
 ScenarioKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
     return {name, joined(choices),
             [=](Scenario& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
-            [=](const Scenario& s) { return choices[static_cast<std::size_t>(field(s))]; }};
+            [=](const Scenario& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
 }
 
 template <class Field, class Check>

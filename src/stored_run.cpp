@@ -74,7 +74,7 @@ void StoredRun::go_on() {
     if (header) journal_->load(study_);
 }
 
-BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every) {
+BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, const Shard& shard) {
     const bool goes_on = journal_ && journal_->header();
     if (!journal_) journal_ = std::make_unique<Journal>(journal_path_);
     if (!goes_on) {
@@ -84,9 +84,10 @@ BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every) {
         const JournalBase base = in_file_                     ? JournalBase::grown
                                  : start_ == Start::overwrite ? JournalBase::replaced
                                                               : JournalBase::none;
-        journal_->begin({base, std::max(trials, study_.trials), definition_of(study_)}, study_);
+        journal_->begin({base, std::max(trials, study_.trials), shard, definition_of(study_)}, study_);
     }
     journal_->commit_every(commit_every);
+    journal_->works_on(shard);
     return *journal_;
 }
 

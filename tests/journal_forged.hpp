@@ -1,6 +1,8 @@
 #pragma once
 // Journals that somebody made up, with right checksums.
 
+#include <credence/watch.hpp>
+
 #include "journal_support.hpp"
 
 #include <optional>
@@ -51,12 +53,14 @@ struct Made {
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));
     }
-    /// What refuses a journal of these records.
+    /// What refuses a run that goes on with a journal of these records.
     std::string said(const std::vector<Record>& records) const {
         std::string bytes = header;
         for (const Record& one : records) bytes += one.bytes();
         put_bytes(path + ".journal", bytes);
-        const std::string text = refused(path, asked);
+        const std::string watched = refusal<InputError>([&] { RunWatch(path).look(); }), text = refused(path, asked);
+        // Who only looks refuses it too.
+        if (!text.empty()) CHECK(watched.starts_with(path + ".journal: is damaged: "));
         std::filesystem::remove(path);
         return text;
     }

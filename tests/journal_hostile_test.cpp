@@ -72,6 +72,11 @@ TEST_CASE("journal: blocks and trials that cannot be are refused") {
         bad.blocks = blocks;
         CHECK(says(made.said({bad}), "is damaged"));
     }
+    for (const Shard shard : {Shard{0, 0}, Shard{-1, 2}, Shard{2, 2}, Shard{0, -1}}) {
+        Record bad = made.record;
+        bad.start.shard = shard;
+        CHECK(says(made.said({bad}), "an impossible shard"));
+    }
     Record longer{0, {300, 47, {{1, 44}}}, std::string(8000, '\0'), made.record.totals, {}, {}};
     CHECK(says(made.said({made.record, longer}), "is damaged"));
 }
@@ -131,7 +136,7 @@ TEST_CASE("journal: a status that is none is refused when it is read") {
 TEST_CASE("journal: numbers of trials that no memory holds take none") {
     const Made made;
     const LittleMemory limit;
-    const JournalHeader header{JournalBase::none, most_trials, definition_of(made.study)};
+    const JournalHeader header{JournalBase::none, most_trials, {}, definition_of(made.study)};
     put_bytes(made.path + ".journal", header_bytes(header));
     CHECK(opened(made.path, made.asked).study().trials == most_trials);
     // A whole block, but far away: its rows are few.
@@ -157,11 +162,13 @@ TEST_CASE("journal: a header that was made up is refused") {
     body.put(static_cast<std::int32_t>(schema_version));
     body.put(std::uint8_t{0});
     body.put(std::int64_t{3});
+    body.put(std::int64_t{0});
+    body.put(std::int64_t{1});
     body.put(std::uint64_t{1});
     const auto journal_of = [&](const ByteWriter& rest) {
         const std::string text = body.bytes() + rest.bytes();
         const auto size = static_cast<std::uint32_t>(text.size());
-        return sealed("credence-journal" + std::string("\1\0\0\0", 4) +
+        return sealed("credence-journal" + std::string("\2\0\0\0", 4) +
                       std::string(reinterpret_cast<const char*>(&size), sizeof size) + text);
     };
     const auto said = [&](const std::function<void(ByteWriter&)>& make) {

@@ -42,7 +42,8 @@ inline StoredRun opened(const std::string& path, const Asked& asked, Start start
 }
 
 inline void compute(StoredRun& run, const Asked& asked, std::int64_t blocks = all_blocks) {
-    RunOptions options{asked.trials, asked.threads, {}, asked.shard, after(blocks), &run.begin(asked.trials, 1)};
+    BlockKeeper& keeper = run.begin(asked.trials, 1, asked.shard);
+    RunOptions options{asked.trials, asked.threads, {}, asked.shard, after(blocks), &keeper};
     if (blocks == all_blocks) options.stop = {};
     run_study(run.study(), options);
 }

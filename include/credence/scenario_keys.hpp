@@ -16,6 +16,7 @@ struct ScenarioKey {
     std::string help;     ///< one line: meaning, unit, choices
     std::function<void(Scenario&, const std::string&)> set;  ///< throws InputError where the value is not in range
     std::function<std::string(const Scenario&)> get;         ///< text that `set` reads back to the same value
+    std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
 };
 
 /// All keys, grouped by section, in the order in which they are shown.

@@ -35,8 +35,8 @@ public:
     const Study& study() const { return study_; }
 
     /// Begins or goes on with the journal, in which `commit_every` blocks make a commit (0: about half a second), and
-    /// returns it. Throws InputError and Failure.
-    BlockKeeper& begin(std::int64_t trials, std::int64_t commit_every = 0);
+    /// returns it. What the run works on, a shard or all, is for whoever follows it. Throws InputError and Failure.
+    BlockKeeper& begin(std::int64_t trials, std::int64_t commit_every = 0, const Shard& shard = {});
 
     /// Writes the results file, unless it has all that the study has, and removes the journal. Returns whether it wrote.
     /// Throws Failure where the system refuses; then the journal is there still.

@@ -6,6 +6,7 @@
 
 #include <boost/program_options.hpp>
 
+#include <algorithm>
 #include <iostream>
 
 namespace credence::cli {
@@ -13,8 +14,6 @@ namespace credence::cli {
 namespace {
 
 namespace po = boost::program_options;
-
-std::string long_name(const Option& option) { return option.name.substr(0, option.name.find(',')); }
 
 po::options_description described(const Command& command) {
     po::options_description description("options", 100, 60);
@@ -32,7 +31,7 @@ po::options_description described(const Command& command) {
 
 [[noreturn]] void refuse_unknown(const Command& command, const std::string& given) {
     std::vector<std::string> names{"help"};
-    for (const Option& option : command.options) names.push_back(long_name(option));
+    for (const Option& option : command.options) names.push_back(option.long_name());
     const std::size_t first = given.find_first_not_of('-');
     const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
     throw InputError(
@@ -42,7 +41,7 @@ po::options_description described(const Command& command) {
 
 void check_repeats(const Command& command, const Parsed& parsed) {
     for (const Option& option : command.options) {
-        const auto found = parsed.values.find(long_name(option));
+        const auto found = parsed.values.find(option.long_name());
         if (found != parsed.values.end() && found->second.size() > 1 && !option.repeatable)
             throw InputError("repeated option --" + found->first + ". Give it once.");
     }
@@ -70,7 +69,20 @@ std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, 
     return *number;
 }
 
-std::string Parsed::choice(const std::string& option, const std::vector<std::string>& choices) const {
+double Parsed::real(const std::string& option, double otherwise, double low, double high) const {
+    const std::optional<std::string> given = text(option);
+    if (!given) return otherwise;
+    const std::optional<double> number = to_number(*given);
+    if (!number || !(*number >= low && *number <= high))
+        throw invalid_value("--" + option, *given, "must be from " + to_text(low) + " to " + to_text(high),
+                            "Give a number in that range");
+    return *number;
+}
+
+std::string Parsed::choice(const std::string& option) const {
+    const auto described = std::find_if(command->options.begin(), command->options.end(),
+                                        [&](const Option& one) { return one.long_name() == option; });
+    const std::vector<std::string>& choices = described->choices;
     const std::optional<std::string> given = text(option);
     if (!given) return choices.front();
     for (const std::string& choice : choices)
@@ -94,6 +106,7 @@ Overrides Parsed::overrides() const {
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments) {
     const po::options_description description = described(command);
     Parsed parsed;
+    parsed.command = &command;
     try {
         namespace style = po::command_line_style;
         const int strict = style::unix_style & ~style::allow_guessing;
@@ -144,6 +157,21 @@ Option margin_option() {
     return {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"};
 }
 
-Option output_option(const std::string& help) { return {"output,o", "FILE", help}; }
+Option output_option(const std::string& help, const std::string& value) { return {"output,o", value, help}; }
+
+Option format_option(const std::vector<std::string>& formats) {
+    std::string help = formats.front() + " (default)";
+    for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
+    return {"format", "FORMAT", help, false, formats};
+}
+
+const std::vector<ExitCode>& exit_codes() {
+    static const std::vector<ExitCode> codes{{0, "done"},
+                                             {1, "failed"},
+                                             {2, "bad input"},
+                                             {3, "stopped by a signal with everything kept"},
+                                             {130, "ended at once by a second signal"}};
+    return codes;
+}
 
 }  // namespace credence::cli

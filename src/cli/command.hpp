@@ -14,9 +14,14 @@ namespace credence::cli {
 /// An option as its help shows it. Every value arrives as text: Boost's own conversions wrap -1 and refuse 1e6.
 struct Option {
     std::string name;          ///< long name, with a short one after a comma: "output,o"
-    std::string value;         ///< name of its value in the help; empty for a switch
+    std::string value;         ///< name of its value in the help, FILE or NAME.ext for a file's; empty for a switch
     std::string help;
     bool repeatable = false;
+    std::vector<std::string> choices{};  ///< the values that it takes, the first by default; empty: any
+
+    std::string long_name() const { return name.substr(0, name.find(',')); }
+    /// The letter; empty where it has none.
+    std::string short_name() const { return name.size() == long_name().size() ? "" : name.substr(name.find(',') + 1); }
 };
 
 /// A subcommand as its help shows it.
@@ -31,13 +36,16 @@ class Parsed {
 public:
     std::vector<std::string> arguments;               ///< those that are not options
     std::map<std::string, std::vector<std::string>> values;
+    const Command* command = nullptr;                 ///< whose they are
 
     bool has(const std::string& option) const { return values.count(option) > 0; }
     std::optional<std::string> text(const std::string& option) const;
     /// A whole number in [low, high]; throws InputError naming the option.
     std::int64_t integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const;
-    /// One of `choices`, the first by default.
-    std::string choice(const std::string& option, const std::vector<std::string>& choices) const;
+    /// A number in [low, high]; throws InputError naming the option.
+    double real(const std::string& option, double otherwise, double low, double high) const;
+    /// One of the option's choices, the first by default; throws InputError for another one.
+    std::string choice(const std::string& option) const;
     /// `--set section.key=value`, in order.
     Overrides overrides() const;
 };
@@ -58,7 +66,9 @@ void write_output(const Parsed& parsed, const std::string& text);
 // Options that several commands share.
 Option set_option();
 Option margin_option();
-Option output_option(const std::string& help);
+Option output_option(const std::string& help, const std::string& value = "FILE");
+/// --format: the first of `formats` by default.
+Option format_option(const std::vector<std::string>& formats);
 
 // What report and judge share: how to render, and rendering it. give_report returns the exit code.
 struct ReportRequest {
@@ -76,6 +86,9 @@ const Command& compare_command();
 const Command& replay_command();
 const Command& show_command();
 const Command& merge_command();
+const Command& watch_command();
+const Command& completion_command();
+const Command& manual_command();
 int run(const Parsed& parsed, const std::string& command_line);
 int report(const Parsed& parsed);
 int judge(const Parsed& parsed);
@@ -83,5 +96,18 @@ int compare(const Parsed& parsed);
 int replay(const Parsed& parsed, const std::string& command_line);
 int show(const Parsed& parsed);
 int merge(const Parsed& parsed, const std::string& command_line);
+int watch(const Parsed& parsed);
+int completion(const Parsed& parsed);
+int manual(const Parsed& parsed);
+
+/// All of them, in the order in which they are shown. [main.cpp]
+std::vector<const Command*> all_commands();
+
+/// What the program's exit code means.
+struct ExitCode {
+    int code;
+    std::string meaning;
+};
+const std::vector<ExitCode>& exit_codes();
 
 }  // namespace credence::cli

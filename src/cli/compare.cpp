@@ -19,7 +19,7 @@ const Command& compare_command() {
         "filter.measurement=0.8\n"
         "shows what that did.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
-         {"format", "FORMAT", "text (default), json or csv"},
+         format_option({"text", "json", "csv"}),
          output_option("write there, not to the standard output")}};
     return command;
 }
@@ -36,7 +36,7 @@ void check_paths(const std::vector<std::string>& paths) {
 }  // namespace
 
 int compare(const Parsed& parsed) {
-    const std::string format = parsed.choice("format", {"text", "json", "csv"});
+    const std::string format = parsed.choice("format");
     check_paths(parsed.arguments);
     std::optional<ArmsChoice> choice;
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);

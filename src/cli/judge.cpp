@@ -21,8 +21,8 @@ const Command& judge_command() {
         "state that are judged by themselves. analysis/ shows the few lines that write one from Python, Octave and C++.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
-         {"format", "FORMAT", "text (default), json or csv"},
-         {"require", "VERDICT", "consistent: exit with 1 unless it is"},
+         format_option({"text", "json", "csv"}),
+         {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output")}};
     return command;

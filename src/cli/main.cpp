@@ -33,7 +33,10 @@ const std::vector<Subcommand>& subcommands() {
                                              {cli::compare_command, without_line<cli::compare>},
                                              {cli::replay_command, cli::replay},
                                              {cli::merge_command, cli::merge},
-                                             {cli::show_command, without_line<cli::show>}};
+                                             {cli::watch_command, without_line<cli::watch>},
+                                             {cli::show_command, without_line<cli::show>},
+                                             {cli::completion_command, without_line<cli::completion>},
+                                             {cli::manual_command, without_line<cli::manual>}};
     return all;
 }
 
@@ -42,10 +45,12 @@ int help() {
                  "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
     for (const Subcommand& subcommand : subcommands()) {
         const cli::Command& command = subcommand.command();
-        std::cout << "  " << command.name << std::string(9 - command.name.size(), ' ') << command.summary << "\n";
+        std::cout << "  " << command.name << std::string(12 - command.name.size(), ' ') << command.summary << "\n";
     }
-    std::cout << "\n  --help   this\n  --version  the version and how it was built\n\n"
-                 "Exit codes: 0 done, 1 failed, 2 bad input, 3 stopped by a signal with everything kept.\n";
+    std::cout << "\n  --help      this\n  --version   the version and how it was built\n\nExit codes: ";
+    std::vector<std::string> codes;
+    for (const cli::ExitCode& exit : cli::exit_codes()) codes.push_back(std::to_string(exit.code) + " " + exit.meaning);
+    std::cout << joined(codes) << ".\n";
     return 0;
 }
 
@@ -82,6 +87,12 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
 }
 
 }  // namespace
+
+std::vector<const cli::Command*> cli::all_commands() {
+    std::vector<const Command*> commands;
+    for (const Subcommand& subcommand : subcommands()) commands.push_back(&subcommand.command());
+    return commands;
+}
 
 int main(int argc, char** argv) {
     const std::string name = argc > 1 ? argv[1] : "--help";

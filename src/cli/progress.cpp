@@ -17,13 +17,6 @@ std::string formatted(const char* format, double value, const char* unit) {
 
 }  // namespace
 
-std::string duration_text(double seconds) {
-    if (seconds < 10) return formatted("%.1f", seconds, " s");
-    if (seconds < 120) return formatted("%.0f", seconds, " s");
-    if (seconds < 7200) return formatted("%.0f", seconds / 60, " min");
-    return formatted("%.1f", seconds / 3600, " h");
-}
-
 std::string bytes_text(std::int64_t bytes) {
     const double value = static_cast<double>(bytes);
     if (value < 1e6) return formatted("%.0f", value / 1e3, " kB");

@@ -3,6 +3,8 @@
 
 #include <credence/study.hpp>
 
+#include "../report_format.hpp"
+
 namespace credence::cli {
 
 class ProgressLine {
@@ -17,8 +19,6 @@ private:
     double next_ = 0;  ///< seconds at which the next line is due
 };
 
-/// `75 s`, `12 min`, `3.4 h`.
-std::string duration_text(double seconds);
 /// `12.3 MB`
 std::string bytes_text(std::int64_t bytes);
 

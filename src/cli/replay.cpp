@@ -27,8 +27,9 @@ const Command& replay_command() {
          {"trial", "I", "trial of the results file, from 0"},
          {"noise", "RECORD.h5", "recorded noise for SCENARIO.ini"},
          set_option(),
-         {"format", "FORMAT", "text (default), json or csv"},
-         output_option("write the trajectory there: truth, estimates, covariances, innovations, the planner's costs")}};
+         format_option({"text", "json", "csv"}),
+         output_option("write the trajectory there: truth, estimates, covariances, innovations, the planner's costs",
+                       "FILE.h5")}};
     return command;
 }
 
@@ -160,7 +161,7 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
 int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1)
         throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
-    const std::string format = parsed.choice("format", {"text", "json", "csv"});
+    const std::string format = parsed.choice("format");
     const std::optional<std::string> output = parsed.text("output"), noise = parsed.text("noise");
     check_output_option(parsed);
     const std::vector<Trajectory> trajectories = noise ? replay_noise(parsed, *noise) : replay_stored(parsed);

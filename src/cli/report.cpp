@@ -13,16 +13,16 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
         {margin_option(),
-         {"format", "FORMAT", "text (default), json or csv"},
-         {"require", "VERDICT", "consistent: exit with 1 unless every arm is"},
+         format_option({"text", "json", "csv"}),
+         {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
          output_option("write there, not to the standard output")}};
     return command;
 }
 
 ReportRequest read_report_request(const Parsed& parsed) {
-    const ReportRequest request{parsed.choice("format", {"text", "json", "csv"}), parse_margin(parsed)};
+    const ReportRequest request{parsed.choice("format"), parse_margin(parsed)};
     check_output_option(parsed);
-    if (parsed.has("require")) parsed.choice("require", {"consistent"});
+    if (parsed.has("require")) parsed.choice("require");
     return request;
 }
 

@@ -27,7 +27,7 @@ const Command& run_command() {
         "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
         "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
         "everything kept (exit code 3), and --resume goes on.\n",
-        {output_option("results file (default credence.h5)"),
+        {output_option("results file (default credence.h5)", "FILE.h5"),
          {"trials", "N", "trials of each scenario (default 10000)"},
          {"seed", "N", "root seed, from 0 up (default 1)"},
          {"threads", "N", "threads (default: all processors)"},
@@ -112,7 +112,7 @@ Work work_on(StoredRun& stored, const RunRequest& request) {
     options.stop = Interrupt::came;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
     // With --until nobody knows yet how many trials will be asked for: each look asks for its own.
-    options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every);
+    options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
     if (!request.goals.empty()) {
         work.last_look = grow_until_precise(stored.study(), request, options);
     } else {

@@ -9,6 +9,7 @@
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
 #include <credence/stored_run.hpp>
+#include <credence/watch.hpp>
 
 #include <cstring>
 #include <random>
@@ -93,6 +94,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const ScratchFile file(data, size);
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");
+    try {
+        const WatchLook look = RunWatch(results).look();
+        require(watch_text(look).starts_with(results) && !watch_json(look).empty(), "a look can be shown");
+    } catch (const InputError& error) {
+        require_one_line(error.what());
+    }
     try {
         StoredRun run(results, study, Start::resume);
         use(run.study());

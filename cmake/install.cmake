@@ -1,0 +1,37 @@
+# What `cmake --install` puts where: components runtime, development, documentation and examples.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(CREDENCE_DATA ${CMAKE_INSTALL_DATADIR}/credence)
+set(CREDENCE_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/credence)
+
+# The manual page and the completion are what the program says of itself.
+set(pages ${PROJECT_BINARY_DIR}/pages)
+add_custom_command(OUTPUT ${pages}/credence.1 ${pages}/credence
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
+  COMMAND credence manual > ${pages}/credence.1
+  COMMAND credence completion bash > ${pages}/credence
+  DEPENDS credence COMMENT "Writing the manual page and the completion")
+add_custom_target(credence_pages ALL DEPENDS ${pages}/credence.1 ${pages}/credence)
+install(TARGETS credence RUNTIME COMPONENT runtime)
+install(FILES ${pages}/credence.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(FILES ${pages}/credence DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+
+# find_package(credence) gives credence::credence.
+set_target_properties(credence_library PROPERTIES EXPORT_NAME credence)
+set_target_properties(credence_core PROPERTIES EXPORT_NAME core)
+install(TARGETS credence_library credence_core EXPORT credence-targets
+  ARCHIVE COMPONENT development INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/credence DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(EXPORT credence-targets NAMESPACE credence:: DESTINATION ${CREDENCE_PACKAGE} COMPONENT development)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/credence-config.cmake.in
+  ${PROJECT_BINARY_DIR}/credence-config.cmake INSTALL_DESTINATION ${CREDENCE_PACKAGE})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/credence-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/credence-config.cmake ${PROJECT_BINARY_DIR}/credence-config-version.cmake
+  DESTINATION ${CREDENCE_PACKAGE} COMPONENT development)
+
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
+install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples FILES_MATCHING PATTERN "*.ini")
+install(DIRECTORY analysis DESTINATION ${CREDENCE_DATA} COMPONENT examples
+  PATTERN "__pycache__" EXCLUDE PATTERN "*.h5" EXCLUDE)

@@ -1,0 +1,79 @@
+#include "command.hpp"
+#include "interrupt.hpp"
+#include "screen.hpp"
+
+#include <credence/error.hpp>
+#include <credence/watch.hpp>
+
+#include <poll.h>
+
+#include <chrono>
+#include <iostream>
+
+namespace credence::cli {
+
+const Command& watch_command() {
+    static const Command command{
+        "watch",
+        "FILE.h5 [options]",
+        "follow a run: what is committed so far, with intervals",
+        "\nReads FILE.h5.journal while the run goes on and FILE.h5 when it is done; the run does not notice. On a\n"
+        "terminal the table is drawn again until the run ends (exit code 0) or Ctrl-C ends the watching (3); the run\n"
+        "goes on then. Elsewhere it is printed once. Looking often and stopping when an interval pleases is not\n"
+        "`credence run --until`, which stops at a precision and pays for its looks.\n",
+        {{"every", "SECONDS", "seconds between two looks on a terminal (default 2)"},
+         {"once", "", "one look, on a terminal too"},
+         format_option({"text", "json"})}};
+    return command;
+}
+
+namespace {
+
+/// Waits, but for a signal not longer than it takes to notice it.
+void wait(double seconds) {
+    using namespace std::chrono;
+    constexpr int slice = 100;  // ms
+    const auto end = steady_clock::now() + duration<double>(seconds);
+    while (!Interrupt::came() && steady_clock::now() < end) {
+        const double left = duration<double, std::milli>(end - steady_clock::now()).count();
+        poll(nullptr, 0, left < slice ? static_cast<int>(left) + 1 : slice);
+    }
+}
+
+/// The last look.
+WatchLook follow(RunWatch& run, double every) {
+    WatchLook look = run.look();
+    if (look.ended()) return look;
+    Screen screen;
+    for (; !look.ended() && !Interrupt::came(); look = run.look()) {
+        screen.draw(watch_text(look));
+        wait(every);
+    }
+    return look;
+}
+
+/// FILE.h5 where its journal was named.
+std::string results_path(const std::string& given) {
+    const std::string journal = ".journal";
+    return given.ends_with(journal) ? given.substr(0, given.size() - journal.size()) : given;
+}
+
+}  // namespace
+
+int watch(const Parsed& parsed) {
+    if (parsed.arguments.size() != 1) throw InputError("watch takes one results file. Give FILE.h5.");
+    const std::string format = parsed.choice("format");
+    const double every = parsed.real("every", 2, 0.1, 3600);
+    RunWatch run(results_path(parsed.arguments.front()));
+    if (format == "json" || parsed.has("once") || !can_draw()) {
+        const WatchLook look = run.look();
+        std::cout << (format == "json" ? watch_json(look) : watch_text(look));
+        return 0;
+    }
+    const Interrupt interrupt;
+    const WatchLook look = follow(run, every);
+    std::cout << watch_text(look);
+    return look.ended() ? 0 : 3;
+}
+
+}  // namespace credence::cli

@@ -1,0 +1,165 @@
+#include "watched_sums.hpp"
+
+#include <credence/watch.hpp>
+
+#include "bytes.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Status status_of(double value) { return static_cast<Status>(static_cast<int>(value)); }
+
+/// An arm's column, failed trials as NaN.
+std::vector<double> figure_of(const ColumnOf& column, std::size_t arm, std::size_t index,
+                              const std::vector<double>& status) {
+    std::vector<double> values = column(arm, index);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (failed(status_of(status[i]))) values[i] = nan;
+    return values;
+}
+
+bool is_of(const Shard& shard, std::int64_t block) { return block % shard.count == shard.index; }
+
+}  // namespace
+
+void WatchedSums::add(const WatchedSums& other) {
+    trials += other.trials;
+    arms.resize(std::max(arms.size(), other.arms.size()));
+    for (std::size_t a = 0; a < other.arms.size(); ++a) {
+        const ArmSums& from = other.arms[a];
+        arms[a].figures.resize(from.figures.size());
+        for (std::size_t f = 0; f < from.figures.size(); ++f) arms[a].figures[f].add(from.figures[f]);
+        arms[a].difference.add(from.difference);
+        arms[a].failed += from.failed;
+        arms[a].diverged += from.diverged;
+    }
+}
+
+WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const ColumnOf& column) {
+    WatchedSums sums{trials, std::vector<ArmSums>(results.arms.size())};
+    std::vector<std::vector<double>> trace(results.arms.size());
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        ArmSums& arm = sums.arms[a];
+        const std::vector<double> status = column(a, column_status);
+        for (const double value : status) {
+            arm.failed += failed(status_of(value));
+            arm.diverged += status_of(value) == Status::diverged;
+        }
+        for (const ColumnIndex index : watched_columns) {
+            const std::vector<double> values = figure_of(column, a, index, status);
+            arm.figures.push_back(RunningMoments::of(values));
+            if (index == column_trace_P) trace[a] = values;
+        }
+    }
+    for (std::size_t a = 0; a < results.arms.size(); ++a)
+        if (const ArmResults* fixed = fixed_partner(results, results.arms[a])) {
+            const auto partner = static_cast<std::size_t>(fixed - results.arms.data());
+            sums.arms[a].difference = RunningMoments::of(paired_differences(trace[a], trace[partner]));
+        }
+    return sums;
+}
+
+WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
+    constexpr std::int64_t at_once = 64 * block_size;
+    WatchedSums sums;
+    for (std::int64_t row = first; row < first + count; row += at_once) {
+        const std::int64_t some = std::min(at_once, first + count - row);
+        sums.add(sums_of(results, some, [&](std::size_t arm, std::size_t column) {
+            return column_values(results.arms[arm], column, row, some);
+        }));
+    }
+    return sums;
+}
+
+bool BlockSet::insert(std::int64_t block) {
+    auto bit = pages_[block / page_size][static_cast<std::size_t>(block % page_size)];
+    if (bit) return false;
+    bit = true;
+    ++count_;
+    return true;
+}
+
+bool BlockSet::has(std::int64_t block) const {
+    const auto page = pages_.find(block / page_size);
+    return page != pages_.end() && page->second[static_cast<std::size_t>(block % page_size)];
+}
+
+std::int64_t BlockSet::count_of(const Shard& shard) const {
+    if (shard.count == 1) return count_;
+    std::int64_t count = 0;
+    for (const auto& [page, bits] : pages_)
+        for (std::int64_t i = 0; i < page_size; ++i)
+            count += bits[static_cast<std::size_t>(i)] && is_of(shard, page * page_size + i);
+    return count;
+}
+
+bool BlockSet::contains(const BlockSet& other) const {
+    return std::all_of(other.pages_.begin(), other.pages_.end(), [&](const auto& entry) {
+        const auto page = pages_.find(entry.first);
+        return page != pages_.end() && (entry.second & ~page->second).none();
+    });
+}
+
+void WatchedBlocks::add(std::int64_t index, WatchedSums of_block) {
+    if (of_block.trials < block_size) {
+        partial = Partial{index, std::move(of_block)};
+        return;
+    }
+    if (!whole.insert(index)) throw BadBytes("a block is there twice");
+    if (partial && partial->index == index) partial.reset();
+    sums.add(of_block);
+}
+
+void WatchedBlocks::asked(std::int64_t trials) {
+    if (partial && partial->sums.trials < trials_in_block(trials, partial->index)) partial.reset();
+}
+
+std::int64_t WatchedBlocks::blocks_of(const Shard& shard) const {
+    return whole.count_of(shard) + (partial && is_of(shard, partial->index) ? 1 : 0);
+}
+
+std::int64_t WatchedBlocks::trials_of(const Shard& shard) const {
+    return block_size * whole.count_of(shard) +
+           (partial && is_of(shard, partial->index) ? partial->sums.trials : 0);
+}
+
+bool WatchedBlocks::contains(const WatchedBlocks& other) const {
+    const bool has_partial = !other.partial || (partial && partial->index == other.partial->index &&
+                                                partial->sums.trials == other.partial->sums.trials);
+    return has_partial && whole.contains(other.whole);
+}
+
+void WatchedBlocks::add_to(WatchedSums& all) const {
+    all.add(sums);
+    if (partial) all.add(partial->sums);
+}
+
+WatchedBlocks blocks_of(const ScenarioResults& results) {
+    WatchedBlocks blocks;
+    const std::int64_t in_whole = results.trials / block_size * block_size;
+    for (const std::int64_t block : results.blocks)
+        if (blocks.whole.count() < in_whole / block_size) blocks.whole.insert(block);
+    blocks.sums = sums_of_rows(results, 0, in_whole);
+    if (in_whole < results.trials)
+        blocks.partial = WatchedBlocks::Partial{results.blocks.back(),
+                                                sums_of_rows(results, in_whole, results.trials - in_whole)};
+    return blocks;
+}
+
+std::int64_t blocks_of_shard(const Shard& shard, std::int64_t trials) {
+    const std::int64_t blocks = block_count(trials);
+    return blocks <= shard.index ? 0 : (blocks - 1 - shard.index) / shard.count + 1;
+}
+
+std::int64_t trials_of_shard(const Shard& shard, std::int64_t trials) {
+    const std::int64_t last = block_count(trials) - 1, blocks = blocks_of_shard(shard, trials);
+    const bool has_last = blocks > 0 && is_of(shard, last);
+    return block_size * blocks - (has_last ? block_size - trials_in_block(trials, last) : 0);
+}
+
+}  // namespace credence

@@ -1,0 +1,83 @@
+#pragma once
+// Room 13: what a look keeps of the trials that it has read: sums, and which blocks they are of.
+
+#include <credence/study.hpp>
+
+#include "running_moments.hpp"
+
+#include <bitset>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace credence {
+
+struct ArmSums {
+    std::vector<RunningMoments> figures;  ///< of watched_columns
+    RunningMoments difference;            ///< trace_P - that of the fixed partner, where there is one
+    std::int64_t failed = 0, diverged = 0;
+};
+
+/// One scenario's.
+struct WatchedSums {
+    std::int64_t trials = 0;
+    std::vector<ArmSums> arms;
+
+    void add(const WatchedSums& other);
+};
+
+/// A column of an arm, of the trials that are summed up.
+using ColumnOf = std::function<std::vector<double>(std::size_t arm, std::size_t column)>;
+WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const ColumnOf& column);
+
+/// The same of rows of stored results, a part of them at a time.
+WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std::int64_t count);
+
+/// Numbers of blocks, a bit each.
+class BlockSet {
+public:
+    /// Returns whether it was not there.
+    bool insert(std::int64_t block);
+    bool has(std::int64_t block) const;
+    std::int64_t count() const { return count_; }
+    /// How many are a shard's.
+    std::int64_t count_of(const Shard& shard) const;
+    bool contains(const BlockSet& other) const;
+
+private:
+    static constexpr std::int64_t page_size = 4096;
+    std::map<std::int64_t, std::bitset<page_size>> pages_;
+    std::int64_t count_ = 0;
+};
+
+/// A scenario's blocks and their sums. Only the last block may be partial, and it may still be taken back.
+struct WatchedBlocks {
+    struct Partial {
+        std::int64_t index = 0;
+        WatchedSums sums;
+    };
+    BlockSet whole;
+    WatchedSums sums;  ///< of the whole ones
+    std::optional<Partial> partial;
+
+    /// Throws BadBytes for a whole block that is there already.
+    void add(std::int64_t index, WatchedSums sums);
+    /// A study that was asked for so many trials computes its partial block again where that becomes larger.
+    void asked(std::int64_t trials);
+    std::int64_t trials() const { return sums.trials + (partial ? partial->sums.trials : 0); }
+    std::int64_t blocks() const { return whole.count() + (partial ? 1 : 0); }
+    std::int64_t blocks_of(const Shard& shard) const;
+    std::int64_t trials_of(const Shard& shard) const;
+    bool contains(const WatchedBlocks& other) const;
+    void add_to(WatchedSums& all) const;
+};
+
+/// The blocks of stored results.
+WatchedBlocks blocks_of(const ScenarioResults& results);
+
+/// A shard's blocks of `trials` trials, and the trials in them.
+std::int64_t blocks_of_shard(const Shard& shard, std::int64_t trials);
+std::int64_t trials_of_shard(const Shard& shard, std::int64_t trials);
+
+}  // namespace credence

@@ -1,0 +1,52 @@
+#pragma once
+// What a look should say, for the tests of following a run.
+
+#include <credence/watch.hpp>
+
+#include "journal_support.hpp"
+
+namespace credence::test {
+
+/// Two scenarios of two arms each.
+inline Asked small(std::int64_t trials, Shard shard = {}) { return {trials, 1, shard, small_scenarios(), 1}; }
+
+/// The mean is that of the exact sum up to the rounding of some hundred additions; so is the spread.
+inline void check_same(const Moments& moments, const Summary& expected) {
+    CHECK(moments.count == static_cast<double>(expected.count));
+    CHECK(moments.mean == Approx(expected.mean).epsilon(1e-13).margin(1e-15));
+    CHECK(moments.standard_deviation == Approx(expected.standard_deviation).epsilon(1e-12));
+    CHECK(t_interval(moments).low == Approx(expected.ci95.low).epsilon(1e-12).margin(1e-15));
+}
+
+inline std::vector<double> trace_of(const ScenarioResults& results, const ArmResults& arm) {
+    return figure_values(results, arm, column_trace_P);
+}
+
+/// The look says what these trials say.
+inline void check_says(const WatchLook& look, const Study& study) {
+    REQUIRE(look.scenarios.size() == study.scenarios.size());
+    for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+        const ScenarioResults& results = study.scenarios[s];
+        const WatchedScenario& scenario = look.scenarios[s];
+        CHECK(scenario.name == results.scenario.name);
+        CHECK(scenario.trials == results.trials);
+        CHECK(scenario.blocks == static_cast<std::int64_t>(results.blocks.size()));
+        REQUIRE(scenario.arms.size() == results.arms.size());
+        if (results.trials == 0) continue;
+        for (std::size_t a = 0; a < results.arms.size(); ++a) {
+            const WatchedArm& arm = scenario.arms[a];
+            CAPTURE(scenario.name, arm.name);
+            CHECK(arm.failed == results.trials - results.arms[a].counted);
+            for (std::size_t f = 0; f < arm.figures.size(); ++f)
+                check_same(arm.figures[f], summarise(figure_values(results, results.arms[a], watched_columns[f])));
+            const ArmResults* fixed = fixed_partner(results, results.arms[a]);
+            CHECK(arm.other == (fixed ? fixed->name : ""));
+            if (fixed) {
+                const std::vector<double> own = trace_of(results, results.arms[a]), other = trace_of(results, *fixed);
+                check_same(arm.difference, summarise(paired_differences(own, other)));
+            }
+        }
+    }
+}
+
+}  // namespace credence::test
