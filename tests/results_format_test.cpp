@@ -47,8 +47,8 @@ TEST_CASE("results format: the documentation names every variable and attribute"
     write_results(folder / "study.h5", made_up_study(), {});
     Scenario wide = scenario("wide");
     wide.features.positions.assign(23, {0.5, 0.5});
-    write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), Controller::greedy, 1, 0),
-                                             replay_trial(Problem(wide), Controller::fixed, 1, 0)}, {});
+    write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0),
+                                             replay_trial(Problem(wide), {Controller::fixed}, 1, 0)}, {});
     std::set<std::string> names;
     for (const char* file : {"study.h5", "trace.h5"}) collect_names(hdf5::open_file(folder / file), names);
     for (const char* of_hdf5 : {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}) CHECK(names.erase(of_hdf5) == 1);
