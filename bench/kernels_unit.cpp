@@ -49,7 +49,8 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
     for (std::int64_t step = 0; step < steps; ++step) {
         predict_robot(work.belief, problem.filter, layout, Command<Real>{});
         predict_features(work.belief, problem.filter, layout, 1);
-        update_belief(work.belief, problem.filter, layout, work.sightings, edge_measurement, work.update);
+        update_belief(work.belief, problem.filter, layout, work.sightings, edge_measurement,
+                      AtMean<Layout, Real>(work.belief.mean), work.update);
         judge_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome, figures);
     }
     return first_lane(sums.nees + sums.nis);

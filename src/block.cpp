@@ -83,9 +83,9 @@ struct Octets {
         for (auto* products : {&product_sums, &product_square_sums, &product_counts}) products->resize(lags * octet);
     }
 
-    Batch batch(Controller controller, std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
+    Batch batch(const Arm& arm, std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
         const bool detail = !errors.empty();
-        Batch batch{controller, root_seed, first_trial, static_cast<int>(trials)};
+        Batch batch{arm, root_seed, first_trial, static_cast<int>(trials)};
         batch.columns = columns.data();
         batch.sums = sums.data();
         batch.square_sums = square_sums.data();
@@ -133,12 +133,13 @@ void store_details(const Octets& from, ArmBlock& arm) {
     arm.product_counts = added_up(from.product_counts);
 }
 
-ArmBlock run_arm(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t index, int trials,
+ArmBlock run_arm(const Problem& problem, const Arm& arm_run, std::uint64_t root_seed, std::int64_t index, int trials,
                  const Unit& unit) {
     const ProblemView& view = problem.view();
     Octets octets(view, static_cast<std::size_t>(trials), detailed(view, index));
     thread_local WorkRoom room;
-    unit.simulate(view, octets.batch(controller, root_seed, index * block_size, room.of_size(unit.workspace_size(view))));
+    void* workspace = room.of_size(unit.workspace_size(view, arm_run.estimator));
+    unit.simulate(view, octets.batch(arm_run, root_seed, index * block_size, workspace));
     ArmBlock arm;
     arm.columns.resize(column_count * octets.trials);
     arm.sums = added_up(octets.sums);
@@ -168,7 +169,7 @@ Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t in
                 const Unit& unit) {
     Block block{index, trials, {}};
     for (const Arm& arm : arms_of(problem.scenario()))
-        block.arms.push_back(run_arm(problem, arm.controller, root_seed, index, trials, unit));
+        block.arms.push_back(run_arm(problem, arm, root_seed, index, trials, unit));
     return block;
 }
 

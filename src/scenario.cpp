@@ -94,15 +94,17 @@ void check_planner(const Scenario& s) {
 }
 
 void check_arms(const Scenario& s) {
-    const Estimator own = s.process == Process::heading ? Estimator::ekf : Estimator::kf;
-    if (s.arms.estimators)
-        for (const Estimator estimator : *s.arms.estimators)
-            if (estimator != own)
-                throw invalid_value(
-                    "arms.estimators", names_text(*s.arms.estimators, estimator_names()),
-                    s.process == Process::heading ? "kf is for model.process=translation"
-                                                  : "ekf is for model.process=heading",
-                    "Use " + estimator_names()[static_cast<std::size_t>(own)] + " or change the process");
+    const std::string process = s.process == Process::heading ? "heading" : "translation";
+    std::vector<std::string> fitting;
+    for (std::size_t i = 0; i < estimator_names().size(); ++i)
+        if (process_of(static_cast<Estimator>(i)) == s.process) fitting.push_back(estimator_names()[i]);
+    const std::vector<Estimator> asked = *resolved(s).arms.estimators;
+    for (const Estimator estimator : asked)
+        if (process_of(estimator) != s.process)
+            throw invalid_value("arms.estimators", names_text(asked, estimator_names()),
+                                estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" +
+                                    process,
+                                "Give some of " + joined(fitting) + ", or change the process");
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);

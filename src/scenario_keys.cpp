@@ -128,7 +128,8 @@ void add_control_keys(Keys& keys) {
                     [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
                     [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
                     controller_names()});
-    keys.push_back({"arms.estimators", "ekf (heading) or kf (translation); default the process's own",
+    keys.push_back({"arms.estimators",
+                    "any of " + joined(estimator_names()) + " (kf: translation, the others: heading); default: ekf or kf",
                     [](Scenario& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
                     [](const Scenario& s) {
                         return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";

@@ -174,8 +174,21 @@ const std::vector<std::string>& controller_names() {
 }
 
 const std::vector<std::string>& estimator_names() {
-    static const std::vector<std::string> names{"ekf", "kf"};
+    static const std::vector<std::string> names{
+#define CREDENCE_ESTIMATOR(name, process, Type) #name,
+        CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
+#undef CREDENCE_ESTIMATOR
+    };
     return names;
+}
+
+Process process_of(Estimator estimator) {
+    static constexpr Process processes[] = {
+#define CREDENCE_ESTIMATOR(name, process, Type) Process::process,
+        CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
+#undef CREDENCE_ESTIMATOR
+    };
+    return processes[static_cast<std::size_t>(estimator)];
 }
 
 std::vector<Controller> parse_controllers(const std::string& value) {

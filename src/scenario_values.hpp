@@ -39,6 +39,8 @@ std::string published_text(const std::vector<PublishedFigure>& figures);
 
 const std::vector<std::string>& controller_names();
 const std::vector<std::string>& estimator_names();
+/// The process model that an estimator is for.
+Process process_of(Estimator estimator);
 std::vector<Controller> parse_controllers(const std::string& value);
 std::optional<std::vector<Estimator>> parse_estimators(const std::string& value);
 

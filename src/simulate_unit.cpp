@@ -3,6 +3,7 @@
 // containers, no library calls.
 
 #include <credence/detail.hpp>
+#include <credence/estimators.hpp>
 #include <credence/lane.hpp>
 #include <credence/simulate.hpp>
 
@@ -117,13 +118,13 @@ Mask<Real> first_lanes(int count) {
 }
 
 /// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that nobody reads.
-template <class Real, Process process, int compiled_features>
+template <class Real, Process process, int compiled_features, class Tag = EstimatorTag<KalmanFilter>>
 struct Simulation {
     using Layout = credence::Layout<process, compiled_features>;
 
     /// What a thread needs beside the unfolded figures.
     struct Room {
-        Workspace<Layout, Real> trial;
+        Workspace<Layout, Real, typename Tag::template type<Layout, Real>> trial;
         Detail<Layout, Real> detail;
     };
 
@@ -150,7 +151,7 @@ struct Simulation {
                                          problem.world.truncate);
             Real columns[column_count];
             Real* figures = unfolded.next();
-            run_trial(problem, batch.controller, draws, detail, room.trial, columns, figures);
+            run_trial(problem, batch.arm.controller, draws, detail, room.trial, columns, figures);
             const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
             const Mask<Real> counts = both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i));
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
@@ -186,8 +187,11 @@ struct Simulation {
 /// Calls use(Simulation) with the one that fits: a few features are written out by the compiler, more run the same
 /// source, rolled. Same bits either way.
 template <Process process, class Use>
-auto with_process(const ProblemView& problem, const Use& use) {
+auto with_process(const ProblemView& problem, Estimator estimator, const Use& use) {
     using Real = Pack<CREDENCE_LANES>;
+    if (estimator != own_estimator(process))
+        return with_estimator<process>(
+            estimator, [&](auto tag) { return use(Simulation<Real, process, any_count, decltype(tag)>{}); });
     switch (problem.features) {
 #if CREDENCE_WRITTEN_OUT > 3
         case 1: return use(Simulation<Real, process, 1>{});
@@ -206,19 +210,19 @@ auto with_process(const ProblemView& problem, const Use& use) {
 }
 
 template <class Use>
-auto with_simulation(const ProblemView& problem, const Use& use) {
-    if (problem.process == Process::heading) return with_process<Process::heading>(problem, use);
-    return with_process<Process::translation>(problem, use);
+auto with_simulation(const ProblemView& problem, Estimator estimator, const Use& use) {
+    if (problem.process == Process::heading) return with_process<Process::heading>(problem, estimator, use);
+    return with_process<Process::translation>(problem, estimator, use);
 }
 
 }  // namespace
 
 void simulate(const ProblemView& problem, const Batch& batch) {
-    with_simulation(problem, [&](auto simulation) { simulation.simulate(problem, batch); });
+    with_simulation(problem, batch.arm.estimator, [&](auto simulation) { simulation.simulate(problem, batch); });
 }
 
-std::size_t workspace_size(const ProblemView& problem) {
-    return with_simulation(problem, [&](auto simulation) { return simulation.workspace_size(problem); });
+std::size_t workspace_size(const ProblemView& problem, Estimator estimator) {
+    return with_simulation(problem, estimator, [&](auto simulation) { return simulation.workspace_size(problem); });
 }
 
 }  // namespace CREDENCE_UNIT

@@ -1,6 +1,7 @@
 #include <credence/trajectory.hpp>
 
 #include <credence/error.hpp>
+#include <credence/estimators.hpp>
 #include <credence/trial.hpp>
 
 #include <limits>
@@ -42,9 +43,10 @@ public:
                      [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
     }
 
-    template <class Layout, class Truth, class Belief, class EdgeMeasurement>
+    template <class Layout, class Truth, class Belief, class EdgeMeasurement, class Linearisation>
     void predicted(int k, const Layout& layout, const Truth& truth, const Command<double>& command,
-                   const Belief& belief, const Sighting<double>* sightings, const EdgeMeasurement& edge_measurement) {
+                   const Belief& belief, const Sighting<double>* sightings, const EdgeMeasurement& edge_measurement,
+                   const Linearisation& linearised) {
         TrajectoryStep& step = at(k);
         const int n = layout.size();
         step.control = {command.turn, {command.move.x, command.move.y}};
@@ -53,7 +55,7 @@ public:
         step.predicted_covariance = dense(belief.covariance, n);
         note_sightings(layout.features(), sightings, step);
         if (2 * (layout.features() + problem_.filter.edge_count) <= Trajectory::largest_innovation)
-            note_innovation(layout, belief, sightings, edge_measurement, step);
+            note_innovation(layout, belief, sightings, edge_measurement, linearised, step);
     }
 
     template <class Layout, class Belief>
@@ -103,24 +105,22 @@ private:
     }
 
     /// nu and S of the joint update [model.md, Filter]: features in the body frame, then edges; NaN where not observed.
-    template <class Layout, class Belief, class EdgeMeasurement>
+    template <class Layout, class Belief, class EdgeMeasurement, class Linearisation>
     void note_innovation(const Layout& layout, const Belief& belief, const Sighting<double>* sightings,
-                         const EdgeMeasurement& edge_measurement, TrajectoryStep& step) {
+                         const EdgeMeasurement& edge_measurement, const Linearisation& linearised,
+                         TrajectoryStep& step) {
         const FilterParameters& filter = problem_.filter;
         const int features = layout.features(), m = 2 * (features + filter.edge_count);
         Eigen::MatrixXd H = Eigen::MatrixXd::Zero(m, layout.size());
         Eigen::VectorXd N(m);
         step.innovation.resize(m);
-        Eigen::Matrix2d into_body = Eigen::Matrix2d::Identity();
-        if constexpr (Layout::has_heading) {
-            const Rotation<double> heading = rotation(belief.mean[Layout::heading]);
-            into_body << heading.cosine, heading.sine, -heading.sine, heading.cosine;
-        }
+        const Rotation<double> frame = linearised.frame;
+        Eigen::Matrix2d into_body;
+        into_body << frame.cosine, frame.sine, -frame.sine, frame.cosine;
         for (int j = 0; j < features; ++j) {
-            const Vector2<double> d = predicted_difference<Layout>(belief.mean, j);
-            step.innovation.segment<2>(2 * j) = eigen(sightings[j].z) - into_body * eigen(d);
-            if constexpr (Layout::has_heading)
-                H.block<2, 1>(2 * j, Layout::heading) = into_body * Eigen::Vector2d(d.y, -d.x);
+            const auto [rows, innovation] = linearised(j, sightings[j]);
+            step.innovation.segment<2>(2 * j) = into_body * eigen(innovation);
+            if constexpr (Layout::has_heading) H.block<2, 1>(2 * j, Layout::heading) = into_body * eigen(rows.lever);
             H.block<2, 2>(2 * j, Layout::position) = -into_body;
             H.block<2, 2>(2 * j, Layout::feature(j)) = into_body;
             N.segment<2>(2 * j).setConstant(believed_variance(filter, sightings[j].sigma));
@@ -149,26 +149,30 @@ private:
 };
 
 template <class Noise>
-Trajectory replay(const Problem& problem, Controller controller, const Noise& noise, const std::string& source) {
+Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source) {
     const ProblemView& view = problem.view();
     const Scenario& scenario = problem.scenario();
     Trajectory trajectory;
     trajectory.scenario = scenario;
     trajectory.source = source;
-    for (const Arm& arm : arms_of(scenario))
-        if (arm.controller == controller) trajectory.arm = arm;
+    trajectory.arm = arm;
     trajectory.columns.resize(column_count);
-    if (controller == Controller::greedy) trajectory.candidates = planner_candidates(scenario);
+    if (arm.controller == Controller::greedy) trajectory.candidates = planner_candidates(scenario);
     std::vector<double> figures(static_cast<std::size_t>(view.figure_count) * static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, trajectory);
-    const auto run = [&](auto layout) {
-        const auto work = std::make_unique<Workspace<decltype(layout), double>>();
-        run_trial(view, controller, noise, recorder, *work, trajectory.columns.data(), figures.data());
+    const auto run = [&](auto process, auto estimator) {
+        using StateLayout = Layout<process(), any_count>;
+        using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
+        const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
+        run_trial(view, arm.controller, noise, recorder, *work, trajectory.columns.data(), figures.data());
+    };
+    const auto run_process = [&](auto process) {
+        with_estimator<process()>(arm.estimator, [&](auto estimator) { run(process, estimator); });
     };
     if (view.process == Process::heading)
-        run(Layout<Process::heading, any_count>(view.features));
+        run_process(std::integral_constant<Process, Process::heading>{});
     else
-        run(Layout<Process::translation, any_count>(view.features));
+        run_process(std::integral_constant<Process, Process::translation>{});
     fill_failed(trial_columns(scenario), trajectory.columns.data());
     return trajectory;
 }
@@ -195,14 +199,14 @@ void check_covers(const NoiseRecord& record, const Scenario& scenario, const std
         refuse("a record has no detection draws", "Set sensor.detection=1");
 }
 
-Trajectory replay_trial(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t trial) {
-    return replay(problem, controller,
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
+    return replay(problem, arm,
                   KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate),
                   "root seed " + std::to_string(root_seed) + ", trial " + std::to_string(trial));
 }
 
-Trajectory replay_record(const Problem& problem, Controller controller, const NoiseRecord& record) {
-    return replay(problem, controller, RecordedDraws(record), "noise record");
+Trajectory replay_record(const Problem& problem, const Arm& arm, const NoiseRecord& record) {
+    return replay(problem, arm, RecordedDraws(record), "noise record");
 }
 
 }  // namespace credence

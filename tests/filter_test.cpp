@@ -154,7 +154,8 @@ TEST_CASE("filter: updating with two rows after two is the joint update") {
             const Look look(filter.edge_count, sample);
             auto belief = belief_of<decltype(layout)>(sample.x, sample.P);
             Update<double, decltype(layout)::capacity> result;
-            update_belief(belief, filter, layout, look.sightings, [&](int e) { return look.edge(e); }, result);
+            update_belief(belief, filter, layout, look.sightings, [&](int e) { return look.edge(e); },
+                          AtMean<decltype(layout), double>(belief.mean), result);
             CHECK(result.rows == static_cast<double>(look.z.size()));
             CHECK(result.unseen == 3 - static_cast<double>(look.sighting_rows) / 2);
             CHECK(result.positive_definite);

@@ -49,7 +49,7 @@ void write_record(const std::string& path, const Scenario& scenario, std::uint64
     const Problem problem(scenario);
     Values values;
     for (std::uint64_t trial = 0; trial < trials; ++trial) {
-        const Trajectory trajectory = replay_trial(problem, Controller::fixed, seed, static_cast<std::int64_t>(trial));
+        const Trajectory trajectory = replay_trial(problem, {Controller::fixed}, seed, static_cast<std::int64_t>(trial));
         for (std::size_t k = 1; k < trajectory.steps.size(); ++k) values.add(trajectory.steps[k]);
     }
     const hsize_t steps = static_cast<hsize_t>(scenario.poses - 1), n = static_cast<hsize_t>(state_size(scenario)),

@@ -98,7 +98,7 @@ TEST_CASE("store: noise records that lack something, have another shape or type,
 
 TEST_CASE("store: a trajectory is in its file as it was") {
     const TemporaryFolder folder;
-    const Trajectory greedy = replay_trial(Problem(scenario("one")), Controller::greedy, 1, 0);
+    const Trajectory greedy = replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0);
     write_trajectories(folder / "trace.h5", {greedy}, run_facts);
     const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "one", "greedy.ekf");
     const std::size_t candidates = greedy.candidates.size();
@@ -131,7 +131,7 @@ TEST_CASE("store: a trajectory is in its file as it was") {
 
 TEST_CASE("store: a trajectory has nothing but NaN and -1 where no step led to") {
     const TemporaryFolder folder;
-    const Trajectory trajectory = replay_trial(Problem(scenario("one")), Controller::greedy, 1, 0);
+    const Trajectory trajectory = replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0);
     write_trajectories(folder / "trace.h5", {trajectory}, {});
     const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "one", "greedy.ekf");
     for (const char* name :
@@ -153,8 +153,7 @@ TEST_CASE("store: trajectories lie in groups by scenario and arm, with the trial
     const TemporaryFolder folder;
     std::vector<Trajectory> trajectories;
     for (const Scenario& one : {scenario("first"), scenario("second", "translation")})
-        for (const Controller controller : {Controller::fixed, Controller::greedy})
-            trajectories.push_back(replay_trial(Problem(one), controller, 1, 0));
+        for (const Arm& arm : arms_of(one)) trajectories.push_back(replay_trial(Problem(one), arm, 1, 0));
     trajectories[1].columns[column_status] = 2;
     write_trajectories(folder / "trace.h5", trajectories, run_facts);
     const Handle root = hdf5::open_file(folder / "trace.h5");
@@ -176,7 +175,7 @@ TEST_CASE("store: innovations beyond the kept size are left out, and the file sa
     Scenario wide = scenario("wide", "translation");
     wide.features.positions.assign(23, {0.5, 0.5});  // 2 (23 + 23 * 22 / 2) = 552 rows
     wide.poses = 2;
-    const Trajectory trajectory = replay_trial(Problem(wide), Controller::fixed, 1, 0);
+    const Trajectory trajectory = replay_trial(Problem(wide), {Controller::fixed, Estimator::kf}, 1, 0);
     write_trajectories(folder / "trace.h5", {trajectory}, {});
     const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "wide", "fixed.kf");
     CHECK(!hdf5::has_link(group, "innovation"));

@@ -1,6 +1,7 @@
 #include "support.hpp"
 
 #include <credence/error.hpp>
+#include <credence/estimators.hpp>
 #include <credence/scenario_keys.hpp>
 #include <credence/trial.hpp>
 
@@ -107,7 +108,7 @@ public:
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement>
     void predicted(int k, const Layout& layout, const Truth& truth, const Command<double>& command,
-                   const Belief& belief, const Sighting<double>* sightings, const EdgeMeasurement& edge) {
+                   const Belief& belief, const Sighting<double>* sightings, const EdgeMeasurement& edge, const auto&) {
         RunStep& step = at(k);
         step.truth = true_state(layout, truth);
         step.control = {command.turn, {command.move.x, command.move.y}};
@@ -139,21 +140,27 @@ private:
 };
 
 template <Process process>
-void run_process(const ProblemView& view, Controller controller, const AnyNoise& noise, Form form, Scribe& scribe,
+void run_process(const ProblemView& view, const Arm& arm, const AnyNoise& noise, Form form, Scribe& scribe,
                  double* columns, double* figures) {
-    const auto run = [&](auto layout) {
-        const auto work = std::make_unique<Workspace<decltype(layout), double>>();
-        run_trial(view, controller, noise, scribe, *work, columns, figures);
+    const auto run = [&](auto layout, auto estimator) {
+        using Estimating = typename decltype(estimator)::template type<decltype(layout), double>;
+        const auto work = std::make_unique<Workspace<decltype(layout), double, Estimating>>();
+        run_trial(view, arm.controller, noise, scribe, *work, columns, figures);
     };
-    if (view.features == 3 && form == Form::engine)
-        run(Layout<process, 3>(3));
+    if (view.features == 3 && form == Form::engine && arm.estimator == own_estimator(process))
+        run(Layout<process, 3>(3), EstimatorTag<KalmanFilter>{});
     else
-        run(Layout<process, any_count>(view.features));
+        with_estimator<process>(arm.estimator,
+                                [&](auto estimator) { run(Layout<process, any_count>(view.features), estimator); });
 }
 
 }  // namespace
 
 Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form) {
+    return run_arm(scenario, Arm{controller, own_estimator(scenario.process)}, noise, form);
+}
+
+Run run_arm(const Scenario& scenario, const Arm& arm, const AnyNoise& noise, Form form) {
     const Problem problem(scenario);
     const ProblemView& view = problem.view();
     Run run;
@@ -163,9 +170,9 @@ Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noi
     Eigen::MatrixXd by_step(view.poses - 1, view.figure_count);  // Eigen's columns are the engine's rows
     Scribe scribe(run, view);
     if (view.process == Process::heading)
-        run_process<Process::heading>(view, controller, noise, form, scribe, run.columns.data(), by_step.data());
+        run_process<Process::heading>(view, arm, noise, form, scribe, run.columns.data(), by_step.data());
     else
-        run_process<Process::translation>(view, controller, noise, form, scribe, run.columns.data(), by_step.data());
+        run_process<Process::translation>(view, arm, noise, form, scribe, run.columns.data(), by_step.data());
     run.figures = by_step.transpose();
     return run;
 }

@@ -81,6 +81,8 @@ struct Run {
 /// Which compiled form of the equations: the one that the engine picks, or always that for any number of features.
 enum class Form { engine, any_number };
 
+Run run_arm(const Scenario& scenario, const Arm& arm, const AnyNoise& noise, Form form = Form::engine);
+/// The same with the process model's own estimator.
 Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form = Form::engine);
 
 /// Greatest differences of a production trial from the oracle's, over its poses.

@@ -23,7 +23,7 @@ TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in
         const Problem problem(results.scenario);
         for (std::size_t a = 0; a < results.arms.size(); ++a)
             for (const std::int64_t trial : {0, 17, 255, 256, 299}) {
-                const Trajectory t = replay_trial(problem, arms_of(results.scenario)[a].controller, 3, trial);
+                const Trajectory t = replay_trial(problem, arms_of(results.scenario)[a], 3, trial);
                 for (std::size_t c = 0; c < t.columns.size(); ++c)
                     CHECK(std::bit_cast<std::uint64_t>(t.columns[c]) ==
                           std::bit_cast<std::uint64_t>(results.arms[a].columns[c][static_cast<std::size_t>(trial)]));
@@ -34,7 +34,7 @@ TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in
 TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from what is written down") {
     for (const Scenario& scenario : small_scenarios()) {
         const Problem problem(scenario);
-        const Trajectory t = replay_trial(problem, Controller::greedy, 5, 2);
+        const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 2);
         const int n = state_size(scenario);
         double nees = 0, nis = 0, rows = 0, unseen = 0;
         for (std::size_t k = 1; k < t.steps.size(); ++k) {
@@ -63,7 +63,7 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
 
 TEST_CASE("trajectory: the planner's choice is the last of its least costs, and the step that follows keeps its promise") {
     const Problem problem(small_scenarios().front());
-    const Trajectory t = replay_trial(problem, Controller::greedy, 5, 4);
+    const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 4);
     for (std::size_t k = 1; k < t.steps.size(); ++k) {
         const std::vector<double>& costs = t.steps[k].candidate_cost;
         REQUIRE(costs.size() == t.candidates.size());
@@ -76,7 +76,7 @@ TEST_CASE("trajectory: the planner's choice is the last of its least costs, and 
 
 TEST_CASE("trajectory: pose 0 has a belief and a truth, and nothing of a step") {
     const Problem problem(small_scenarios().front());
-    const Trajectory t = replay_trial(problem, Controller::fixed, 1, 0);
+    const Trajectory t = replay_trial(problem, {Controller::fixed}, 1, 0);
     CHECK(t.steps.front().mean.size() == 9);
     CHECK(t.steps.front().truth.size() == 9);
     CHECK(t.steps.front().predicted_mean.size() == 0);

@@ -115,12 +115,41 @@ Vector2<Real> predicted_difference(const Real* mean, int j) {
     return point_at(mean, Layout::feature(j)) - point_at(mean, Layout::position);
 }
 
+/// Rows of a sighting of feature j, linearised where d = f_j - r.
+template <class Layout, class Real, class Index>
+SightingRows<Layout, Real, Index> sighting_rows_at(const Vector2<Real>& d, Index j) {
+    return {j, {d.y, -d.x}};
+}
+
 /// Rows of a sighting of feature j, in the world frame, at the mean x.
 template <class Layout, class Real, class Index>
 SightingRows<Layout, Real, Index> sighting_rows(const Real* mean, Index j) {
-    const Vector2<Real> d = predicted_difference<Layout>(mean, j);
-    return {j, {d.y, -d.x}};
+    return sighting_rows_at<Layout>(predicted_difference<Layout>(mean, j), j);
 }
+
+/// A sighting as an estimator takes it in: its rows of H and its innovation, turned by the estimator's `frame`.
+template <class Layout, class Real, class Index>
+struct Linearised {
+    SightingRows<Layout, Real, Index> rows;
+    Vector2<Real> innovation;
+};
+
+/// Linearises sightings at the mean x, turned into the world by R(theta^): the extended Kalman filter's way.
+template <class Layout, class Real>
+struct AtMean {
+    const Real* mean;
+    Rotation<Real> frame{Real(1), Real(0)};
+
+    explicit AtMean(const Real* x) : mean(x) {
+        if constexpr (Layout::has_heading) frame = rotation(x[Layout::heading]);
+    }
+
+    template <class Index>
+    Linearised<Layout, Real, Index> operator()(Index j, const Sighting<Real>& sighting) const {
+        const Vector2<Real> z = Layout::has_heading ? rotate(frame, sighting.z) : sighting.z;
+        return {sighting_rows<Layout>(mean, j), z - predicted_difference<Layout>(mean, j)};
+    }
+};
 
 /// Believed noise variance of a sighting with true standard deviation sigma.
 template <class Real>

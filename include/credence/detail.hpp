@@ -60,13 +60,14 @@ public:
     template <class... Anything>
     void planned(const Anything&...) {}
 
-    template <class EdgeMeasurement>
+    template <class EdgeMeasurement, class Linearisation>
     void predicted(int k, const Layout& layout, const Truth<Real, Layout::feature_capacity>& truth,
                    const Command<Real>&, const Belief<Real, Layout::capacity>& belief,
-                   const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement) {
+                   const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                   const Linearisation& linearised) {
         if (!on) return;
         truth_ = &truth;
-        whiten(k, layout, belief, sightings, edge_measurement);
+        whiten(k, layout, belief, sightings, edge_measurement, linearised);
         correlate(k, pair_count(layout));
     }
 
@@ -85,9 +86,10 @@ private:
     }
 
     /// Takes the rows in one pair after the other, as the update does, on a copy.
-    template <class EdgeMeasurement>
+    template <class EdgeMeasurement, class Linearisation>
     [[gnu::noinline]] void whiten(int k, const Layout& layout, const Belief<Real, Layout::capacity>& belief,
-                                  const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement) {
+                                  const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                                  const Linearisation& linearised) {
         const int n = layout.size(), features = layout.features();
         const FilterParameters& filter = problem->filter;
         WhitenedInnovation<Real>& now = history_[k % (largest_lag + 1)];
@@ -97,15 +99,12 @@ private:
         }
         update_.nis = Real(0);
         update_.positive_definite = all_lanes<Real>();
-        Rotation<Real> heading{Real(1), Real(0)};
-        if constexpr (Layout::has_heading) heading = rotation(belief.mean[Layout::heading]);
         for (int j = 0; j < features; ++j) {
             const Sighting<Real>& sighting = sightings[j];
-            const Vector2<Real> z = Layout::has_heading ? rotate(heading, sighting.z) : sighting.z;
+            const auto [rows, innovation] = linearised(j, sighting);
             now.observed[j] = select(sighting.seen, Real(1), Real(0));
-            now.pair[j] = take(layout, sighting_rows<Layout>(belief.mean, j),
-                               believed_variance(filter, sighting.sigma), sighting.seen,
-                               z - predicted_difference<Layout>(belief.mean, j), heading);
+            now.pair[j] = take(layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,
+                               linearised.frame);
         }
         const int edges = pair_count(layout) - features;
         for (int e = 0; e < edges; ++e) {
@@ -118,7 +117,7 @@ private:
         }
     }
 
-    /// Conditions the copy on two rows in the world frame, and whitens them in the frame that `frame` leads from.
+    /// Conditions the copy on two rows, and whitens them in the frame that `frame` leads from.
     template <class Rows>
     Vector2<Real> take(const Layout& layout, const Rows& rows, Real N, Mask<Real> used, const Vector2<Real>& nu,
                        const Rotation<Real>& frame) {

@@ -92,11 +92,12 @@ void turn_position(Symmetric<Real, capacity>& P, const Layout& layout, const Vec
     });
 }
 
-/// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = R J
-/// v = J R v.
-template <class Layout, class Real, int capacity>
+/// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = J u.
+/// `turned(R(theta) v)` gives u, the move that the heading's error turns: R(theta) v itself, but for estimators that
+/// linearise elsewhere.
+template <class Layout, class Real, int capacity, class Turned>
 void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
-                   const Command<Real>& command) {
+                   const Command<Real>& command, const Turned& turned) {
     constexpr auto x = Layout::position;
     constexpr auto y = x + one;
     auto& P = belief.covariance;
@@ -105,13 +106,20 @@ void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filte
         constexpr auto t = Layout::heading;
         move = rotate(rotation(belief.mean[t]), command.move);
         belief.mean[t] = belief.mean[t] + command.turn;
-        turn_position(P, layout, {-move.y, move.x});
+        const Vector2<Real> u = turned(move);
+        turn_position(P, layout, {-u.y, u.x});
         P.entry[t][t] = P.entry[t][t] + Real(filter.variance_heading);
     }
     belief.mean[x] = belief.mean[x] + move.x;
     belief.mean[y] = belief.mean[y] + move.y;
     P.entry[x][x] = P.entry[x][x] + Real(filter.variance_odometry);
     P.entry[y][y] = P.entry[y][y] + Real(filter.variance_odometry);
+}
+
+template <class Layout, class Real, int capacity>
+void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                   const Command<Real>& command) {
+    predict_robot(belief, filter, layout, command, [](const Vector2<Real>& move) { return move; });
 }
 
 }  // namespace CREDENCE_UNIT

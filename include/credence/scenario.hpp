@@ -4,6 +4,8 @@
 //
 // Units: lengths in `length_unit` (dm in the seed), angles in radians; sigma is a standard deviation.
 
+#include <credence/estimator_list.hpp>
+
 #include <limits>
 #include <optional>
 #include <string>
@@ -45,7 +47,12 @@ enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };
 enum class Controller { fixed, greedy };
-enum class Estimator { ekf, kf };
+/// How the state is estimated, in the order of estimator_list.hpp.
+enum class Estimator {
+#define CREDENCE_ESTIMATOR(name, process, Type) name,
+    CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
+#undef CREDENCE_ESTIMATOR
+};
 
 struct FeatureSettings {
     std::vector<Point> positions{{0.5, 0.5}, {0.9, 0.8}, {0.3, 0.4}};  ///< f_0, 1 to 64 of them

@@ -15,7 +15,7 @@ inline constexpr int octet = 8;
 /// Consecutive trials of one arm, and where their results go. Results are the same bits from every unit. Sums are eight
 /// running sums, trial i of the batch going to the one of i mod 8 in trial order; failed trials do not enter them.
 struct Batch {
-    Controller controller = Controller::fixed;
+    Arm arm;
     std::uint64_t root_seed = 0;
     std::int64_t first_trial = 0;
     int trials = 0;
@@ -40,14 +40,14 @@ struct Unit {
     std::string name;
     int lanes = 1;
     SimulateFunction simulate = nullptr;
-    std::size_t (*workspace_size)(const ProblemView&) = nullptr;
+    std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
 };
 
 /// What a unit compiled from src/simulate_unit.cpp offers under its name, and its entry in a list of units.
 #define CREDENCE_DECLARE_UNIT(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Batch&);   \
-    std::size_t workspace_size(const ProblemView&);    \
+    std::size_t workspace_size(const ProblemView&, Estimator); \
     }
 #define CREDENCE_LIST_UNIT(name, lanes) Unit{#name, lanes, name::simulate, name::workspace_size}
 

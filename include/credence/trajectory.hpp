@@ -47,12 +47,12 @@ struct Trajectory {
 };
 
 /// Runs one trial of one arm again, on the study's draws. The same bits as the engine's.
-Trajectory replay_trial(const Problem& problem, Controller controller, std::uint64_t root_seed, std::int64_t trial);
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
 
 /// Throws InputError where the record is too short, too narrow or lacks what the scenario draws. `file` names it.
 void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file);
 
 /// Runs one arm on recorded noise, which must cover the scenario.
-Trajectory replay_record(const Problem& problem, Controller controller, const NoiseRecord& record);
+Trajectory replay_record(const Problem& problem, const Arm& arm, const NoiseRecord& record);
 
 }  // namespace credence

@@ -4,6 +4,7 @@
 // Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at
 // once.
 
+#include <credence/estimator.hpp>
 #include <credence/judge.hpp>
 
 namespace credence {
@@ -13,25 +14,28 @@ inline namespace CREDENCE_UNIT {
 // those of the tests. Its face: started, planned, predicted and updated, as called below.
 
 /// What one trial needs room for. Sixty-four features in lanes would not fit a thread's stack.
-template <class Layout, class Real>
+template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
 struct Workspace {
+    static_assert(meets_the_contract<Estimating, Layout, Real>());
     Truth<Real, Layout::feature_capacity> truth;
     Belief<Real, Layout::capacity> belief;
     Sighting<Real> sightings[Layout::feature_capacity];
     Update<Real, Layout::capacity> update;
     Elimination<Real, Layout::capacity> elimination;
     PlannerWorkspace<Layout, Real> planner;
+    Estimating estimator;
 };
 
 /// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
-template <class Layout, class Real, class Noise, class Observer>
+template <class Layout, class Real, class Estimating, class Noise, class Observer>
 void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
-               Workspace<Layout, Real>& work, Real* columns, Real* figures) {
+               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
     const Layout layout(problem.features);
     const auto features = layout.features();
     auto& truth = work.truth;
     auto& belief = work.belief;
     auto& sightings = work.sightings;
+    auto& estimator = work.estimator;
     Sums<Real> sums;
     Outcome<Real> outcome;
 
@@ -43,6 +47,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     estimation_error(belief, truth, layout, error);
     sums.pose_error = squared_pose_error<Layout>(error);
     note_trouble(belief, layout.size(), sums.pose_error, all_lanes<Real>(), 0, outcome);
+    estimator.start(layout, belief, truth);
     observer.started(layout, truth, belief);
 
     for (int k = 1; k < problem.poses; ++k) {
@@ -58,18 +63,18 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         move_robot<Layout>(truth, problem.world, command, k, noise);
 
         // Predict.
-        predict_robot(belief, problem.filter, layout, command);
-        predict_features(belief, problem.filter, layout, k);
+        estimator.predict(belief, problem.filter, layout, command, truth, k);
 
         // See.
         look(truth, problem.sensor, layout, k, noise, sightings);
         const auto edge_measurement = [&](int e) {
             return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
         };
-        observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement);
+        const auto linearised = estimator.linearised(belief, layout, truth);
+        observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement, linearised);
 
         // Update, and compare with the truth.
-        update_belief(belief, problem.filter, layout, sightings, edge_measurement, work.update);
+        estimator.update(belief, problem.filter, layout, sightings, edge_measurement, linearised, work.update);
         judge_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, figures);
         observer.updated(k, layout, belief, figures);
     }

@@ -6,12 +6,13 @@
 namespace credence {
 inline namespace CREDENCE_UNIT {
 
-/// Updates a predicted belief with what was seen and with every edge: x <- x + K nu, P <- P - K S K'.
-/// `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world frame.
-template <class Layout, class Real, int capacity, class EdgeMeasurement>
-CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
-                                 const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
-                                 Update<Real, capacity>& update) {
+/// Conditions a predicted belief on what was seen and on every edge: P <- P - K S K', the correction K nu in `update`;
+/// the mean stays. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world frame;
+/// `linearised(j, sighting)` its rows and innovation.
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                      const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                      const Linearisation& linearised, Update<Real, capacity>& update) {
     const auto n = layout.size();
     update.nis = update.unseen = Real(0);
     update.rows = Real(2 * filter.edge_count);
@@ -20,22 +21,27 @@ CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterPar
     ContrastInnovations<Layout, Real> contrasts;
     contrast_innovations(belief, filter, layout, edge_measurement, contrasts);
     update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone);
-    Rotation<Real> heading{};
-    if constexpr (Layout::has_heading) heading = rotation(belief.mean[Layout::heading]);
 
     each(zero, layout.features(), [&](auto j) {
         const Sighting<Real>& sighting = sightings[j];
         update.rows = update.rows + select(sighting.seen, Real(2), Real(0));
         update.unseen = update.unseen + select(sighting.seen, Real(0), Real(1));
         if (!any(sighting.seen)) return;
-        const Vector2<Real> z = Layout::has_heading ? rotate(heading, sighting.z) : sighting.z;
-        take_in(belief.covariance, layout, sighting_rows<Layout>(belief.mean, j),
-                believed_variance(filter, sighting.sigma), sighting.seen,
-                z - predicted_difference<Layout>(belief.mean, j), update);
+        const auto [rows, innovation] = linearised(j, sighting);
+        take_in(belief.covariance, layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,
+                update);
     });
     update.nis_features = update.nis;
     take_in_edges(belief, filter, layout, contrasts, update);
-    each(zero, n, [&](auto i) { belief.mean[i] = belief.mean[i] + update.correction[i]; });
+}
+
+/// Updates a predicted belief: x <- x + K nu, P <- P - K S K'.
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                                 const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                                 const Linearisation& linearised, Update<Real, capacity>& update) {
+    condition_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
+    each(zero, layout.size(), [&](auto i) { belief.mean[i] = belief.mean[i] + update.correction[i]; });
 }
 
 }  // namespace CREDENCE_UNIT

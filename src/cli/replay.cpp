@@ -45,7 +45,7 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
     check_covers(record, scenario, record_path);
     const Problem problem(scenario);
     std::vector<Trajectory> trajectories;
-    for (const Arm& arm : arms_of(scenario)) trajectories.push_back(replay_record(problem, arm.controller, record));
+    for (const Arm& arm : arms_of(scenario)) trajectories.push_back(replay_record(problem, arm, record));
     return trajectories;
 }
 
@@ -97,7 +97,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const std::size_t a = find_arm(results, arm);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
     const Problem problem(results.scenario);
-    Trajectory trajectory = replay_trial(problem, arms_of(results.scenario)[a].controller, study.root_seed, trial);
+    Trajectory trajectory = replay_trial(problem, arms_of(results.scenario)[a], study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size(); ++c) {
         const double stored = column_values(results.arms[a], c, row, 1).front();
         if (!same(stored, trajectory.columns[c]))
