@@ -4,6 +4,7 @@
 #include <set>
 
 #include "command.hpp"
+#include "version.hpp"
 
 namespace credence::cli {
 
@@ -19,7 +20,7 @@ const Command& compare_command() {
         "filter.measurement=0.8\n"
         "shows what that did.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
-         {"format", "FORMAT", "text (default), json or csv"},
+         {"format", "FORMAT", "text (default), json, csv, or html: a page to send"},
          output_option("write there, not to the standard output")}};
     return command;
 }
@@ -36,7 +37,7 @@ void check_paths(const std::vector<std::string>& paths) {
 }  // namespace
 
 int compare(const Parsed& parsed) {
-    const std::string format = parsed.choice("format", {"text", "json", "csv"});
+    const std::string format = parsed.choice("format", {"text", "json", "csv", "html"});
     check_paths(parsed.arguments);
     std::optional<ArmsChoice> choice;
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
@@ -44,9 +45,10 @@ int compare(const Parsed& parsed) {
     std::vector<StudyFile> files;
     for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path).study});
     const CompareReport report = compare_studies(files, choice);
-    write_output(parsed, format == "json"  ? compare_json(report)
-                         : format == "csv" ? compare_csv(report)
-                                           : compare_text(report));
+    write_output(parsed, format == "json"   ? compare_json(report)
+                         : format == "csv"  ? compare_csv(report)
+                         : format == "html" ? compare_html(report, made_by())
+                                            : compare_text(report));
     return 0;
 }
 
