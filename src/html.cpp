@@ -73,6 +73,8 @@ Html figure_as(double value, const std::string& text) {
 
 Html figure(double value, int digits) { return figure_as(value, number(value, digits)); }
 
+Html figure_count(double value) { return figure_as(value, short_number(value)); }
+
 Html figure_within(double value, double uncertainty) { return figure(value, decimals_for(uncertainty)); }
 
 Html figure_interval(const Interval& interval, int digits) {

@@ -40,14 +40,15 @@ Html blocks_table(const Part& part) {
             const Interval over_steps = over_steps95(*block);
             const int digits = decimals_for(half_of(over_steps)),
                       ratio_digits = decimals_for(half_of(block->accuracy.ratio_ci95));
-            rows.row(escaped(block->block),
-                     {figure(block->dimension, 0), figure(block->run.mean, digits), figure_interval(over_steps, digits),
-                      figure_within(block->run.standard_error, block->run.standard_error),
-                      escaped(of_steps(block->anees.outside_simultaneous, block->anees.observed)),
-                      escaped(of_steps(block->anees.outside, block->anees.observed)),
-                      escaped(number(mean_of(block->variance_ratio), 2)), figure(block->accuracy.over_steps, 4),
-                      figure(block->accuracy.ratio, ratio_digits),
-                      figure_interval(block->accuracy.ratio_ci95, ratio_digits)});
+            rows.row(
+                escaped(block->block),
+                {figure_count(block->dimension), figure(block->run.mean, digits), figure_interval(over_steps, digits),
+                 figure_within(block->run.standard_error, block->run.standard_error),
+                 escaped(of_steps(block->anees.outside_simultaneous, block->anees.observed)),
+                 escaped(of_steps(block->anees.outside, block->anees.observed)),
+                 escaped(number(mean_of(block->variance_ratio), 2)), figure(block->accuracy.over_steps, 4),
+                 figure(block->accuracy.ratio, ratio_digits),
+                 figure_interval(block->accuracy.ratio_ci95, ratio_digits)});
         }
     });
 }
@@ -88,7 +89,7 @@ Html nis_table(const Part& part) {
         for (const NisEvidence& nis : evidence.nis) {
             const double half = half_of(std::isnan(nis.ratio95.low) ? nis.scale95 : nis.ratio95);
             const int digits = decimals_for(half);
-            rows.row(escaped(nis.part), {figure(nis.degrees, 0), figure(nis.ratio, digits),
+            rows.row(escaped(nis.part), {figure_count(nis.degrees), figure(nis.ratio, digits),
                                          figure_interval(nis.ratio95, digits), figure_interval(nis.scale95, digits + 1),
                                          escaped(of_steps(nis.nis.outside_simultaneous, nis.nis.observed)),
                                          escaped(of_steps(nis.nis.outside, nis.nis.observed))});
@@ -103,9 +104,9 @@ Html whiteness_table(const Part& part) {
         for (const Whiteness& lag : evidence.whiteness) {
             const int digits = decimals_for(lag.bound);
             rows.row(
-                figure(lag.lag, 0),
+                figure_count(lag.lag),
                 {figure(lag.correlation, digits), figure(lag.scaled, digits), "± "_html + figure(lag.bound, digits),
-                 "± "_html + figure(lag.simultaneous_bound, digits), figure(static_cast<double>(lag.count), 0)});
+                 "± "_html + figure(lag.simultaneous_bound, digits), figure_count(static_cast<double>(lag.count))});
         }
     });
 }
@@ -121,9 +122,9 @@ Html shape_table(const Part& part) {
         for (const Credibility& step : credibility.step) trials = std::max(trials, step.count);
         const bool known = worst.known > 0;
         table.row(escaped(arm->arm),
-                  {known ? figure(worst.distance, 4) : "-"_html, known ? figure(worst.step, 0) : "-"_html,
+                  {known ? figure(worst.distance, 4) : "-"_html, known ? figure_count(worst.step) : "-"_html,
                    known ? escaped(p_text(worst.p)) : "-"_html, figure(credibility.nci, 3),
-                   figure(credibility.inclination, 3), figure(static_cast<double>(trials), 0)});
+                   figure(credibility.inclination, 3), figure_count(static_cast<double>(trials))});
     }
     return table.html();
 }

@@ -76,7 +76,7 @@ Html spread_table(const Part& part) {
     HtmlTable table(part.scenario.name + ": how the figures are spread", heads);
     add_rows(part, table, [](const FigureReport& one) {
         const int digits = decimals_for(half_of(one.summary.ci95));
-        std::vector<Html> cells{figure(static_cast<double>(one.summary.count), 0),
+        std::vector<Html> cells{figure_count(static_cast<double>(one.summary.count)),
                                 figure_within(one.summary.standard_error, one.summary.standard_error)};
         for (const double quantile : one.quantiles) cells.push_back(figure(quantile, digits));
         return cells;
@@ -114,10 +114,11 @@ Html difference_spread_table(const Comparison& pair) {
     for (const ComparedFigure& one : pair.figures) {
         const Summary& s = one.paired.difference;
         if (one.paired.pairs == 0) continue;
-        table.row(escaped(figure_words(one.name, one.unit)),
-                  {figure(static_cast<double>(one.paired.pairs), 0), figure_within(s.standard_error, s.standard_error),
-                   figure(s.standard_deviation, decimals_for(half_of(s.ci95))), figure(one.paired.wilcoxon_z, 2),
-                   p_value(one.paired.wilcoxon_p)});
+        table.row(
+            escaped(figure_words(one.name, one.unit)),
+            {figure_count(static_cast<double>(one.paired.pairs)), figure_within(s.standard_error, s.standard_error),
+             figure(s.standard_deviation, decimals_for(half_of(s.ci95))), figure(one.paired.wilcoxon_z, 2),
+             p_value(one.paired.wilcoxon_p)});
     }
     return table.html();
 }

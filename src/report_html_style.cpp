@@ -81,14 +81,15 @@ svg { display: block; width: 100%; height: auto; font: 11px system-ui, "Segoe UI
   @page { margin: 14mm; }
   html { color-scheme: light; }
   body { max-width: none; padding: 0; font-size: 9.5pt; }
-  h2 { margin-top: 1.2rem; } h2, h3, h4, caption, figcaption { break-after: avoid; }
+  h2 { margin-top: 1.2rem; } h2, h3, h4, h4 + p, caption, figcaption, thead { break-after: avoid; }
   .scenario ~ .scenario { break-before: page; } .scroll { overflow: visible; } tr, pre { break-inside: avoid; } pre { break-inside: auto; }
   table { font-size: 7pt; } th, td { padding: .12rem .35rem; } th:first-child { padding-left: 0; }
-  .charts, .charts:has(> figure) { grid-template-columns: 1fr 1fr; gap: .6rem 1.2rem; }
+  .charts, .charts:has(> figure:nth-child(2):last-child) { grid-template-columns: 1fr 1fr; gap: .6rem 1.2rem; }
   .verdicts li { grid-template-columns: 12rem 8rem 1fr; }
   details:not(.printed), .screen { display: none; }
   details.printed > summary { list-style: none; color: inherit; }
   details.printed::details-content { content-visibility: visible; display: block; }
+  .printed pre { columns: 2; font-size: 7.5pt; }
   a { color: inherit; text-decoration: none; }
 }
 )";

@@ -49,9 +49,9 @@ Html verdict_line(const ArmReport& arm) {
     const Html numbers =
         "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
         (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
-        figure(static_cast<double>(arm.failed), 0) + " of "_html + figure(static_cast<double>(arm.trials), 0) +
+        figure_count(static_cast<double>(arm.failed)) + " of "_html + figure_count(static_cast<double>(arm.trials)) +
         " trials failed"_html +
-        (arm.diverged > 0 ? ", "_html + figure(static_cast<double>(arm.diverged), 0) + " diverged"_html : Html());
+        (arm.diverged > 0 ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " diverged"_html : Html());
     return element("li", "<p class=\"arm\"><a href=\"#"_html + section_id(arm.scenario) + "\">"_html +
                              escaped(arm.scenario) + "</a> "_html + element("b", escaped(arm.arm)) + "</p>\n"_html +
                              badge(arm.consistency.verdict) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +

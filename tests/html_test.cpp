@@ -43,6 +43,7 @@ TEST_CASE("html: a figure shows rounded and carries its exact value") {
     CHECK(short_number(0.123456) == "0.12346");
     CHECK(short_number(276634) == "276634");
     CHECK(short_number(3) == "3");
+    CHECK(figure_count(12345678).text() == "<data value=\"12345678\">12345678</data>");
     CHECK(short_number(2e-7) == "2e-07");
     CHECK(short_number(none) == "-");
     CHECK(with_powers("dm^2 + rad^2") == "dm² + rad²");

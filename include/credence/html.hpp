@@ -39,6 +39,8 @@ Html element(std::string_view name, const Html& content, const Html& attributes 
 Html figure(double value, int digits);
 /// The same with a text of one's own, such as `71 %`.
 Html figure_as(double value, const std::string& text);
+/// A count, however large, in full.
+Html figure_count(double value);
 /// `figure` with the decimals that show two digits of `uncertainty` [report_format.hpp].
 Html figure_within(double value, double uncertainty);
 /// `[low, high]`, both of them figures; `-` where there is none.
