@@ -8,9 +8,19 @@ import tempfile
 
 import websocket
 
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-dev-shm-usage",
-         "--disable-background-networking", "--hide-scrollbars", "--force-device-scale-factor=1",
-         "--remote-debugging-port=0", "--remote-allow-origins=*"]
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-extensions",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--hide-scrollbars",
+    "--force-device-scale-factor=1",
+    "--remote-debugging-port=0",
+    "--remote-allow-origins=*",
+]
 
 
 class Browser:
@@ -18,9 +28,15 @@ class Browser:
 
     def __init__(self):
         self.folder = tempfile.mkdtemp()
-        self.process = subprocess.Popen([shutil.which("chromium"), *FLAGS, "--user-data-dir=" + self.folder, "about:blank"],
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        address = next((line.split()[-1] for line in self.process.stderr if line.startswith("DevTools listening")), None)
+        self.process = subprocess.Popen(
+            [shutil.which("chromium"), *FLAGS, "--user-data-dir=" + self.folder, "about:blank"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        address = next(
+            (line.split()[-1] for line in self.process.stderr if line.startswith("DevTools listening")), None
+        )
         if address is None:
             raise RuntimeError("chromium does not start")
         # What it writes from now on must go somewhere, or it waits for a reader.
@@ -70,7 +86,9 @@ class Browser:
 
     def look(self, width, height=900, scheme="light"):
         """How wide the window is, and which colours its user prefers."""
-        self.command("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.command(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600
+        )
         self.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
     def open(self, path):
@@ -92,7 +110,10 @@ class Browser:
         options = {}
         if top is not None:
             width = self.evaluate("innerWidth")
-            options = {"captureBeyondViewport": True, "clip": {"x": 0, "y": top, "width": width, "height": height, "scale": 1}}
+            options = {
+                "captureBeyondViewport": True,
+                "clip": {"x": 0, "y": top, "width": width, "height": height, "scale": 1},
+            }
         data = self.command("Page.captureScreenshot", format="png", **options)["data"]
         pathlib.Path(path).write_bytes(base64.b64decode(data))
 

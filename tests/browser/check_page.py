@@ -42,7 +42,11 @@ def table(tables, words):
 
 
 def rows(found, group=None):
-    return {row["head"]: row["cells"] for row in found["rows"] if group is None or row["group"] == group or row["group"] == ""}
+    return {
+        row["head"]: row["cells"]
+        for row in found["rows"]
+        if group is None or row["group"] == group or row["group"] == ""
+    }
 
 
 def check_cells(cells, expected, what):
@@ -57,14 +61,22 @@ def check_cells(cells, expected, what):
             if number and "e" not in number:
                 scale = 100 if text.endswith("%") else 1
                 digits = len(number.partition(".")[2])
-                near = abs(float(number) - scale * value) <= 0.5001 * 10 ** -digits or abs(value) >= 1e6 or text[0] in "<>"
+                near = (
+                    abs(float(number) - scale * value) <= 0.5001 * 10 ** -digits or abs(value) >= 1e6 or text[0] in "<>"
+                )
                 expect(near, f"{what}: shows {text} for {value}")
 
 
 def check_figures(tables, arm):
     found = table(tables, f"{arm['scenario']}: figures of a trial")
-    groups = {"trace_P": "trace(P), last step", "mean_trace_P": "trace(P), mean", "unseen": "unseen", "pose_error": "pose error",
-              "nees_ratio": "NEES/n", "nis_ratio": "NIS/m"}
+    groups = {
+        "trace_P": "trace(P), last step",
+        "mean_trace_P": "trace(P), mean",
+        "unseen": "unseen",
+        "pose_error": "pose error",
+        "nees_ratio": "NEES/n",
+        "nis_ratio": "NIS/m",
+    }
     for name, words in groups.items():
         of_arm = [row for row in found["rows"] if row["group"].startswith(words) and row["head"] == arm["arm"]]
         figure = arm[name]
@@ -72,9 +84,18 @@ def check_figures(tables, arm):
             expect(not of_arm, f"{name} of {arm['arm']} has a row without values")
             continue
         published = figure.get("published")
-        check_cells(of_arm[0]["cells"],
-                    [[figure["mean"]], figure["ci95"], figure.get("bootstrap95", []), [figure["median"]], [figure["sd"]],
-                     [published["value"], published["percentile"]] if published else []], f"{arm['arm']} {name}")
+        check_cells(
+            of_arm[0]["cells"],
+            [
+                [figure["mean"]],
+                figure["ci95"],
+                figure.get("bootstrap95", []),
+                [figure["median"]],
+                [figure["sd"]],
+                [published["value"], published["percentile"]] if published else [],
+            ],
+            f"{arm['arm']} {name}",
+        )
 
 
 def check_blocks(tables, arm, single):
@@ -85,23 +106,44 @@ def check_blocks(tables, arm, single):
     expect(len(shown) == min(10, len(arm["blocks"])), f"{arm['arm']}: {len(shown)} blocks are shown")
     for block in shown:
         name, accuracy = block["block"], block["accuracy"]
-        check_cells([cell for i, cell in enumerate(blocks[name]) if i not in (4, 5, 6)],
-                    [[block["dimension"]], [block["nees_ratio"]], block["ci95"], [block["se"]], [accuracy["rmse"]],
-                     [accuracy["rmse_ratio"]], accuracy["rmse_ratio_ci95"]], f"{arm['arm']} block {name}")
+        check_cells(
+            [cell for i, cell in enumerate(blocks[name]) if i not in (4, 5, 6)],
+            [
+                [block["dimension"]],
+                [block["nees_ratio"]],
+                block["ci95"],
+                [block["se"]],
+                [accuracy["rmse"]],
+                [accuracy["rmse_ratio"]],
+                accuracy["rmse_ratio_ci95"],
+            ],
+            f"{arm['arm']} block {name}",
+        )
         out = f"{block['anees']['steps_outside_simultaneous']} of {block['anees']['steps']}"
         expect(blocks[name][4]["text"] == out, f"{arm['arm']} {name}: steps out {blocks[name][4]['text']}, not {out}")
-        check_cells(coverage[name], [[level["mean"]] for level in block["coverage"]], f"{arm['arm']} coverage of {name}")
+        check_cells(
+            coverage[name], [[level["mean"]] for level in block["coverage"]], f"{arm['arm']} coverage of {name}"
+        )
         check_steps(tables, arm, block)
 
 
 def check_steps(tables, arm, block):
     found = table(tables, f"{arm['scenario']}, {arm['arm']}: block {block['block']} by step")
-    expect(len(found["rows"]) >= min(60, len(block["variance_ratio"])) // 2, f"{found['caption']}: {len(found['rows'])} rows")
+    expect(
+        len(found["rows"]) >= min(60, len(block["variance_ratio"])) // 2,
+        f"{found['caption']}: {len(found['rows'])} rows",
+    )
     for row in found["rows"]:
         k = int(row["head"]) - 1
         low, high = block["anees"]["simultaneous_band95"][k]
-        expected = [short(block["anees"]["ratio"][k]), short(block["anees_se"][k]), None, None,
-                    short(low) + " to " + short(high), short(block["variance_ratio"][k])]
+        expected = [
+            short(block["anees"]["ratio"][k]),
+            short(block["anees_se"][k]),
+            None,
+            None,
+            short(low) + " to " + short(high),
+            short(block["variance_ratio"][k]),
+        ]
         for cell, text in zip(row["cells"], expected):
             if text is not None:
                 COUNTED["figures"] += 1
@@ -114,14 +156,20 @@ def check_innovations(tables, arm, single):
     group = "" if single else arm["arm"]
     nis = rows(table(tables, f"{arm['scenario']}: innovations"), group)
     for part in arm["nis"]:
-        check_cells(nis[part["rows"]][:4], [[part["degrees"]], [part["ratio"]], part["ratio_ci95"], part["scale95"]],
-                    f"{arm['arm']} NIS of {part['rows']}")
+        check_cells(
+            nis[part["rows"]][:4],
+            [[part["degrees"]], [part["ratio"]], part["ratio_ci95"], part["scale95"]],
+            f"{arm['arm']} NIS of {part['rows']}",
+        )
     if not arm["whiteness"]:
         return
     white = rows(table(tables, f"{arm['scenario']}: whiteness"), group)
     for lag in arm["whiteness"]:
-        check_cells(white[str(lag["lag"])], [[lag["correlation"]], [lag["scaled"]], [lag["bound95"]],
-                                             [lag["simultaneous_bound95"]], [lag["count"]]], f"{arm['arm']} lag {lag['lag']}")
+        check_cells(
+            white[str(lag["lag"])],
+            [[lag["correlation"]], [lag["scaled"]], [lag["bound95"]], [lag["simultaneous_bound95"]], [lag["count"]]],
+            f"{arm['arm']} lag {lag['lag']}",
+        )
 
 
 def check_pairs(tables, arm):
@@ -132,9 +180,22 @@ def check_pairs(tables, arm):
     figures = [value for name, value in pair.items() if name != "pair" and value["n"] > 0]
     expect(len(figures) == len(found["rows"]), f"{pair['pair']}: {len(found['rows'])} rows for {len(figures)} figures")
     for figure, row in zip(figures, found["rows"]):
-        check_cells(row["cells"], [[figure["mean"]], figure["ci95"], figure["bootstrap95"], [figure["median"]], [figure["below"]],
-                                   [figure["above"]], [figure["ties"]], [figure["holm_p"]], [figure["effect_size"]],
-                                   [figure["variance_reduction"]]], f"{pair['pair']} {row['head']}")
+        check_cells(
+            row["cells"],
+            [
+                [figure["mean"]],
+                figure["ci95"],
+                figure["bootstrap95"],
+                [figure["median"]],
+                [figure["below"]],
+                [figure["above"]],
+                [figure["ties"]],
+                [figure["holm_p"]],
+                [figure["effect_size"]],
+                [figure["variance_reduction"]],
+            ],
+            f"{pair['pair']} {row['head']}",
+        )
 
 
 def check_hovers(charts, arm):
@@ -143,19 +204,26 @@ def check_hovers(charts, arm):
     for block in arm["blocks"][:10] if len(arm["blocks"]) <= 10 else arm["blocks"][:1]:
         low, high = block["ci95"]
         if low is not None:
-            says = f"{arm['arm']}, {block['block']}: NEES/dim {short(block['nees_ratio'])}, 95 % {short(low)} to {short(high)}"
+            says = f"{arm['arm']}, {block['block']}: NEES/dim {short(block['nees_ratio'])}"
+            says += f", 95 % {short(low)} to {short(high)}"
             expect(says in hovers, f"no mark says: {says}")
         last = len(block["anees"]["ratio"])
         low, high = block["anees"]["simultaneous_band95"][-1]
-        says = f"{arm['arm']}, step {last}: {short(block['anees']['ratio'][-1])} (joint band {short(low)} to {short(high)})"
+        says = f"{arm['arm']}, step {last}: {short(block['anees']['ratio'][-1])}"
+        says += f" (joint band {short(low)} to {short(high)})"
         expect(says in hovers, f"no mark says: {says}")
 
 
 def check_contents(browser, arms):
     tables, charts = browser.evaluate("page.tables()"), browser.evaluate("page.charts()")
     verdicts = browser.evaluate("page.verdicts()")
-    expect([line["verdict"] for line in verdicts] == [arm["verdict"] for arm in arms], "verdicts are not those of the JSON")
-    expect([line["arm"] for line in verdicts] == [f"{arm['scenario']} {arm['arm']}" for arm in arms], "arms are not the JSON's")
+    expect(
+        [line["verdict"] for line in verdicts] == [arm["verdict"] for arm in arms], "verdicts are not those of the JSON"
+    )
+    expect(
+        [line["arm"] for line in verdicts] == [f"{arm['scenario']} {arm['arm']}" for arm in arms],
+        "arms are not the JSON's",
+    )
     expect(all(line["why"] for line in verdicts), "a verdict without a reason")
     expect(all(one["caption"] and one["scoped"] for one in tables), "a table without caption or scope")
     scenarios = [arm["scenario"] for arm in arms]
@@ -195,8 +263,14 @@ def check_print(browser, arms):
         return
     with tempfile.TemporaryDirectory() as folder:
         browser.pdf(folder + "/page.pdf")
-        text = subprocess.run(["pdftotext", "-layout", folder + "/page.pdf", "-"], capture_output=True, text=True, check=True).stdout
-    for words in {arm["verdict"] for arm in arms} | {"Provenance"} | ({"[scenario]"} if arms[0]["root_seed"] is not None else set()):
+        text = subprocess.run(
+            ["pdftotext", "-layout", folder + "/page.pdf", "-"], capture_output=True, text=True, check=True
+        ).stdout
+    for words in (
+        {arm["verdict"] for arm in arms}
+        | {"Provenance"}
+        | ({"[scenario]"} if arms[0]["root_seed"] is not None else set())
+    ):
         expect(words in text, f"the print lacks {words!r}")
 
 
@@ -221,7 +295,9 @@ def main(page, report):
         print("page:", fault)
     if FAULTS:
         sys.exit(f"{page}: {len(FAULTS)} faults")
-    print(f"{pathlib.Path(page).name}: {COUNTED['figures']} figures equal the JSON, {COUNTED['marks']} marks are in place")
+    print(
+        f"{pathlib.Path(page).name}: {COUNTED['figures']} figures equal the JSON, {COUNTED['marks']} marks are in place"
+    )
 
 
 main(*sys.argv[1:])

@@ -43,7 +43,8 @@
   // Texts of less contrast than 4.5 : 1 to what is behind them, with their colours [WCAG 2.1, 1.4.3].
   const rgb = (colour) => colour.match(/[\d.]+/g).map(Number);
   const luminance = (colour) => {
-    const [r, g, b] = rgb(colour).map((c) => c / 255).map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+    const linear = (c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = rgb(colour).map((c) => linear(c / 255));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
   const behind = (node) => {
@@ -59,7 +60,8 @@
     while (walker.nextNode()) {
       const node = walker.currentNode.parentElement;
       if (walker.currentNode.data.trim() === "" || ["title", "desc", "STYLE"].includes(node.tagName)) continue;
-      const style = getComputedStyle(node), front = node.ownerSVGElement ? style.fill : style.color, back = behind(node);
+      const style = getComputedStyle(node), back = behind(node);
+      const front = node.ownerSVGElement ? style.fill : style.color;
       const [a, b] = [luminance(front), luminance(back)].sort((x, y) => y - x);
       if ((a + 0.05) / (b + 0.05) < 4.5) found.add(`${front} on ${back}: ${node.className.baseVal ?? node.className}`);
     }
@@ -67,7 +69,8 @@
   };
 
   // Colours of marks against the paper: 3 : 1 [WCAG 2.1, 1.4.11].
-  const paleMarks = () => [...new Set([...document.querySelectorAll(".mark, .line, .whisker, .published, .median")].map((mark) => {
+  const paleMarks = () => [...new Set([...document.querySelectorAll(
+    ".mark, .line, .whisker, .published, .median")].map((mark) => {
     const style = getComputedStyle(mark), front = mark.classList.contains("mark") ? style.fill : style.stroke;
     const [a, b] = [luminance(front), luminance(behind(mark))].sort((x, y) => y - x);
     return (a + 0.05) / (b + 0.05) < 3 ? mark.getAttribute("class") + " " + front : "";
@@ -77,12 +80,15 @@
     charts, tables, pale, paleMarks,
     overflow: (width) => document.documentElement.scrollWidth - width,
     verdicts: () => [...document.querySelectorAll(".verdicts li")].map((line) => ({
-      arm: text(line.querySelector(".arm")), verdict: line.querySelector(".badge").classList[1], why: text(line.querySelector(".why")),
+      arm: text(line.querySelector(".arm")), verdict: line.querySelector(".badge").classList[1],
+      why: text(line.querySelector(".why")),
       values: [...line.querySelectorAll("data")].map((data) => Number(data.value))})),
     heads: () => [...document.querySelectorAll("h1, h2, h3, h4")].map((head) => [Number(head.tagName[1]), text(head)]),
-    active: () => [...document.querySelectorAll("script, [onload], [onclick], [onerror], iframe, object, embed, link[rel=stylesheet]")]
+    active: () => [...document.querySelectorAll(
+      "script, [onload], [onclick], [onerror], iframe, object, embed, link[rel=stylesheet]")]
       .map((node) => node.outerHTML),
-    addresses: () => [...document.querySelectorAll("[src], [href]")].map((node) => node.getAttribute("src") ?? node.getAttribute("href")),
+    addresses: () => [...document.querySelectorAll("[src], [href]")].map((node) =>
+      node.getAttribute("src") ?? node.getAttribute("href")),
     repeated: () => { const ids = [...document.querySelectorAll("[id]")].map((node) => node.id);
       return ids.filter((id, i) => ids.indexOf(id) !== i); },
     words: () => document.body.innerText,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""screenshot.py PAGE.html OUT.png|OUT.pdf [--width 1200] [--height 900] [--top 0] [--scheme light|dark]: what a page looks like."""
+"""screenshot.py PAGE.html OUT.png|OUT.pdf [--width 1200] [--height 900] [--top 0] [--scheme light|dark]: a picture."""
 import argparse
 
 from browser import Browser
@@ -19,6 +19,9 @@ with Browser() as browser:
     if given.out.endswith(".pdf"):
         browser.pdf(given.out)
     else:
-        top = int(given.top) if given.top.isdigit() else browser.evaluate(
-            f"document.getElementById('{given.top}').getBoundingClientRect().top + scrollY")
+        top = (
+            int(given.top)
+            if given.top.isdigit()
+            else browser.evaluate(f"document.getElementById('{given.top}').getBoundingClientRect().top + scrollY")
+        )
         browser.screenshot(given.out, top, given.height)
