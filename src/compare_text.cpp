@@ -4,38 +4,17 @@
 #include <cmath>
 #include <credence/compare.hpp>
 #include <credence/text.hpp>
-#include <cstdio>
 
+#include "compare_words.hpp"
 #include "report_format.hpp"
 
 namespace credence {
 
 namespace {
 
-/// Whole percents; only what is none or all says so.
-std::string percent(double share) {
-    if (share > 0 && share < 0.005) return "< 1 %";
-    if (share > 0.995 && share < 1) return "> 99 %";
-    return std::isnan(share) ? "-" : number(100 * share, 0) + " %";
-}
-
 /// Decimals that show two digits of the mean difference's uncertainty.
 int decimals_of(const PairedComparison& paired) {
     return decimals_for((paired.difference.ci95.high - paired.difference.ci95.low) / 2);
-}
-
-std::string bracketed(const Interval& interval, int digits) {
-    return std::isnan(interval.low) ? "-"
-                                    : "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
-}
-
-std::string p_text(double p) {
-    if (std::isnan(p) || p == 1) return std::isnan(p) ? "-" : "1";
-    if (p >= 0.001) return number(p, 3);
-    if (p < 1e-300) return "< 1e-300";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.0e", p);
-    return text;
 }
 
 /// `10000 pairs`, or from the fewest to the most.
@@ -44,19 +23,6 @@ std::string pairs_text(const CompareReport& report) {
                                                    [](auto& p, auto& q) { return p.pairs() < q.pairs(); });
     const std::string last = std::to_string(most->pairs()) + (most->pairs() == 1 ? " pair" : " pairs");
     return least->pairs() == most->pairs() ? last : std::to_string(least->pairs()) + " to " + last;
-}
-
-std::string head(const CompareReport& report) {
-    const Comparison& first = report.pairs.front().comparison;
-    const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
-                                 [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
-    std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
-    if (report.pairs.size() > 1) text += " in each of " + std::to_string(report.pairs.size()) + " comparisons";
-    text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
-    return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
-           "). Intervals are two-sided 95 %; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures "
-           "below" +
-           (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
 }
 
 /// How the ranks stand to a mean difference that is not shown.
@@ -69,50 +35,6 @@ std::string despite(const Comparison& comparison) {
            p_text(comparison.figures.front().holm_p) + ")";
 }
 
-/// One sentence on the first figure.
-std::string conclusion_text(const ComparedPair& pair) {
-    const Comparison& comparison = pair.comparison;
-    const PairedComparison& paired = comparison.figures.front().paired;
-    const int digits = decimals_of(paired);
-    const double mean = paired.difference.mean;
-    const Interval& interval = paired.difference.ci95;
-    const std::string text = comparison.figures.front().name + ": ", both = comparison.a + " and " + comparison.b;
-    if (paired.pairs == 0) return text + "no pairs, nothing to compare";
-    if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
-    if (pair.conclusion == Conclusion::not_shown)
-        return text + "no difference shown (" + comparison.name() + " is " + number(mean, digits) +
-               (std::isnan(interval.low) ? ", one pair)" : " " + bracketed(interval, digits) + ")") +
-               despite(comparison);
-    const bool lower = pair.conclusion == Conclusion::lower;
-    const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
-    const Interval size = lower ? Interval{-interval.high, -interval.low} : interval;
-    return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
-           number(std::abs(mean), digits) + " " + bracketed(size, digits) +
-           (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
-           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "");
-}
-
-std::string notes(const CompareReport& report) {
-    std::string text;
-    const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
-        const std::string name = pair.comparison.scenario + "/" + arm;
-        if (static_cast<double>(side.failed) > 0.01 * static_cast<double>(pair.trials))
-            text += "WARNING: " + std::to_string(side.failed) + " of " + std::to_string(pair.trials) + " trials of " +
-                    name + " failed and are left out, with their partners.\n";
-        if (side.diverged > 0)
-            text += "note: " + std::to_string(side.diverged) + " trials of " + name + " diverged; they are compared.\n";
-    };
-    bool complete = true;
-    for (const ComparedPair& pair : report.pairs) {
-        note(pair, pair.a, pair.comparison.a);
-        note(pair, pair.b, pair.comparison.b);
-        complete = complete && pair.complete;
-    }
-    if (!complete) text += "note: a study is not complete.\n";
-    if (!report.left_out.empty()) text += wrapped_list("note: left out:", report.left_out, 0) + "\n";
-    return text;
-}
-
 std::string conclusions(const CompareReport& report) {
     int width = 0;
     for (const ComparedPair& pair : report.pairs)
@@ -120,25 +42,6 @@ std::string conclusions(const CompareReport& report) {
     std::string text;
     for (const ComparedPair& pair : report.pairs)
         text += "  " + padded(pair.comparison.scenario, width, false) + conclusion_text(pair) + "\n";
-    return text;
-}
-
-/// What is compared, where that is not plain from the arms' names.
-std::string pair_head(const ComparedPair& pair) {
-    const Comparison& comparison = pair.comparison;
-    std::string text = "\n" + comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title) + "\n";
-    text += "  A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
-    if (pair.a.trials != pair.b.trials)
-        text += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
-                ", B has " + std::to_string(pair.b.trials);
-    text += "\n";
-    std::vector<std::string> parts;
-    for (const KeyDifference& key : pair.differences)
-        parts.push_back(key.key + " (" + key.a + " in A, " + key.b + " in B)");
-    if (!parts.empty())
-        text += "  " + wrapped_list("they differ in", parts, 2) + "\n";
-    else if (pair.a.file != pair.b.file)
-        text += "  the scenario is the same in both files\n";
     return text;
 }
 
@@ -181,8 +84,82 @@ std::string tests(const ComparedPair& pair) {
 
 }  // namespace
 
+std::string compare_head(const CompareReport& report) {
+    const Comparison& first = report.pairs.front().comparison;
+    const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
+                                 [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
+    std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
+    if (report.pairs.size() > 1) text += " in each of " + std::to_string(report.pairs.size()) + " comparisons";
+    text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
+    return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
+           "). Intervals are two-sided 95 %; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures "
+           "below" +
+           (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
+}
+
+std::string conclusion_text(const ComparedPair& pair) {
+    const Comparison& comparison = pair.comparison;
+    const PairedComparison& paired = comparison.figures.front().paired;
+    const int digits = decimals_of(paired);
+    const double mean = paired.difference.mean;
+    const Interval& interval = paired.difference.ci95;
+    const std::string text = comparison.figures.front().name + ": ", both = comparison.a + " and " + comparison.b;
+    if (paired.pairs == 0) return text + "no pairs, nothing to compare";
+    if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
+    if (pair.conclusion == Conclusion::not_shown)
+        return text + "no difference shown (" + comparison.name() + " is " + number(mean, digits) +
+               (std::isnan(interval.low) ? ", one pair)" : " " + bracketed(interval, digits) + ")") +
+               despite(comparison);
+    const bool lower = pair.conclusion == Conclusion::lower;
+    const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
+    const Interval size = lower ? Interval{-interval.high, -interval.low} : interval;
+    return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
+           number(std::abs(mean), digits) + " " + bracketed(size, digits) +
+           (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
+           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "");
+}
+
+std::string compare_notes(const CompareReport& report) {
+    std::string text;
+    const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
+        const std::string name = pair.comparison.scenario + "/" + arm;
+        if (static_cast<double>(side.failed) > 0.01 * static_cast<double>(pair.trials))
+            text += "WARNING: " + std::to_string(side.failed) + " of " + std::to_string(pair.trials) + " trials of " +
+                    name + " failed and are left out, with their partners.\n";
+        if (side.diverged > 0)
+            text += "note: " + std::to_string(side.diverged) + " trials of " + name + " diverged; they are compared.\n";
+    };
+    bool complete = true;
+    for (const ComparedPair& pair : report.pairs) {
+        note(pair, pair.a, pair.comparison.a);
+        note(pair, pair.b, pair.comparison.b);
+        complete = complete && pair.complete;
+    }
+    if (!complete) text += "note: a study is not complete.\n";
+    if (!report.left_out.empty()) text += wrapped_list("note: left out:", report.left_out, 0) + "\n";
+    return text;
+}
+
+std::string pair_head(const ComparedPair& pair) {
+    const Comparison& comparison = pair.comparison;
+    std::string text = "\n" + comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title) + "\n";
+    text += "  A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
+    if (pair.a.trials != pair.b.trials)
+        text += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
+                ", B has " + std::to_string(pair.b.trials);
+    text += "\n";
+    std::vector<std::string> parts;
+    for (const KeyDifference& key : pair.differences)
+        parts.push_back(key.key + " (" + key.a + " in A, " + key.b + " in B)");
+    if (!parts.empty())
+        text += "  " + wrapped_list("they differ in", parts, 2) + "\n";
+    else if (pair.a.file != pair.b.file)
+        text += "  the scenario is the same in both files\n";
+    return text;
+}
+
 std::string compare_text(const CompareReport& report) {
-    std::string text = head(report) + notes(report) + "\n" + conclusions(report);
+    std::string text = compare_head(report) + compare_notes(report) + "\n" + conclusions(report);
     for (const ComparedPair& pair : report.pairs) text += pair_head(pair) + sizes(pair) + tests(pair);
     return text +
            "\nd_z: mean of the differences / their standard deviation. reduction: (V_A + V_B) / V_(A-B): arms with "

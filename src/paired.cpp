@@ -83,6 +83,7 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     comparison.effect_size = comparison.difference.mean / deviation;
     comparison.variance_reduction =
         (variance(std::move(paired_a)) + variance(std::move(paired_b))) / (deviation * deviation);
+    comparison.histogram = histogram(differences, BinWidths::equal);
     return comparison;
 }
 

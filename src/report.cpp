@@ -35,12 +35,14 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
     const Column& column = results.columns[c];
     std::vector<double> values = figure_values(results, arm, c);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
-                        place_of(results.scenario, column.name, arm.name, values)};
+                        place_of(results.scenario, column.name, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
         report.bootstrap95 = bootstrap_mean_interval(
             values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
     std::erase_if(values, [](double value) { return std::isnan(value); });
     for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
+    if (published_of(results.scenario, column.name) != nullptr)
+        report.histogram = histogram(values, column.type == ColumnType::real ? BinWidths::ratio : BinWidths::equal);
     return report;
 }
 

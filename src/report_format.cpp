@@ -41,6 +41,25 @@ std::string duration_text(double seconds) {
     return number(seconds / 3600, 1) + " h";
 }
 
+std::string bracketed(const Interval& interval, int digits) {
+    return std::isnan(interval.low) ? "-" : "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
+}
+
+std::string percent(double share) {
+    if (share > 0 && share < 0.005) return "< 1 %";
+    if (share > 0.995 && share < 1) return "> 99 %";
+    return std::isnan(share) ? "-" : number(100 * share, 0) + " %";
+}
+
+std::string p_text(double p) {
+    if (std::isnan(p) || p == 1) return std::isnan(p) ? "-" : "1";
+    if (p >= 0.001) return number(p, 3);
+    if (p < 1e-300) return "< 1e-300";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0e", p);
+    return text;
+}
+
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
     constexpr std::size_t width = 118;
     std::string text = head;

@@ -3,28 +3,16 @@
 #include <credence/text.hpp>
 
 #include "report_format.hpp"
+#include "report_words.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace credence {
 
 namespace {
 
-std::string title_of(const std::string& figure, const std::string& unit) {
-    const std::string name = figure == "trace_P"        ? "trace(P), last step"
-                             : figure == "mean_trace_P" ? "trace(P), mean over the steps"
-                             : figure == "pose_error"   ? "pose error, sum over the poses"
-                                                        : figure;
-    return unit == "1" ? name : name + " [" + unit + "]";
-}
-
 std::string published_text(const PublishedPlace& published) {
     return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
-}
-
-std::string bracketed(const Interval& interval, int digits) {
-    return std::isnan(interval.low) ? "-" : "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
 }
 
 std::string figure_row(const std::string& label, const Summary& s, const std::optional<Interval>& bootstrap,
@@ -48,7 +36,7 @@ std::string figure_part(const Report& report, const std::string& scenario, const
         if (arm.scenario != scenario) continue;
         const FigureReport& figure = figure_named(arm.figures, name);
         if (figure.summary.count == 0) continue;
-        if (text.empty()) text = "  " + title_of(name, figure.unit) + "\n";
+        if (text.empty()) text = "  " + figure_title(name, figure.unit) + "\n";
         text += figure_row(arm.arm, figure.summary, figure.bootstrap95,
                            figure.published ? published_text(*figure.published) : "");
     }
@@ -59,33 +47,6 @@ std::string figure_part(const Report& report, const std::string& scenario, const
     }
     return text;
 }
-
-/// The blocks worth a line: those of several parts, and the features (or whatever comes in numbers) that are farthest
-/// off.
-std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence) {
-    constexpr std::size_t most = 10;
-    std::vector<const BlockEvidence*> blocks;
-    for (const BlockEvidence& block : evidence.blocks) blocks.push_back(&block);
-    if (blocks.size() <= most) return blocks;
-    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const BlockEvidence* a, const BlockEvidence* b) {
-        return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
-    });
-    blocks.resize(most);
-    return blocks;
-}
-
-/// Of the values that are known.
-double mean_of(const std::vector<double>& values) {
-    double sum = 0, known = 0;
-    for (const double value : values)
-        if (!std::isnan(value)) {
-            sum += value;
-            ++known;
-        }
-    return sum / known;
-}
-
-std::string of_steps(int outside, int steps) { return std::to_string(outside) + " of " + std::to_string(steps); }
 
 std::string block_row(const BlockEvidence& block) {
     const Coverage& coverage = block.coverage[2];
@@ -104,8 +65,7 @@ std::string innovations_part(const Evidence& evidence) {
     std::string text = parts.empty() ? "" : "    " + wrapped_list("ΣNIS/Σm:", parts, 4) + "\n";
     if (!evidence.whiteness.empty()) {
         const Whiteness& first = evidence.whiteness.front();
-        int outside = 0;
-        for (const Whiteness& lag : evidence.whiteness) outside += std::abs(lag.scaled) > lag.simultaneous_bound;
+        const int outside = lags_outside(evidence.whiteness);
         text += "    innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
                 " (white within ± " + number(first.bound, 4) + "); " + of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
                 " lags outside their joint bounds\n";
@@ -114,18 +74,11 @@ std::string innovations_part(const Evidence& evidence) {
 }
 
 std::string distribution_part(const Evidence& evidence) {
-    std::size_t worst = 0;
-    int known = 0;
-    const ShapeEvidence& shape = evidence.shape;
-    for (std::size_t k = 0; k < shape.distance.size(); ++k) {
-        known += !std::isnan(shape.distance[k]);
-        if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;
-    }
-    const double p = std::min(1.0, shape.p[worst] * known);
     std::string text;
-    if (known > 0)
-        text += "    NEES against chi-square: distance " + number(shape.distance[worst], 4) + " at step " +
-                std::to_string(worst + 1) + " (p " + (p < 1e-4 ? "< 0.0001" : number(p, 4)) + " over all " + std::to_string(known) + " steps)";
+    if (const WorstShape worst = worst_shape(evidence.shape); worst.known > 0)
+        text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +
+                std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) + " over all " +
+                std::to_string(worst.known) + " steps)";
     if (!std::isnan(evidence.credibility.nci))
         text += std::string(text.empty() ? "    " : "; ") + "NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +
@@ -151,12 +104,6 @@ bool has_published(const Scenario& scenario) {
 }
 
 }  // namespace
-
-const FigureReport& figure_named(const std::vector<FigureReport>& figures, const std::string& name) {
-    for (const FigureReport& figure : figures)
-        if (figure.name == name) return figure;
-    return figures.front();
-}
 
 std::string scenario_detail(const Report& report, const Scenario& scenario) {
     std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";

@@ -85,6 +85,8 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
 std::string compare_text(const CompareReport& report);
 /// An array with an object per scenario and pair; NaN and infinity are null.
 std::string compare_json(const CompareReport& report);
+/// One self-contained page, as report_html's.
+std::string compare_html(const CompareReport& report, const std::string& made_by);
 /// A row per scenario, pair and figure; NaN is an empty cell.
 std::string compare_csv(const CompareReport& report);
 

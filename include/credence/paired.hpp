@@ -2,6 +2,7 @@
 // Room 10: two arms compared by trial, as pairs: all arms of a trial share their noise. [docs/statistics.md, Comparison
 // of arms]
 
+#include <credence/histogram.hpp>
 #include <credence/statistics.hpp>
 #include <cstdint>
 #include <string>
@@ -20,6 +21,7 @@ struct PairedComparison {
     double wilcoxon_p = 0;          ///< two-sided; 1 if all pairs are ties
     double effect_size = 0;         ///< d_z = mean / sd of the differences [Cohen 1988, 2.3.5]
     double variance_reduction = 0;  ///< (V_A + V_B) / V_{A-B}, what common random numbers gave
+    Histogram histogram;            ///< of a - b
 };
 
 /// Compares values by trial, `a[i]` and `b[i]` those of trial i; a trial with a NaN in either is left out.

@@ -1,9 +1,11 @@
 #pragma once
-// Room 13: what people read. A report is computed once from a study and then rendered as text, JSON or CSV.
+// Room 13: what people read. A report is computed once from a study and then rendered as text, JSON, CSV or HTML.
 
 #include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
+#include <credence/histogram.hpp>
 #include <credence/judgement_record.hpp>
+#include <credence/store.hpp>
 
 #include <optional>
 #include <string>
@@ -26,6 +28,7 @@ struct FigureReport {
     std::vector<double> quantiles;          ///< of type 7, at reported_quantiles
     std::optional<Interval> bootstrap95;    ///< of the mean; not of figures that have their own tests
     std::optional<PublishedPlace> published;
+    std::optional<Histogram> histogram;     ///< of the figures that may have a published one
 };
 
 struct ArmReport {
@@ -63,6 +66,15 @@ std::string report_text(const Report& report);
 std::string report_json(const Report& report);
 /// A row per scenario, arm and figure; and one per pair and figure.
 std::string report_csv(const Report& report);
+
+/// What a page says of where its figures came from.
+struct PageOrigin {
+    std::string file;       ///< the results file or the record, without its folder
+    RunFacts run;           ///< the results file's /run; empty for a record
+    std::string made_by;    ///< the program that makes the page
+};
+/// One self-contained page: nothing is loaded, nothing runs. The same bytes for the same report and origin.
+std::string report_html(const Report& report, const PageOrigin& origin);
 
 /// Throws Failure naming the arms that are not `consistent`.
 void require_consistent(const Report& report);

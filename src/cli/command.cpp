@@ -162,6 +162,7 @@ Option output_option(const std::string& help, const std::string& value) { return
 Option format_option(const std::vector<std::string>& formats) {
     std::string help = formats.front() + " (default)";
     for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
+    if (formats.back() == "html") help += ", a page to send";
     return {"format", "FORMAT", help, false, formats};
 }
 

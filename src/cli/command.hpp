@@ -76,7 +76,9 @@ struct ReportRequest {
     double margin = 0;
 };
 ReportRequest read_report_request(const Parsed& parsed);
-int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report);
+/// `path` and `run`: where the report's figures came from.
+int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
+                const RunFacts& run);
 
 // The subcommands: their description, and their work. They return the exit code.
 const Command& run_command();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "command.hpp"
+#include "version.hpp"
 
 namespace credence::cli {
 
@@ -19,7 +20,7 @@ const Command& compare_command() {
         "filter.measurement=0.8\n"
         "shows what that did.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
-         format_option({"text", "json", "csv"}),
+         format_option({"text", "json", "csv", "html"}),
          output_option("write there, not to the standard output")}};
     return command;
 }
@@ -44,9 +45,10 @@ int compare(const Parsed& parsed) {
     std::vector<StudyFile> files;
     for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path).study});
     const CompareReport report = compare_studies(files, choice);
-    write_output(parsed, format == "json"  ? compare_json(report)
-                         : format == "csv" ? compare_csv(report)
-                                           : compare_text(report));
+    write_output(parsed, format == "json"   ? compare_json(report)
+                         : format == "csv"  ? compare_csv(report)
+                         : format == "html" ? compare_html(report, made_by())
+                                            : compare_text(report));
     return 0;
 }
 

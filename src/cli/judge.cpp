@@ -21,7 +21,7 @@ const Command& judge_command() {
         "state that are judged by themselves. analysis/ shows the few lines that write one from Python, Octave and C++.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
-         format_option({"text", "json", "csv"}),
+         format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output")}};
@@ -35,7 +35,7 @@ int judge(const Parsed& parsed) {
     ProgressLine progress(parsed.has("quiet"));
     JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
     progress.finish();
-    return give_report(parsed, request, make_record_report(std::move(record), path, request.margin));
+    return give_report(parsed, request, make_record_report(std::move(record), path, request.margin), path, {});
 }
 
 }  // namespace credence::cli

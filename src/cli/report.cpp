@@ -1,8 +1,11 @@
 #include "command.hpp"
+#include "version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/store.hpp>
+
+#include <filesystem>
 
 namespace credence::cli {
 
@@ -13,7 +16,7 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
         {margin_option(),
-         format_option({"text", "json", "csv"}),
+         format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
          output_option("write there, not to the standard output")}};
     return command;
@@ -26,10 +29,15 @@ ReportRequest read_report_request(const Parsed& parsed) {
     return request;
 }
 
-int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report) {
-    write_output(parsed, request.format == "json"  ? report_json(report)
-                         : request.format == "csv" ? report_csv(report)
-                                                   : report_text(report));
+int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
+                const RunFacts& run) {
+    const auto page = [&] {
+        return report_html(report, {std::filesystem::path(path).filename().string(), run, made_by()});
+    };
+    write_output(parsed, request.format == "json"   ? report_json(report)
+                         : request.format == "csv"  ? report_csv(report)
+                         : request.format == "html" ? page()
+                                                    : report_text(report));
     if (parsed.has("require")) require_consistent(report);
     return 0;
 }
@@ -37,7 +45,9 @@ int give_report(const Parsed& parsed, const ReportRequest& request, const Report
 int report(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
     const ReportRequest request = read_report_request(parsed);
-    return give_report(parsed, request, make_report(read_results(parsed.arguments.front()).study, request.margin));
+    const std::string& path = parsed.arguments.front();
+    const StoredStudy stored = read_results(path);
+    return give_report(parsed, request, make_report(stored.study, request.margin), path, stored.run);
 }
 
 }  // namespace credence::cli

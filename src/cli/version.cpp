@@ -39,6 +39,10 @@ RunFacts build_facts() {
             {"instruction_set", best_unit().name},     {"lane_width", std::to_string(best_unit().lanes)}};
 }
 
+std::string made_by() {
+    return "credence " + std::string(build_info::version) + ", git revision " + build_info::git_revision;
+}
+
 std::string version_text() {
     std::string text = "credence " + std::string(build_info::version) + "\n";
     for (const auto& [name, value] : build_facts())

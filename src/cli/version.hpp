@@ -9,6 +9,9 @@ namespace credence {
 
 std::string version_text();
 
+/// `credence VERSION, git revision REVISION`
+std::string made_by();
+
 /// Version, git revision, compiler, flags, processor, instruction set, lane width.
 RunFacts build_facts();
 

@@ -1,0 +1,146 @@
+// The page's verdicts and findings.
+
+#include <credence/text.hpp>
+
+#include "report_format.hpp"
+#include "report_html.hpp"
+#include "report_words.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace credence::page {
+
+namespace {
+
+/// A shape for each verdict, so that it is told without colour.
+Html shape_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::consistent:
+            return "&#10003;"_html;  // check mark
+        case Verdict::optimistic:
+            return "&#9650;"_html;  // triangle up: NEES above 1
+        case Verdict::pessimistic:
+            return "&#9660;"_html;  // triangle down: NEES below 1
+        case Verdict::mixed:
+            return "&#9670;"_html;  // diamond
+        case Verdict::undecided:
+            break;
+    }
+    return "?"_html;
+}
+
+std::string reason_text(const Reason& reason) {
+    return reason.parts.empty() ? reason.head : reason.head + " " + joined(reason.parts);
+}
+
+/// Why an arm has its verdict, in one line.
+std::string why(const ArmReport& arm) {
+    const std::vector<Reason> reasons = reasons_of(arm);
+    if (arm.consistency.verdict == Verdict::consistent)
+        return "NEES/dim of the whole state and of every block is within 1 ± " + to_text(arm.consistency.margin);
+    return reasons.empty() ? "no interval lies wholly within the margin or wholly outside"
+                           : reason_text(reasons.front());
+}
+
+Html verdict_line(const ArmReport& arm) {
+    const Summary& nees = figure_named(arm.figures, "nees_ratio").summary;
+    const Summary& nis = figure_named(arm.figures, "nis_ratio").summary;
+    const Html numbers =
+        "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
+        (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
+        figure_count(static_cast<double>(arm.failed)) + " of "_html + figure_count(static_cast<double>(arm.trials)) +
+        " trials failed"_html +
+        (arm.diverged > 0 ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " diverged"_html : Html());
+    return element("li", "<p class=\"arm\"><a href=\"#"_html + section_id(arm.scenario) + "\">"_html +
+                             escaped(arm.scenario) + "</a> "_html + element("b", escaped(arm.arm)) + "</p>\n"_html +
+                             badge(arm.consistency.verdict) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
+                             "</p>\n<p class=\"numbers\">"_html + numbers + "</p></div>"_html) +
+           "\n"_html;
+}
+
+HtmlTable findings_table(const std::string& caption, const std::vector<Finding>& findings) {
+    HtmlTable table(caption, {"what", "where", "when", "value", "interval, corrected"});
+    for (const Finding& finding : findings) {
+        const double half = (finding.interval.high - finding.interval.low) / 2;
+        table.row(escaped(finding.what),
+                  {escaped(finding.where), escaped(finding.when), figure_within(finding.value, half),
+                   figure_interval(finding.interval, decimals_for(half))});
+    }
+    return table;
+}
+
+Html arm_findings(const ArmReport& arm) {
+    constexpr std::size_t most = 8;
+    const Consistency& verdict = arm.consistency;
+    Html lines;
+    for (const Reason& reason : reasons_of(arm)) lines += element("li", escaped(reason_text(reason)));
+    if (lines.empty()) lines = element("li", escaped(why(arm)));
+    std::vector<Finding> all = verdict.findings;
+    all.insert(all.end(), verdict.cautions.begin(), verdict.cautions.end());
+    const Html table =
+        findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all)
+            .html();
+    return element("h4", escaped(arm.arm) + " "_html + badge(verdict.verdict)) + "\n"_html + element("ul", lines) +
+           "\n"_html +
+           (all.size() <= most
+                ? table
+                : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
+                         table));
+}
+
+}  // namespace
+
+Html badge(Verdict verdict) {
+    const std::string& name = verdict_name(verdict);
+    return "<span class=\"badge "_html + escaped(name) + "\"><span aria-hidden=\"true\">"_html + shape_of(verdict) +
+           "</span> "_html + escaped(name) + "</span>"_html;
+}
+
+std::string figure_words(const std::string& name, const std::string& unit) {
+    if (name == "nees_ratio") return "NEES/n, mean over the steps";
+    if (name == "nis_ratio") return "NIS/m, over the steps";
+    if (name == "unseen") return "unseen features, sum over the poses";
+    return with_powers(figure_title(name, unit));
+}
+
+std::string summary_of(const Report& report) {
+    std::map<Verdict, int> counts;
+    if (report.arms.empty()) return "There is nothing to judge.";
+    for (const ArmReport& arm : report.arms) ++counts[arm.consistency.verdict];
+    if (report.arms.size() == 1) return "The filter is " + verdict_name(counts.begin()->first) + ".";
+    std::vector<std::string> parts;
+    for (const auto& [verdict, count] : counts) parts.push_back(std::to_string(count) + " " + verdict_name(verdict));
+    const std::string all = std::to_string(report.arms.size());
+    if (parts.size() == 1 && report.arms.size() == 2)
+        return "Both arms are " + verdict_name(counts.begin()->first) + ".";
+    if (parts.size() == 1) return "All " + all + " arms are " + verdict_name(counts.begin()->first) + ".";
+    return "Of " + all + " arms " + joined(parts) + ".";
+}
+
+Html verdicts(const Report& report) {
+    Html lines;
+    for (const ArmReport& arm : report.arms) lines += verdict_line(arm);
+    return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
+           "NEES/dim 1 "
+           "in every block of the state and at every step; the verdict holds all of them against 1 ± "_html +
+           escaped(to_text(report.margin)) +
+           ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
+           "too "
+           "large). Intervals are two-sided 95 %.</p>\n<ul class=\"verdicts\">\n"_html +
+           lines + "</ul>\n</section>\n"_html;
+}
+
+Html findings(const Part& part) {
+    Html html = "<h3>Findings</h3>\n"_html;
+    for (const ArmReport* arm : part.arms) html += arm_findings(*arm);
+    Html troubles;
+    for (const RecordTrouble& trouble : part.report.troubles)
+        troubles += element("li", escaped("trial " + std::to_string(trouble.trial) + ", step " +
+                                          std::to_string(trouble.step + 1) + ": " + trouble.what));
+    if (!troubles.empty())
+        html += folded("Trials that are in no figure (the first of them)", element("ul", troubles), InPrint::open);
+    return html;
+}
+
+}  // namespace credence::page
