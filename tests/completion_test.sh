@@ -31,10 +31,10 @@ expect() {
 expect run credence ru
 expect '--help --version' credence --
 expect --format credence report --f
-expect 'csv json text' credence report --format ''
+expect 'csv html json text' credence report --format ''
 expect 'json' credence report --format j
 expect 'json' credence report --format = j
-expect 'csv json text' credence report --format =
+expect 'csv html json text' credence report --format =
 expect '' credence report --format json --f
 expect '--seed --set' credence run --set noise.heading = 1 --se
 expect consistent credence judge record.h5 --require ''
