@@ -100,13 +100,15 @@ def ranks(credence, repeats, folder):
     for _ in range(repeats):  # in turn, so that what else the machine does meets all of them
         for way, launcher, threads in ways:
             command = launcher + run(credence, names, trials, f"{folder}/x.h5", "--threads", str(threads))
-            times[way].append(measured(command)[0])
-    print(f"wall time of {trials} trials of {' and '.join(names)} (median of {repeats}):")
-    first = statistics.median(times[ways[0][0]])
+            times[way].append(measured(command))
+    print(f"wall and processor time of {trials} trials of {' and '.join(names)} (median of {repeats}):")
+    first = None
     for way, _, _ in ways:
-        seconds, spread = summary(times[way])
-        print(f"  {way:24s} {seconds:6.2f} s, {first / seconds:.2f} times as fast, fastest {min(times[way]):.2f} s, "
-              f"spread {100 * spread:.0f} %")
+        seconds, spread = summary([wall for wall, _, _ in times[way]])
+        processor, _ = summary([processor for _, processor, _ in times[way]])
+        first = first or seconds
+        print(f"  {way:24s} {seconds:6.2f} s, {first / seconds:.2f} times as fast, spread {100 * spread:.0f} %, "
+              f"processor {processor:.2f} s")
 
 
 PARTS = {"cost": cost, "sizes": sizes, "merge": merge, "ranks": ranks}
