@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -61,7 +62,9 @@ Handle open_file(const std::string& path) {
     if (!std::filesystem::is_regular_file(status)) throw Error(whole, "is not a regular file", another);
     std::array<unsigned char, 8> start{};
     std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw Error(whole, "cannot be opened", "Check its permissions");
+    if (!stream)
+        throw Error(whole, "cannot be opened",
+                    errno == EMFILE ? "Raise the number of files that may be open (ulimit -n)" : "Check its permissions");
     stream.read(reinterpret_cast<char*>(start.data()), static_cast<std::streamsize>(start.size()));
     if (!stream || start != signature) throw Error(whole, "is not an HDF5 file", another);
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "/", "HDF5 gives no properties");
@@ -69,6 +72,8 @@ Handle open_file(const std::string& path) {
     // Finished files appear whole, under their name; locks only fail on file systems that have none.
     check(H5Pset_file_locking(access.id(), false, true), "/", "HDF5 refuses its access properties");
 #endif
+    // A merge has a thousand files open: what the library keeps of each is not to make up its memory.
+    check(H5Pset_evict_on_close(access.id(), true), "/", "HDF5 refuses its access properties");
     return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, whole, "is truncated or damaged"};
 }
 

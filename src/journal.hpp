@@ -53,6 +53,8 @@ public:
 
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
+    void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, std::int64_t trials,
+              const std::string& values) override;
     bool due() const override;
     void prepare(const Study& study) override;
     void commit() override;

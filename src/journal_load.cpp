@@ -38,16 +38,10 @@ void Journal::read_details(std::size_t scenario, ScenarioResults& results) const
         if (place.in_file) continue;
         const std::int64_t row = block_size * static_cast<std::int64_t>(at);
         for (std::size_t a = 0; a < results.arms.size(); ++a) {
-            const std::int64_t errors = place.trials * kept.layout.errors(), nees = place.trials * kept.layout.nees();
             const std::string bytes = file_.read(place.position + kept.layout.details_offset(a, place.trials),
-                                                 (errors + nees) * static_cast<std::int64_t>(sizeof(float)));
+                                               kept.layout.details_size(place.trials));
             ByteReader from(bytes.data(), bytes.size());
-            const auto put = [&](std::vector<double>& to, std::int64_t width, std::int64_t count) {
-                const std::vector<float> values = from.get_all<float>(static_cast<std::size_t>(count));
-                std::copy(values.begin(), values.end(), to.begin() + row * width);
-            };
-            put(results.arms[a].errors, kept.layout.errors(), errors);
-            put(results.arms[a].nees, kept.layout.nees(), nees);
+            get_details(from, kept.layout, place.trials, row, results.arms[a]);
         }
     }
 }

@@ -1,9 +1,5 @@
 #include "journal_record.hpp"
 
-#include <credence/error.hpp>
-#include <credence/ini.hpp>
-#include <credence/scenario_keys.hpp>
-
 #include <zlib.h>
 
 #include <algorithm>
@@ -12,9 +8,13 @@ namespace credence {
 
 namespace {
 
-const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 2, record_magic = 0x6b636f6c;
-constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
+constexpr std::uint32_t record_magic = 0x6b636f6c;
+
+}  // namespace
+
+std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc) {
+    return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const Bytef*>(bytes), size));
+}
 
 void put_shard(ByteWriter& to, const Shard& shard) {
     to.put(shard.index);
@@ -25,70 +25,6 @@ Shard get_shard(ByteReader& from) {
     const Shard shard{from.get<std::int64_t>(), from.get<std::int64_t>()};
     if (shard.index < 0 || shard.index >= shard.count) throw BadBytes("an impossible shard");
     return shard;
-}
-
-[[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
-    throw InputError(path + ": " + why + ". " + remedy + ".");
-}
-
-}  // namespace
-
-std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc) {
-    return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const Bytef*>(bytes), size));
-}
-
-std::string header_bytes(const JournalHeader& header) {
-    ByteWriter body;
-    body.put(static_cast<std::int32_t>(schema_version));
-    body.put(static_cast<std::uint8_t>(header.base));
-    body.put(header.trials);
-    put_shard(body, header.shard);
-    body.put(header.study.root_seed);
-    body.put_count(header.study.scenarios.size());
-    for (const Scenario& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
-    ByteWriter all;
-    all.put_raw(magic.data(), magic.size());
-    all.put(journal_version);
-    all.put(static_cast<std::uint32_t>(body.size()));
-    all.put_raw(body.bytes().data(), body.size());
-    all.put(checksum(all.bytes().data(), all.size()));
-    return all.take();
-}
-
-std::size_t header_size(const std::string& start, const std::string& path) {
-    const std::string another = "Remove it, or give another name for the results";
-    if (magic.compare(0, std::min(start.size(), magic.size()), start, 0, std::min(start.size(), magic.size())) != 0)
-        refuse(path, "is not a journal of credence", another);
-    ByteReader from(start.data(), start.size());
-    from.raw(magic.size());
-    if (const auto version = from.get<std::uint32_t>(); version != journal_version)
-        refuse(path, "is a journal of version " + std::to_string(version) + ", this program's is " +
-                         std::to_string(journal_version), "Finish the run with the release that began it");
-    const auto body = from.get<std::uint32_t>();
-    if (body > largest_header) refuse(path, "is damaged: its header is too long", another);
-    return header_prefix + body + sizeof(std::uint32_t);
-}
-
-JournalHeader read_header(const std::string& start, const std::string& path, std::size_t& size) {
-    size = header_size(start, path);
-    ByteReader from(start.data(), start.size());
-    const char* all = from.raw(size - sizeof(std::uint32_t));
-    if (from.get<std::uint32_t>() != checksum(all, size - sizeof(std::uint32_t))) throw BadBytes("a torn header");
-    ByteReader body(all + header_prefix, size - sizeof(std::uint32_t) - header_prefix);
-    if (const auto version = body.get<std::int32_t>(); version != schema_version)
-        refuse(path, "is of schema version " + std::to_string(version) + ", this program's is " +
-                         std::to_string(schema_version), "Finish the run with the release that began it");
-    JournalHeader header;
-    const auto base = body.get<std::uint8_t>();
-    if (base > static_cast<std::uint8_t>(JournalBase::replaced)) throw BadBytes("an unknown kind of base");
-    header.base = static_cast<JournalBase>(base);
-    header.trials = body.get<std::int64_t>();
-    if (header.trials < 0 || header.trials > most_trials) throw BadBytes("an impossible number of trials");
-    header.shard = get_shard(body);
-    header.study.root_seed = body.get<std::uint64_t>();
-    for (std::uint64_t left = body.get_count(); left > 0; --left)
-        header.study.scenarios.push_back(read_scenario_text(body.get_text(), path + ": scenario", "scenario"));
-    return header;
 }
 
 BlockLayout::BlockLayout(const ScenarioResults& results)
@@ -105,8 +41,11 @@ std::int64_t BlockLayout::column_offset(std::size_t arm, std::size_t column, std
 }
 
 std::int64_t BlockLayout::details_offset(std::size_t arm, std::int64_t trials) const {
-    const auto details = static_cast<std::int64_t>(arm) * (errors_ + nees_) * static_cast<std::int64_t>(sizeof(float));
-    return trials * (arms_ * column_at_.back() + details);
+    return trials * arms_ * column_at_.back() + static_cast<std::int64_t>(arm) * details_size(trials);
+}
+
+std::int64_t BlockLayout::details_size(std::int64_t trials) const {
+    return trials * (errors_ + nees_) * static_cast<std::int64_t>(sizeof(float));
 }
 
 std::int64_t BlockLayout::size(const JournalBlock& block) const {
@@ -134,6 +73,26 @@ void get_values(ByteReader& from, ColumnType type, double* values, std::size_t c
         if (type == ColumnType::status && !(values[i] >= 0 && values[i] < static_cast<double>(status_names().size())))
             throw BadBytes("a status that is none");
     }
+}
+
+void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block& block) {
+    const auto trials = static_cast<std::size_t>(block.trials);
+    for (const ArmBlock& arm : block.arms)
+        for (std::size_t c = 0; c < types.size(); ++c)
+            put_values(to, types[c], arm.columns.data() + c * trials, trials);
+    for (const ArmBlock& arm : block.arms) {
+        to.put_all(arm.errors);
+        to.put_all(arm.nees);
+    }
+}
+
+void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to) {
+    const auto get = [&](std::vector<double>& all, std::int64_t width) {
+        const std::vector<float> values = from.get_all<float>(static_cast<std::size_t>(trials * width));
+        std::copy(values.begin(), values.end(), all.begin() + row * width);
+    };
+    get(to.errors, layout.errors());
+    get(to.nees, layout.nees());
 }
 
 void put_record_head(ByteWriter& to, const RecordHead& head) {
@@ -177,6 +136,18 @@ RecordStart get_record_start(ByteReader& from) {
         start.blocks.push_back(block);
     }
     return start;
+}
+
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, const std::string& values,
+                         const std::string& totals) {
+    ByteWriter record;
+    const std::size_t payload =
+        record_start_size + start.blocks.size() * journal_block_size + values.size() + totals.size();
+    put_record_head(record, {scenario, static_cast<std::int64_t>(payload)});
+    put_record_start(record, start);
+    record.put_raw(values.data(), values.size());
+    record.put_raw(totals.data(), totals.size());
+    return record.take();
 }
 
 }  // namespace credence

@@ -46,6 +46,7 @@ public:
     explicit BlockLayout(const ScenarioResults& results);
 
     std::int64_t size(const JournalBlock& block) const;
+    std::int64_t details_size(std::int64_t trials) const;  ///< of one arm
     std::int64_t column_offset(std::size_t arm, std::size_t column, std::int64_t trials) const;
     std::int64_t details_offset(std::size_t arm, std::int64_t trials) const;
     bool detailed(std::int64_t index) const { return index < detailed_blocks_; }
@@ -63,6 +64,11 @@ std::int64_t value_size(ColumnType type);
 void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count);
 /// Throws BadBytes for a status that is none.
 void get_values(ByteReader& from, ColumnType type, double* values, std::size_t count);
+
+/// The values of a block as BlockLayout has them, `types` being those of its columns.
+void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block& block);
+/// The details of a block's `trials` trials under one arm, which are all that is read, into rows from `row` on.
+void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to);
 
 /// What stands before a record's payload, and what stands in it before the blocks' values.
 struct RecordHead {
@@ -84,6 +90,14 @@ void put_record_start(ByteWriter& to, const RecordStart& start);
 /// Throws BadBytes where the blocks cannot be.
 RecordStart get_record_start(ByteReader& from);
 inline constexpr std::size_t record_start_size = 36, journal_block_size = 12;
+
+/// Throws BadBytes for a shard that is none.
+void put_shard(ByteWriter& to, const Shard& shard);
+Shard get_shard(ByteReader& from);
+
+/// A record but for its checksum.
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, const std::string& values,
+                         const std::string& totals);
 
 /// CRC-32 of zlib, going on from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);

@@ -82,7 +82,7 @@ public:
         std::vector<std::int64_t> blocks;
         for (const auto& [block, place] : places_) blocks.push_back(block);
         set_blocks(results_, std::move(blocks), trials);
-        for (const std::int64_t block : fresh) copy_details(from, block);
+        for (const std::int64_t block : fresh) copy_details(results_, from, block);
     }
 
     ScenarioResults merged() {
@@ -115,19 +115,6 @@ private:
         const Problem problem(results_.scenario);
         for (const std::int64_t block : blocks)
             remove_totals(results_, run_block(problem, root_seed, block, trials_in_block(trials, block)));
-    }
-
-    void copy_details(const ScenarioResults& from, std::int64_t block) {
-        const std::int64_t row = first_row(results_, block).value(), row_from = first_row(from, block).value();
-        if (row >= results_.detailed() || row_from >= from.detailed()) return;
-        const std::int64_t rows = block_rows(from, static_cast<std::size_t>(row_from / block_size));
-        const auto copy = [&](const std::vector<double>& source, std::vector<double>& target, std::int64_t width) {
-            std::copy_n(source.begin() + row_from * width, rows * width, target.begin() + row * width);
-        };
-        for (std::size_t a = 0; a < from.arms.size(); ++a) {
-            copy(from.arms[a].nees, results_.arms[a].nees, from.steps());
-            copy(from.arms[a].errors, results_.arms[a].errors, std::int64_t{from.steps()} * from.state_size());
-        }
     }
 
     ScenarioResults results_;

@@ -125,4 +125,17 @@ void store_columns(ScenarioResults& results, const Block& block) {
     }
 }
 
+void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
+    const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
+    if (row_to >= to.detailed() || row_from >= from.detailed()) return;
+    const std::int64_t rows = block_rows(from, static_cast<std::size_t>(row_from / block_size));
+    const auto copy = [&](const std::vector<double>& source, std::vector<double>& target, std::int64_t width) {
+        std::copy_n(source.begin() + row_from * width, rows * width, target.begin() + row_to * width);
+    };
+    for (std::size_t a = 0; a < from.arms.size(); ++a) {
+        copy(from.arms[a].nees, to.arms[a].nees, from.steps());
+        copy(from.arms[a].errors, to.arms[a].errors, std::int64_t{from.steps()} * from.state_size());
+    }
+}
+
 }  // namespace credence

@@ -114,6 +114,9 @@ void extend(ScenarioResults& results, std::int64_t trials);
 void store_columns(ScenarioResults& results, const Block& block);
 void add_totals(ScenarioResults& results, const Block& block);
 
+/// Copies the details of a block that both have, where it has any. Different blocks may be copied at once.
+void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block);
+
 /// Adds the totals of other trials of the same arm.
 void add_totals(ArmResults& to, const ArmResults& from);
 

@@ -58,6 +58,10 @@ public:
     virtual void take_back(std::size_t scenario, std::int64_t block) = 0;
     /// A finished block; the study holds its totals already.
     virtual void take(std::size_t scenario, const Block& block) = 0;
+    /// The same of blocks that another process computed, for the study's number of trials; `values` are their columns and
+    /// details in order, in the keeper's own form.
+    virtual void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, std::int64_t trials,
+                      const std::string& values) = 0;
     /// Whether what was taken should be committed.
     virtual bool due() const = 0;
     /// Makes a commit of all that was taken, with the study's totals, which hold just that.
@@ -68,6 +72,8 @@ public:
     virtual void finished(const Study& study) = 0;
 };
 
+class Crew;
+
 struct RunOptions {
     std::int64_t trials = 10000;
     int threads = 0;                    ///< 0: as many as the machine has
@@ -75,6 +81,7 @@ struct RunOptions {
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
     BlockKeeper* keeper = nullptr;      ///< none: columns stay in memory
+    Crew* crew = nullptr;               ///< other processes that compute blocks too; needs a keeper
 };
 
 /// An empty study of resolved, validated scenarios with names that differ.
@@ -88,6 +95,9 @@ void run_study(Study& study, const RunOptions& options);
 
 /// Trials that the study has been asked for already, or that some scenario of it has: it cannot be asked for fewer.
 std::int64_t least_trials(const Study& study);
+
+/// Whether the last block that is there would be larger in a study of `trials` trials.
+bool last_would_grow(const ScenarioResults& results, std::int64_t trials);
 
 /// The blocks of a shard that a scenario of the study lacks, of `trials` trials; a partial one that is there and would be
 /// larger is among them, whosever it is.

@@ -1,6 +1,7 @@
 // credence: can a filter's covariance be believed?
 
 #include "command.hpp"
+#include "ranks.hpp"
 #include "version.hpp"
 
 #include <credence/error.hpp>
@@ -65,6 +66,8 @@ std::string command_line(int argc, char** argv) {
     return joined(words, " ");
 }
 
+std::vector<std::string> arguments(int argc, char** argv) { return {argv + std::min(argc, 2), argv + argc}; }
+
 /// One line on the error stream, whatever was given to the program.
 int complain(const std::string& message, int exit_code) {
     std::cerr << printable(message, 1000) << "\n";
@@ -102,10 +105,11 @@ int main(int argc, char** argv) {
         if (name == "--help" || name == "-h" || name == "help") return help();
         if (name == "--version") { std::cout << version_text(); return 0; }
         const int code =
-            dispatch(name, std::vector<std::string>(argv + 2, argv + std::max(argc, 2)), command_line(argc, argv));
+            dispatch(name, arguments(argc, argv), command_line(argc, argv));
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {
+        if (cli::follows_rank_0(name, arguments(argc, argv))) return 0;
         return complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
         return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."

@@ -5,6 +5,8 @@
 #include <credence/error.hpp>
 #include <credence/merge.hpp>
 
+#include <sys/resource.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -23,11 +25,24 @@ const Command& merge_command() {
     return command;
 }
 
+namespace {
+
+/// The columns stay in the shards' files, and those open: as many as the system allows, not the 1024 of a usual shell.
+void allow_open_files() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+
 int merge(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
     const std::optional<std::string> output = parsed.text("output");
     if (!output) throw InputError("no -o given. Name the results file to write.");
     check_output(*output, parsed.has("overwrite"), "Give another name or --overwrite");
+    allow_open_files();
     const Study study = merge_results(parsed.arguments);
     if (!study.complete)
         throw Failure("blocks are missing: " + missing_text(study) +

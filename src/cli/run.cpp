@@ -1,5 +1,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "ranks.hpp"
+#include "run_dry.hpp"
 #include "run_until.hpp"
 #include "version.hpp"
 
@@ -8,9 +10,6 @@
 #include <credence/store.hpp>
 #include <credence/text.hpp>
 
-#include <omp.h>
-
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -37,7 +36,10 @@ const Command& run_command() {
           "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
           "all must be met",
           true},
-         {"shard", "I/N", "run block b of 256 trials where b mod N = I only; `credence merge` joins the files"},
+         {"shard", "I/N",
+          "run block b of 256 trials where b mod N = I only; `credence merge` joins the files; auto: the shard that the "
+          "Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
+         {"mpi", "WHEN", "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off"},
          {"resume", "",
           "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
@@ -63,40 +65,6 @@ std::string now_text() {
     return text;
 }
 
-/// Seconds that one trial of a scenario takes on one thread: tried with more and more of them, for a fifth of a second.
-double seconds_of_a_trial(const Scenario& scenario, const RunRequest& request) {
-    const Problem problem(scenario);
-    for (int trials = 1;; trials *= 2) {
-        const auto start = std::chrono::steady_clock::now();
-        run_block(problem, request.root_seed, 0, trials);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (seconds > 0.1 || trials == block_size || trials >= request.options.trials) return seconds / trials;
-    }
-}
-
-int dry_run(const RunRequest& request, const Study& study) {
-    double seconds = 0;
-    std::int64_t blocks = 0;
-    for (const ScenarioResults& results : study.scenarios) {
-        std::int64_t trials = 0;
-        for (const std::int64_t block : missing_blocks(results, request.options.trials, request.options.shard)) {
-            trials += trials_in_block(request.options.trials, block);
-            ++blocks;
-        }
-        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(trials);
-    }
-    const std::int64_t at_once =
-        std::min<std::int64_t>({request.options.threads, omp_get_num_procs(), std::max<std::int64_t>(1, blocks)});
-    const Footprint size = footprint(study, request.options.trials / request.options.shard.count, request.options.threads);
-    std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
-              << ", threads: " << request.options.threads << ". About "
-              << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
-              << " of memory, " << bytes_text(size.file) << " in " << request.output
-              << ", as much again in its journal meanwhile"
-              << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
-    return 0;
-}
-
 /// What a run did to its study.
 struct Work {
     bool changed = false;
@@ -105,12 +73,16 @@ struct Work {
 };
 
 /// Runs what is missing of what was asked for.
-Work work_on(StoredRun& stored, const RunRequest& request) {
+Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
     const auto start = std::chrono::steady_clock::now();
     Work work;
     RunOptions options = request.options;
-    options.stop = Interrupt::came;
+    options.stop = [ranks] { return Interrupt::came() || (ranks != nullptr && ranks->asked_to_stop()); };
+    options.crew = ranks;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
+    if (ranks != nullptr)
+        ranks->begin(definition_of(stored.study()), request.threads_given ? options.threads : 0,
+                     request.commit_every > 0 ? RankLeader::Sending::at_once : RankLeader::Sending::now_and_then);
     // With --until nobody knows yet how many trials will be asked for: each look asks for its own.
     options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
     if (!request.goals.empty()) {
@@ -129,25 +101,36 @@ RunFacts facts_of(const RunRequest& request, const Work& work, const std::string
                   const std::string& command_line) {
     RunFacts facts = build_facts();
     facts.emplace_back("started", started);
-    facts.emplace_back("threads", std::to_string(request.options.threads));
+    facts.emplace_back("threads", threads_text(request));
     facts.emplace_back("wall_seconds", to_text(work.seconds));
     facts.emplace_back("command_line", command_line);
     return facts;
 }
 
 /// The command that goes on with a run that was stopped.
-std::string resuming(std::string command_line) {
+std::string resuming(std::string command_line, const Shard& shard) {
     const std::string overwrite = " --overwrite", resume = " --resume";
     if (const std::size_t at = command_line.find(overwrite); at != std::string::npos)
         command_line.erase(at, overwrite.size());
+    for (const std::string before : {" --shard ", " --shard="})  // what the launcher named holds where it did only
+        if (const std::size_t at = command_line.find(before + "auto"); at != std::string::npos)
+            command_line.replace(at + before.size(), 4,
+                                 std::to_string(shard.index) + "/" + std::to_string(shard.count));
     return command_line.find(resume) == std::string::npos ? command_line + resume : command_line;
 }
 
-int stopped(const StoredRun& stored, const RunRequest& request, const std::string& command_line) {
+/// What stopped the run, such as SIGTERM; empty where nothing did.
+std::string stopped_by(const RankLeader* ranks) {
+    if (Interrupt::came()) return Interrupt::name();
+    return ranks != nullptr ? ranks->stopped_by() : "";
+}
+
+int stopped(const StoredRun& stored, const RunRequest& request, const std::string& signal,
+            const std::string& command_line) {
     std::int64_t done = 0;
     for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
-    std::cerr << "credence run: stopped by " << Interrupt::name() << " with " << done << " trials kept in "
-              << request.output << " (complete = 0). This goes on with them:\n  " << resuming(command_line) << "\n";
+    std::cerr << "credence run: stopped by " << signal << " with " << done << " trials kept in " << request.output
+              << " (complete = 0). This goes on with them:\n  " << resuming(command_line, request.options.shard) << "\n";
     return 3;
 }
 
@@ -157,35 +140,40 @@ void print_table(const Study& study, const RunRequest& request, const Work& work
     std::cout << request.output;
     if (work.changed)
         std::cout << ": " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
-                  << ", computed in " << duration_text(work.seconds) << " on " << request.options.threads
-                  << " threads\n";
+                  << ", computed in " << duration_text(work.seconds) << " on " << threads_text(request) << " threads\n";
     else
         std::cout << " has these trials already\n";
 }
 
 /// Runs and writes. Throws Failure with what is kept.
-Work keep(StoredRun& stored, const RunRequest& request, const std::string& command_line) {
+Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const std::string& command_line) {
     const std::string started = now_text();
     try {
-        Work work = work_on(stored, request);
+        Work work = work_on(stored, request, ranks);
         work.changed = stored.finish(facts_of(request, work, started, command_line));
         return work;
     } catch (const Failure& failure) {
         throw Failure(failure.what() + std::string(" What was committed is kept, and this goes on with it: ") +
-                      resuming(command_line));
+                      resuming(command_line, request.options.shard));
     }
 }
 
 }  // namespace
 
 int run(const Parsed& parsed, const std::string& command_line) {
+    const std::unique_ptr<Post> post = post_of(parsed);
+    if (post && post->rank() > 0) return follow_rank_0(*post);
+    const bool shared = post && post->size() > 1;
+    const std::unique_ptr<RankLeader> ranks = shared ? std::make_unique<RankLeader>(*post) : nullptr;
     RunRequest request = read_request(parsed);
+    if (post) request.ranks = post->size();
     const Interrupt interrupt;
     StoredRun stored = starting_run(request);
     if (parsed.has("dry-run")) return dry_run(request, stored.study());
 
-    const Work work = keep(stored, request, command_line);
-    if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
+    const Work work = keep(stored, request, ranks.get(), command_line);
+    const std::string signal = stopped_by(ranks.get());
+    if (!signal.empty() && !stored.study().complete) return stopped(stored, request, signal, command_line);
     if (work.last_look && !work.last_look->met)
         std::cerr << "credence run: " << imprecision_text(*work.last_look, request.rule()) << "\n";
     if (!request.quiet) print_table(stored.study(), request, work);

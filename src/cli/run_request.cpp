@@ -1,6 +1,7 @@
 #include "run_request.hpp"
 
 #include <credence/error.hpp>
+#include <credence/launcher.hpp>
 #include <credence/text.hpp>
 
 #include <omp.h>
@@ -13,15 +14,21 @@ namespace {
 
 constexpr std::int64_t default_trials = 10000, default_ceiling = 10'000'000;
 
-/// `I/N`
-Shard parse_shard(const std::string& text) {
-    const std::size_t slash = text.find('/');
-    const std::optional<std::int64_t> index = to_integer(text.substr(0, slash)),
-                                      count = slash == std::string::npos ? std::nullopt
-                                                                         : to_integer(text.substr(slash + 1));
-    if (!index || !count || *count < 1 || *index < 0 || *index >= *count)
-        throw invalid_value("--shard", text, "must be I/N with I from 0 to N - 1", "Write --shard 0/4, 1/4 ...");
-    return {*index, *count};
+/// `part-{shard}.h5`: a name of its own for every shard of one command line.
+std::string output_of(const Parsed& parsed, const Shard& shard) {
+    std::string name = parsed.text("output").value_or("credence.h5");
+    const std::string place = "{shard}";
+    const std::size_t at = name.find(place);
+    if (at == std::string::npos) return name;
+    if (!parsed.has("shard"))
+        throw invalid_value("-o", name, "there is no --shard that {shard} could stand for", "Give --shard, or another name");
+    return name.replace(at, place.size(), std::to_string(shard.index));
+}
+
+Shard shard_of(const Parsed& parsed) {
+    const std::optional<std::string> text = parsed.text("shard");
+    if (!text) return {};
+    return *text == "auto" ? shard_of_launcher(environment()) : parse_shard(*text);
 }
 
 Start start_of(const Parsed& parsed) {
@@ -35,7 +42,8 @@ Start start_of(const Parsed& parsed) {
 RunRequest read_request(const Parsed& parsed) {
     if (parsed.arguments.empty()) throw InputError("no scenario given. Name one or more SCENARIO.ini.");
     RunRequest request;
-    request.output = parsed.text("output").value_or("credence.h5");
+    request.options.shard = shard_of(parsed);
+    request.output = output_of(parsed, request.options.shard);
     if (const auto until = parsed.values.find("until"); until != parsed.values.end())
         for (const std::string& goal : until->second) request.goals.push_back(parse_goal(goal));
     request.options.trials =
@@ -44,10 +52,10 @@ RunRequest read_request(const Parsed& parsed) {
         static_cast<std::uint64_t>(parsed.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
     request.options.threads = static_cast<int>(parsed.integer("threads", omp_get_max_threads(), 1, 4096));
     request.trials_given = parsed.has("trials");
+    request.threads_given = parsed.has("threads");
     request.start = start_of(parsed);
     request.quiet = parsed.has("quiet");
     request.commit_every = parsed.integer("commit-every", 0, 1, most_trials);
-    if (const std::optional<std::string> shard = parsed.text("shard")) request.options.shard = parse_shard(*shard);
     if (request.options.shard.count > 1 && !request.goals.empty())
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
                          "one of them.");

@@ -22,6 +22,8 @@ struct RunRequest {
     Start start = Start::fresh;
     std::int64_t commit_every = 0;
     bool quiet = false;
+    int ranks = 1;                     ///< processes that share the run
+    bool threads_given = false;        ///< else every rank takes as many as it may have
 
     StoppingRule rule() const { return {goals, options.trials}; }
 };

@@ -1,5 +1,6 @@
 #include "version.hpp"
 
+#include "../mpi/mpi_post.hpp"
 #include "build_info.hpp"  // made by CMake
 
 #include <credence/simulate.hpp>
@@ -27,7 +28,7 @@ std::string libraries() {
     return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release) + ", Eigen " +
            std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
            std::to_string(EIGEN_MINOR_VERSION) + ", Boost " + std::to_string(BOOST_VERSION / 100000) + "." +
-           std::to_string(BOOST_VERSION / 100 % 1000);
+           std::to_string(BOOST_VERSION / 100 % 1000) + ", MPI " + mpi_library();
 }
 
 }  // namespace

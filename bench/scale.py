@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""What studies cost: the numbers of docs/scale.md. Standard library only.
+
+usage: scale.py [--credence build/credence] [--repeats 5] PART...
+  cost    processor time of a million trials on one core, for each of the seed's scenarios, both arms
+  sizes   bytes of journal and file of a million trials
+  merge   time and memory of merging 1,000 shards, and of 100 shards of the same study
+  ranks   a study on one rank and on two of mpirun, one thread each, beside one process of one and of two threads
+Medians of the repeats; the spread is (largest - smallest) / median.
+"""
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+SEED = [f"{model}-{path}-{noise}" for model in ("ekf", "kf") for path in ("straight", "circle")
+        for noise in ("constant", "ranged")]
+FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "experiments", "seed")
+
+
+def scenario(name):
+    return os.path.join(FOLDER, name + ".ini")
+
+
+def measured(command):
+    """Wall seconds, processor seconds and the largest memory in MB of a command."""
+    start = time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        sys.exit(f"{' '.join(command)} ended with {os.waitstatus_to_exitcode(status)}")
+    return time.monotonic() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1000
+
+
+def summary(values):
+    middle = statistics.median(values)
+    return middle, (max(values) - min(values)) / middle
+
+
+def run(credence, names, trials, output, *more):
+    return [credence, "run", *map(scenario, names), "--trials", str(trials), "--quiet", "--overwrite", "-o", output, *more]
+
+
+def cost(credence, repeats, folder):
+    trials = 100_000
+    print(f"processor time of 10^6 trials, both arms, one core (from {trials} trials, median of {repeats}):")
+    for name in SEED:
+        seconds, spread = summary([measured(run(credence, [name], trials, f"{folder}/x.h5", "--threads", "1"))[1]
+                                   for _ in range(repeats)])
+        print(f"  {name:22s} {seconds * 1e6 / trials:7.1f} s   spread {100 * spread:.0f} %", flush=True)
+
+
+def sizes(credence, repeats, folder):
+    """The journal's size is that at its end, which is seen in a run that is killed when it would write its file."""
+    trials = 1_000_000
+    print("bytes of 10^6 trials, both arms:")
+    for name in ("ekf-straight-constant", "kf-straight-constant"):
+        output = f"{folder}/{name}.h5"
+        process = subprocess.Popen(run(credence, [name], trials, output), stdout=subprocess.DEVNULL)
+        journal = 0
+        while process.poll() is None:
+            try:
+                journal = max(journal, os.stat(output + ".journal").st_size)
+            except FileNotFoundError:
+                pass
+            time.sleep(0.005)
+        print(f"  {name:22s} journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB", flush=True)
+        os.remove(output)
+
+
+def merge(credence, repeats, folder):
+    trials, name = 1_024_000, "ekf-straight-constant"
+    print(f"merging {trials} trials of {name} (median of {repeats}):")
+    for shards in (100, 1000):
+        parts = [f"{folder}/{shards}-{i}.h5" for i in range(shards)]
+        for i, part in enumerate(parts):
+            measured(run(credence, [name], trials, part, "--shard", f"{i}/{shards}"))
+        results = [measured([credence, "merge", *parts, "-o", f"{folder}/merged.h5", "--overwrite", "--quiet"])
+                   for _ in range(repeats)]
+        seconds, spread = summary([wall for wall, _, _ in results])
+        processor, _ = summary([processor for _, processor, _ in results])
+        size = sum(os.stat(part).st_size for part in parts) / 1e6
+        print(f"  {shards:5d} shards, {size:.0f} MB: {seconds:.1f} s (processor {processor:.1f} s), spread "
+              f"{100 * spread:.0f} %, {max(memory for _, _, memory in results):.0f} MB of memory, file "
+              f"{os.stat(folder + '/merged.h5').st_size / 1e6:.1f} MB", flush=True)
+        for part in parts:
+            os.remove(part)
+
+
+def ranks(credence, repeats, folder):
+    trials, names = 100_000, ["ekf-circle-constant", "ekf-straight-constant"]
+    mpirun = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n"]
+    ways = [("one process, 1 thread", [], 1), ("1 rank of mpirun", mpirun + ["1"], 1),
+            ("one process, 2 threads", [], 2), ("2 ranks of 1 thread", mpirun + ["2"], 1)]
+    times = {way: [] for way, _, _ in ways}
+    for _ in range(repeats):  # in turn, so that what else the machine does meets all of them
+        for way, launcher, threads in ways:
+            command = launcher + run(credence, names, trials, f"{folder}/x.h5", "--threads", str(threads))
+            times[way].append(measured(command))
+    print(f"wall and processor time of {trials} trials of {' and '.join(names)} (median of {repeats}):")
+    first = None
+    for way, _, _ in ways:
+        seconds, spread = summary([wall for wall, _, _ in times[way]])
+        processor, _ = summary([processor for _, processor, _ in times[way]])
+        first = first or seconds
+        print(f"  {way:24s} {seconds:6.2f} s, {first / seconds:.2f} times as fast, spread {100 * spread:.0f} %, "
+              f"processor {processor:.2f} s")
+
+
+PARTS = {"cost": cost, "sizes": sizes, "merge": merge, "ranks": ranks}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--credence", default="build/credence")
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("part", nargs="+", choices=PARTS)
+    arguments = parser.parse_args()
+    credence = os.path.abspath(arguments.credence)
+    with open("/proc/loadavg") as load:
+        print(f"{os.cpu_count()} processors, load {load.read().split()[0]}")
+    for part in arguments.part:
+        with tempfile.TemporaryDirectory() as folder:
+            PARTS[part](credence, arguments.repeats, folder)
+
+
+if __name__ == "__main__":
+    main()

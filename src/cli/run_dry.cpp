@@ -1,0 +1,56 @@
+#include "run_dry.hpp"
+
+#include "progress.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+namespace credence::cli {
+
+std::string threads_text(const RunRequest& request) {
+    return (request.ranks > 1 ? std::to_string(request.ranks) + " x " : "") + std::to_string(request.options.threads);
+}
+
+namespace {
+
+/// Seconds that one trial of a scenario takes on one thread: tried with more and more of them, for a fifth of a second.
+double seconds_of_a_trial(const Scenario& scenario, const RunRequest& request) {
+    const Problem problem(scenario);
+    for (int trials = 1;; trials *= 2) {
+        const auto start = std::chrono::steady_clock::now();
+        run_block(problem, request.root_seed, 0, trials);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (seconds > 0.1 || trials == block_size || trials >= request.options.trials) return seconds / trials;
+    }
+}
+
+}  // namespace
+
+int dry_run(const RunRequest& request, const Study& study) {
+    double seconds = 0;
+    std::int64_t blocks = 0;
+    for (const ScenarioResults& results : study.scenarios) {
+        std::int64_t trials = 0;
+        for (const std::int64_t block : missing_blocks(results, request.options.trials, request.options.shard)) {
+            trials += trials_in_block(request.options.trials, block);
+            ++blocks;
+        }
+        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(trials);
+    }
+    const std::int64_t of_a_rank = std::min<std::int64_t>(request.options.threads, omp_get_num_procs()),
+                       at_once = std::min(of_a_rank * request.ranks, std::max<std::int64_t>(1, blocks));
+    const Footprint size =
+        footprint(study, request.options.trials / request.options.shard.count, request.options.threads);
+    std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
+              << ", threads: " << threads_text(request) << ". About "
+              << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
+              << " of memory, " << bytes_text(size.file) << " in " << request.output
+              << ", as much again in its journal meanwhile"
+              << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
+    return 0;
+}
+
+}  // namespace credence::cli

@@ -1,0 +1,14 @@
+#pragma once
+// Room 14: `credence run --dry-run`: what a run is expected to take.
+
+#include "run_request.hpp"
+
+namespace credence::cli {
+
+/// `4`, or `3 x 4` for as many on each of several ranks.
+std::string threads_text(const RunRequest& request);
+
+/// Prints it, from a trial or some of every scenario.
+int dry_run(const RunRequest& request, const Study& study);
+
+}  // namespace credence::cli

@@ -1,0 +1,17 @@
+#pragma once
+// The ranks of an MPI job [room 12, ranks.hpp]. mpi_post.cpp where MPI is built in, no_mpi.cpp where it is not.
+
+#include <credence/ranks.hpp>
+
+#include <memory>
+#include <string>
+
+namespace credence {
+
+/// Starts MPI, and ends it with the object; one in a process. Null where the program was built without MPI.
+std::unique_ptr<Post> start_mpi();
+
+/// The library and its version; `none` where the program was built without MPI. Starts nothing.
+std::string mpi_library();
+
+}  // namespace credence

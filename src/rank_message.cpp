@@ -1,0 +1,103 @@
+#include "rank_message.hpp"
+
+#include "journal_totals.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+std::string order_bytes(const RankOrder& order) {
+    ByteWriter to;
+    to.put(static_cast<std::int32_t>(order.threads));
+    to.put(order.seconds);
+    to.put_text(header_bytes({JournalBase::none, 0, order.study}));
+    return to.take();
+}
+
+RankOrder read_order(const std::string& bytes) {
+    ByteReader from(bytes.data(), bytes.size());
+    RankOrder order;
+    order.threads = from.get<std::int32_t>();
+    order.seconds = from.get<double>();
+    std::size_t size = 0;
+    order.study = read_header(from.get_text(), "message of rank 0", size).study;
+    return order;
+}
+
+std::string tasks_bytes(const RankTasks& tasks) {
+    ByteWriter to;
+    to.put(tasks.trials);
+    to.put_count(tasks.tasks.size());
+    for (const Task& task : tasks.tasks) {
+        to.put_count(task.scenario);
+        to.put(task.block);
+    }
+    return to.take();
+}
+
+RankTasks read_tasks(const std::string& bytes) {
+    ByteReader from(bytes.data(), bytes.size());
+    RankTasks tasks{from.get<std::int64_t>(), {}};
+    for (std::uint64_t left = from.get_count(); left > 0; --left) {
+        const std::size_t scenario = from.get_count();
+        tasks.tasks.push_back({scenario, from.get<std::int64_t>()});
+    }
+    return tasks;
+}
+
+ScenarioResults without_columns(const Scenario& scenario) {
+    ScenarioResults results = empty_results(scenario);
+    for (ArmResults& arm : results.arms) arm.columns.clear();
+    return results;
+}
+
+RankRecord::RankRecord(const ScenarioResults& empty) : results_(empty) {
+    for (const Column& column : empty.columns) types_.push_back(column.type);
+}
+
+void RankRecord::take(const Block& block) {
+    blocks_.push_back({block.index, block.trials});
+    put_block(values_, types_, block);
+    add_totals(results_, block);
+}
+
+std::string RankRecord::bytes(std::size_t scenario, std::int64_t trials) const {
+    std::int64_t counted = 0;
+    for (const JournalBlock& block : blocks_) counted += block.trials;
+    ByteWriter totals;
+    put_totals(totals, results_);
+    return record_bytes(static_cast<std::uint32_t>(scenario), {trials, counted, blocks_}, values_.bytes(),
+                        totals.bytes());
+}
+
+ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty) {
+    ByteReader from(bytes.data(), bytes.size());
+    const RecordHead head = get_record_head(from);
+    if (head.scenario >= empty.size()) throw BadBytes("a record of a scenario that the study does not have");
+    const RecordStart start = get_record_start(from);
+    ComputedBlocks computed{head.scenario, {}, {}, empty[head.scenario]};
+    ScenarioResults& results = computed.results;
+    const BlockLayout layout(results);
+    std::int64_t size = 0;
+    for (const JournalBlock& block : start.blocks) {
+        computed.blocks.push_back(block.index);
+        size += layout.size(block);
+    }
+    computed.values.assign(from.raw(static_cast<std::uint64_t>(size)), static_cast<std::size_t>(size));
+    std::vector<std::int64_t> sorted = computed.blocks;
+    std::sort(sorted.begin(), sorted.end());
+    set_blocks(results, std::move(sorted), start.trials);
+    get_totals(from, results);
+    std::int64_t position = 0;
+    for (const JournalBlock& block : start.blocks) {
+        for (std::size_t a = 0; a < results.arms.size() && layout.detailed(block.index); ++a) {
+            ByteReader details(computed.values.data() + position + layout.details_offset(a, block.trials),
+                               static_cast<std::size_t>(layout.details_size(block.trials)));
+            get_details(details, layout, block.trials, first_row(results, block.index).value(), results.arms[a]);
+        }
+        position += layout.size(block);
+    }
+    return computed;
+}
+
+}  // namespace credence

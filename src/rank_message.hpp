@@ -1,0 +1,54 @@
+#pragma once
+// Room 12: what ranks tell each other, as bytes.
+
+#include <credence/ranks.hpp>
+
+#include "journal_record.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// What a rank computes, and how.
+struct RankOrder {
+    StudyDefinition study;
+    int threads = 0;                 ///< 0: as many as the rank may have
+    double seconds = 0;              ///< between two records
+};
+std::string order_bytes(const RankOrder& order);
+RankOrder read_order(const std::string& bytes);
+
+/// Tasks of a study of `trials` trials.
+struct RankTasks {
+    std::int64_t trials = 0;
+    std::vector<Task> tasks;
+};
+std::string tasks_bytes(const RankTasks& tasks);
+RankTasks read_tasks(const std::string& bytes);
+
+/// Blocks of one scenario that a rank has finished and not sent yet.
+class RankRecord {
+public:
+    explicit RankRecord(const ScenarioResults& empty);
+
+    void take(const Block& block);
+    bool empty() const { return blocks_.empty(); }
+    std::size_t size() const { return values_.size(); }  ///< bytes
+    /// A record of the journal but for its checksum: the totals are those of its blocks alone.
+    std::string bytes(std::size_t scenario, std::int64_t trials) const;
+
+private:
+    std::vector<ColumnType> types_;
+    std::vector<JournalBlock> blocks_;
+    ByteWriter values_;
+    ScenarioResults results_;
+};
+
+/// Reads it back; `empty` are the empty results of the study's scenarios, without columns. Throws BadBytes.
+ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty);
+
+/// Empty results that hold no columns.
+ScenarioResults without_columns(const Scenario& scenario);
+
+}  // namespace credence
