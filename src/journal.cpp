@@ -72,8 +72,8 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
         kept.counted += block.trials;
         position += kept.layout.size(block);
     }
-    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), {study.trials, kept.counted, std::move(kept.pending), shard_},
-                           kept.pending_values.bytes(), totals.bytes());
+    const RecordStart start{study.trials, kept.counted, std::move(kept.pending), shard_};
+    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, kept.pending_values.bytes(), totals.bytes());
     batch_.append(record_tail_size, '\0');
     ends_.push_back(batch_.size());
     totals_size_ += totals.size();

@@ -27,7 +27,7 @@ bool follows_rank_0(const std::string& command, const std::vector<std::string>& 
 }
 
 std::unique_ptr<Post> post_of(const Parsed& parsed) {
-    const std::string mpi = parsed.choice("mpi", {"auto", "on", "off"});
+    const std::string mpi = parsed.choice("mpi");
     const bool own_shards = parsed.text("shard") == "auto";
     if (mpi == "on" && own_shards)
         throw InputError(

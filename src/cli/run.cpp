@@ -39,7 +39,8 @@ const Command& run_command() {
          {"shard", "I/N",
           "run block b of 256 trials where b mod N = I only; `credence merge` joins the files; auto: the shard that the "
           "Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
-         {"mpi", "WHEN", "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off"},
+         {"mpi", "WHEN", "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off",
+          false, {"auto", "on", "off"}},
          {"resume", "",
           "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
