@@ -5,7 +5,7 @@ set -euo pipefail
 for tool in cc h5diff; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
 done
-every=60
+every=90
 bash tests/durability/sweep.sh build/credence $every &
 sweep=$!
 bash tests/durability/random_kills.sh build/credence 200

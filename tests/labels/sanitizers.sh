@@ -33,5 +33,5 @@ for target in scenario noise judge results journal; do
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=1024 OMP_NUM_THREADS=1 \
     "build-fuzz/tests/fuzz/fuzz_$target" -runs=0 -rss_limit_mb=2048 "${folders[@]}" >build-fuzz/kept.log 2>&1 ||
     { tail -n 50 build-fuzz/kept.log; exit 1; }
-  bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-4}" || echo "$target: look at these findings"
+  bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-2}" || echo "$target: look at these findings"
 done
