@@ -50,7 +50,7 @@ TEST_CASE("estimators: each is its paper's filter, with dense matrices and the j
         for (const Settings& settings :
              {loud("straight", "0.1"), loud("circle", "0.03"), Settings{{"features.path", "circle"}, {"noise.heading", "0.05"}},
               Settings{{"noise.walk", "0"}, {"noise.deformation", "0"}, {"edges.graph", "none"}, {"noise.heading", "0.05"}}})
-            for (const std::uint64_t trial : {0, 1, 2}) {
+            for (const std::uint64_t trial : {0u, 1u, 2u}) {
                 CAPTURE(estimator, trial, described(settings));
                 const Scenario scenario = scenario_with(settings);
                 const Run run = run_arm(scenario, {Controller::fixed, estimator}, keyed_noise(scenario, 3, trial));

@@ -52,7 +52,7 @@ TEST_CASE("cli: watch follows a run to its end, and then says what report says")
         for (const char* figure : {"trace_P", "unseen", "pose_error", "nees_ratio", "nis_ratio"}) {
             CHECK(said[arm][figure]["mean"].get<double>() ==
                   Approx(reported[arm][figure]["mean"].get<double>()).epsilon(1e-13));
-            for (const int end : {0, 1})
+            for (const std::size_t end : {0u, 1u})
                 CHECK(said[arm][figure]["ci95"][end].get<double>() ==
                       Approx(reported[arm][figure]["ci95"][end].get<double>()).epsilon(1e-12));
             CHECK(said[arm][figure]["unit"] == reported[arm][figure]["unit"]);

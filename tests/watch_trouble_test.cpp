@@ -21,7 +21,7 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
     run_and_die(path, small(1000), 3);
     CHECK(watch.look().trials_done() == 3 * block_size);
     Asked other = small(1000);
-    for (const std::uint64_t seed : {2, 3, 3}) {
+    for (const std::uint64_t seed : {2u, 3u, 3u}) {
         other.root_seed = seed;
         std::filesystem::remove(path + ".journal");
         run_and_die(path, other, 4);
