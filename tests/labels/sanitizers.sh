@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Label sanitizers: tests of everything that handles memory, and the fuzz targets, under clang's address and
-# undefined-behaviour sanitizers, warnings as errors. All tests but those marked [long]: `cmake --preset sanitizers`.
+# undefined-behaviour sanitizers, warnings as errors. All tests: `cmake --preset sanitizers`.
 # The program gives the bits of g++'s. Of the fuzz targets: their checksums are HDF5's own, and what is kept passes.
 set -euo pipefail
 for tool in clang++ llvm-symbolizer; do
@@ -19,7 +19,7 @@ cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for compiler in build build-fuzz; do
-  ASAN_OPTIONS=detect_leaks=0 "$compiler/credence" run experiments/seed/*.ini --trials 300 --quiet -o "$work/$compiler.h5"
+  ASAN_OPTIONS=detect_leaks=0 "$compiler/credence" run experiments/seed/*.ini --trials 40 --quiet -o "$work/$compiler.h5"
 done
 h5diff --exclude-path /run "$work/build.h5" "$work/build-fuzz.h5"
 echo "g++ and clang: the same bits in 8 scenarios"
@@ -33,5 +33,5 @@ for target in scenario noise judge results journal; do
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=1024 OMP_NUM_THREADS=1 \
     "build-fuzz/tests/fuzz/fuzz_$target" -runs=0 -rss_limit_mb=2048 "${folders[@]}" >build-fuzz/kept.log 2>&1 ||
     { tail -n 50 build-fuzz/kept.log; exit 1; }
-  bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-2}" || echo "$target: look at these findings"
+  bash tests/fuzz/run.sh $target "${FUZZ_SECONDS:-1}" || echo "$target: look at these findings"
 done
