@@ -4,6 +4,7 @@
 # usage: mpi.sh CREDENCE   (built with MPI; needs mpirun and h5diff)
 set -euo pipefail
 credence=$(realpath "$1")
+tests=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -16,15 +17,7 @@ cat >both.ini <<'INI'
 name = both
 poses = 12
 INI
-cat >tiny.ini <<'INI'
-[scenario]
-name = tiny
-poses = 5
-[arms]
-controllers = fixed
-[planner]
-speeds = 1
-INI
+cp "$tests/durability/tiny.ini" .
 cat >slow.ini <<'INI'
 [scenario]
 name = slow

@@ -8,15 +8,7 @@ cc -O1 -Wall -Wextra -shared -fPIC -o "$work/crash.so" "$here/crash_at_write.c" 
 mkdir "$work/at"
 cd "$work/at"
 
-cat >../tiny.ini <<'INI'
-[scenario]
-name = tiny
-poses = 5
-[arms]
-controllers = fixed
-[planner]
-speeds = 1
-INI
+cp "$here/tiny.ini" ..
 trials=1500  # five blocks and a partial one
 study=(run ../tiny.ini --trials $trials --quiet -o x.h5 --commit-every 1)
 "$credence" run ../tiny.ini --trials $trials --quiet -o ../whole.h5
