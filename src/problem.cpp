@@ -216,6 +216,7 @@ void Problem::fill_control() {
     view_.control.fixed = fixed_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
+    view_.control.horizon = *scenario_.planner.horizon;
 }
 
 }  // namespace credence
