@@ -27,8 +27,7 @@ struct Influence {
 constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy, horizon = Controller::horizon;
 const Settings circle{{"features.path", "circle"}}, ranged{{"sensor.noise", "ranged"}}, swaying{{"features.sway_amplitude", "0.8"}},
     turning{{"noise.heading", "0.02"}}, flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}},
-    ahead{{"features.path", "circle"}, {"sensor.noise", "ranged"}, {"planner.speeds", "2"}, {"planner.turns", "0, 0.3"},
-          {"scenario.poses", "10"}, {"arms.controllers", "fixed, greedy, horizon"}};
+    ahead{{"model.process", "translation"}, {"features.path", "circle"}, {"arms.controllers", "fixed, greedy, horizon"}};
 const std::vector<ColumnIndex> sight{column_unseen}, beliefs{column_unseen, column_trace_P},
     all{column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio},
     all_but_reported{column_unseen, column_pose_error, column_nis_ratio};
@@ -76,7 +75,7 @@ const std::vector<Influence>& influences() {
         {"planner.speeds", "1", {}, fixed, column_count, Way::up, all},
         {"planner.turns", "0", circle, greedy, column_trace_P, Way::up, {}},
         {"planner.turns", "0.1, 0.2", circle, fixed, column_count, Way::up, all},
-        {"planner.horizon", "3", ahead, horizon, column_trace_P, Way::down, {}},
+        {"planner.horizon", "1", ahead, horizon, column_trace_P, Way::up, {}},
         // What the filter believes steers the planner too.
         {"filter.measurement", "0.2", circle, greedy, column_nees_ratio, Way::up, {}},
         {"sensor.range_max", "0.7", circle, greedy, column_unseen, Way::up, {}},

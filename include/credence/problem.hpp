@@ -16,6 +16,7 @@ struct ProblemView {
     ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
+    Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
 
     /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.

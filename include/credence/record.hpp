@@ -40,6 +40,7 @@ enum class FigureRole {
     rows,                ///< number of measurement rows
     squared_error,       ///< |e|^2 of one block of the state
     variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
+    nees_in_chart,       ///< NEES of a block with its error in another chart: shown beside `nees`, never judged
     other,
 };
 
@@ -79,6 +80,11 @@ std::vector<std::string> component_names(const Scenario& scenario);
 
 /// Unit of trace(P): length^2, and in the heading model + rad^2.
 std::string trace_unit(const Scenario& scenario);
+
+/// In which charts of the error NEES are reported. Where all estimators are the process model's own, in its own alone.
+enum class Charts { euclidean, euclidean_and_invariant };
+
+Charts charts_of(const Scenario& scenario);
 
 /// Positions in the list of `trial_columns`.
 enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,

@@ -46,7 +46,7 @@ enum class RangeNoise { constant, ranged };
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };
-/// greedy: the control whose next trace(P) is least; horizon: the one whose trace(P) some steps later is.
+/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over some steps is.
 enum class Controller { fixed, greedy, horizon };
 /// How the state is estimated, in the order of estimator_list.hpp.
 enum class Estimator {

@@ -45,7 +45,7 @@ struct Step {
     double nis = 0;                                       ///< 0 if there are no rows
     double trace_P = 0;                                   ///< of the reported covariance; adds rad^2 to length^2
     int rows = 0;                                         ///< m
-    Eigen::VectorXd candidate_cost;                       ///< per candidate, unreported trace(P); planners only
+    Eigen::VectorXd candidate_cost;                       ///< per candidate, unreported trace(P), summed over the horizon
     double condition_of_S = 1;                            ///< 2-norm; 1 if there are no rows
 };
 

@@ -110,14 +110,15 @@ double candidate_cost(const Scenario& scenario, const Belief& belief, const Cont
     return expected(scenario, belief, control, k).P.trace();
 }
 
-/// Cost of a control that `steps` - 1 others follow: the least trace(P) that any sequence of them ends with.
+/// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any sequence
+/// of them has.
 double cost_ahead(const Scenario& scenario, const Belief& belief, const Control& control, int k, int steps) {
     const Belief next = expected(scenario, belief, control, k);
     if (steps == 1) return next.P.trace();
     double least = std::numeric_limits<double>::infinity();
     for (const Control& following : candidates(scenario))
         least = std::min(least, cost_ahead(scenario, next, following, k + 1, steps - 1));
-    return least;
+    return next.P.trace() + least;
 }
 
 /// Index of the choice among the costs: going through them in order, one replaces the choice when its cost is
