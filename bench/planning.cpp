@@ -1,8 +1,8 @@
 // What a step costs with each controller: the fixed path, the greedy planner, and horizons of two and three steps, on the
 // best unit. All are measured in turns in one process, by the processor's time; medians, since the clock drifts.
-//   credence_bench_planning [ROUNDS]      (default 5; a horizon of three steps on the circle takes milliseconds a step)
+//   credence_bench_planning [ROUNDS]      (default 5)
 
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -53,6 +53,13 @@ struct Measured {
     }
 };
 
+/// Three digits, and all of those before the point.
+std::string figure(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, value < 100 ? "%.3g" : "%.0f", value);
+    return text;
+}
+
 /// A line: the median of each arm in microseconds a step, those of the horizons over the greedy planner's.
 void measure_cell(const std::string& process, const std::string& path, const std::string& noise, int rounds) {
     const std::vector<std::string> cell{"model.process", process, "features.path", path, "sensor.noise", noise};
@@ -69,9 +76,10 @@ void measure_cell(const std::string& process, const std::string& path, const std
     for (int round = 0; round < rounds; ++round)
         for (Measured& arm : arms) arm.measure();
     const double greedy = arms[1].median(), two = arms[2].median(), three = arms[3].median();
-    std::printf("| %s, %s, %s | %d | %.3g | %.3g | %.3g | %.3g | %.3g | %.3g |\n", process == "heading" ? "ekf" : "kf",
-                path.c_str(), noise.c_str(), candidate_count(arms[1].row.problem.scenario()), arms[0].median(), greedy,
-                two, two / greedy, three, three / greedy);
+    std::printf("| %s, %s, %s | %d | %s | %s | %s | %s | %s | %s |\n", process == "heading" ? "ekf" : "kf", path.c_str(),
+                noise.c_str(), candidate_count(arms[1].row.problem.scenario()), figure(arms[0].median()).c_str(),
+                figure(greedy).c_str(), figure(two).c_str(), figure(two / greedy).c_str(), figure(three).c_str(),
+                figure(three / greedy).c_str());
     std::fflush(stdout);
 }
 

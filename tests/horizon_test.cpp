@@ -3,7 +3,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 #include <credence/trajectory.hpp>
 #include <credence/trial.hpp>
 
