@@ -4,6 +4,7 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -95,6 +96,15 @@ Json evidence_json(const Evidence& evidence) {
             {"bias", each_json(evidence.bias, bias_json)},
             {"shape", {{"exact", evidence.shape.exact}, {"distance", evidence.shape.distance}, {"p", evidence.shape.p}}},
             {"credibility", credibility_json(evidence.credibility)}};
+}
+
+Json sweep_json(const SweepPoint& sweep) {
+    Json at;
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::optional<double> number = to_number(one.value);
+        at[one.key] = number && std::isfinite(*number) ? Json(*number) : Json(one.value);
+    }
+    return {{"of", sweep.of}, {"at", at}};
 }
 
 Json comparison_json(const Comparison& comparison) {

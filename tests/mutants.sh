@@ -29,6 +29,7 @@ run_make() {
 nearest() {
   local whole="filter_oracle_test keys_test"  # whole trials; they see the engine through support.cpp only
   case "$1" in
+    *sweep.cpp) echo sweep_test ;;
     *elementary.hpp | *real.hpp) echo elementary_test ;;
     *draws.hpp) echo draws_test draws_statistics_test ;;
     *world.hpp) echo world_test trial_test "$whole" ;;
