@@ -40,6 +40,7 @@ nearest() {
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
     *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
+    *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;

@@ -1,7 +1,7 @@
 #pragma once
 // Room 8: a scenario made ready: the tables that its equations read, computed once.
 
-#include <credence/planner.hpp>
+#include <credence/horizon.hpp>
 #include <credence/slam_record.hpp>
 
 namespace credence {
@@ -16,7 +16,14 @@ struct ProblemView {
     ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
+    Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+
+    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    int steps_ahead(Controller controller, int k) const {
+        if (controller != Controller::horizon) return 1;
+        return control.horizon < poses - k ? control.horizon : poses - k;
+    }
 };
 
 /// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
@@ -52,7 +59,7 @@ std::vector<Point> feature_translations(const Scenario& scenario);
 std::vector<Point> sway_offsets(const Scenario& scenario);
 /// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
 std::vector<Control> fixed_controls(const Scenario& scenario);
-/// The greedy planner's candidates in the order that decides ties [model.md, Controllers].
+/// The planners' candidates in the order that decides ties [model.md, Controllers].
 std::vector<Control> planner_candidates(const Scenario& scenario);
 
 }  // namespace credence
