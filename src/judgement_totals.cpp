@@ -2,6 +2,7 @@
 
 #include <credence/chi_square.hpp>
 #include <credence/goodness.hpp>
+#include <credence/slam_record.hpp>
 
 #include "judgement_results.hpp"
 
@@ -23,7 +24,7 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 }  // namespace
 
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
-    : shape_(shape), figures_(shape_), judge_(shape_, figures_) {
+    : shape_(shape), figures_(record_figures(shape_)), judge_(shape_, figures_) {
     record_.results = empty_record_results(shape_, figures_.list, path);
     record_.has_innovations = shape.has_innovations();
     const std::size_t lags = size(lag_count(record_.results.scenario.poses));

@@ -3,6 +3,7 @@
 
 #include <credence/judgement_record.hpp>
 
+#include "judgement_file.hpp"
 #include "judgement_step.hpp"
 
 #include <cstdint>
@@ -41,7 +42,7 @@ private:
     void add_shape();
 
     RecordShape shape_;
-    RecordFigures figures_;
+    StateFigures figures_;
     StepJudge judge_;
     JudgedRecord record_;
     bool keeps_nees_ = false, keeps_cells_ = false;

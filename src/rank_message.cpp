@@ -45,7 +45,7 @@ RankTasks read_tasks(const std::string& bytes) {
     return tasks;
 }
 
-ScenarioResults without_columns(const Scenario& scenario) {
+ScenarioResults without_columns(const Declaration& scenario) {
     ScenarioResults results = empty_results(scenario);
     for (ArmResults& arm : results.arms) arm.columns.clear();
     return results;

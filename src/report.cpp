@@ -2,7 +2,10 @@
 
 #include <credence/bootstrap.hpp>
 #include <credence/error.hpp>
+#include <credence/slam_record.hpp>
 #include <credence/text.hpp>
+
+#include "scenario_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +15,19 @@ namespace credence {
 
 namespace {
 
-const std::vector<PublishedFigure>* published_of(const Scenario& scenario, const std::string& column) {
-    if (column == "trace_P") return &scenario.published.trace_P;
-    if (column == "unseen") return &scenario.published.unseen;
-    if (column == "pose_error") return &scenario.published.pose_error;
-    return nullptr;
+/// What `published.COLUMN` says; nothing where the scenario has no such key.
+std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scenario, const std::string& column) {
+    const std::string key = "published." + column;
+    for (const Setting& setting : scenario.settings)
+        if (setting.key == key) return parse_published(key, setting.value);
+    return std::nullopt;
 }
 
-std::optional<PublishedPlace> place_of(const Scenario& scenario, const std::string& column, const std::string& arm,
-                                       const std::vector<double>& values) {
-    if (const auto* figures = published_of(scenario, column))
-        for (const PublishedFigure& figure : *figures)
-            if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
+std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedFigure>>& published,
+                                       const std::string& arm, const std::vector<double>& values) {
+    if (!published) return std::nullopt;
+    for (const PublishedFigure& figure : *published)
+        if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
     return std::nullopt;
 }
 
@@ -34,14 +38,15 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
     std::vector<double> values = figure_values(results, arm, c);
+    const auto published = published_of(results.scenario, column.name);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
-                        place_of(results.scenario, column.name, arm.name, values), std::nullopt};
+                        place_of(published, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
         report.bootstrap95 = bootstrap_mean_interval(
             values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
     std::erase_if(values, [](double value) { return std::isnan(value); });
     for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
-    if (published_of(results.scenario, column.name) != nullptr)
+    if (published)
         report.histogram = histogram(values, column.type == ColumnType::real ? BinWidths::ratio : BinWidths::equal);
     return report;
 }
@@ -51,7 +56,7 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, margin);
-    for (const double status : column_values(results, arm, column_status)) {
+    for (const double status : column_values(results, arm, status_column(results.columns))) {
         report.failed += failed(static_cast<Status>(static_cast<int>(status)));
         report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
     }

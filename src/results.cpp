@@ -54,13 +54,14 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
 
 }  // namespace
 
-ScenarioResults empty_results(const Scenario& scenario) {
-    ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, 0, {}};
+ScenarioResults empty_results(const Declaration& scenario) {
+    const World& world = world_of(scenario);
+    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}};
     const std::size_t steps = static_cast<std::size_t>(results.steps());
     const std::size_t lags = static_cast<std::size_t>(lag_count(scenario.poses));
-    for (const Arm& arm : arms_of(scenario)) {
+    for (const std::string& name : scenario.arms) {
         ArmResults one;
-        one.name = arm_name(arm);
+        one.name = name;
         one.columns.resize(results.columns.size());
         for (const Figure& figure : results.figures)
             one.totals.push_back(

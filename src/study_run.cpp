@@ -11,7 +11,6 @@
 #include <chrono>
 #include <exception>
 #include <iterator>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -25,7 +24,7 @@ class Runner : private BlockDesk {
 public:
     Runner(Study& study, const RunOptions& options) : study_(study), options_(options), done_(study.scenarios.size()) {
         for (const ScenarioResults& results : study.scenarios)
-            problems_.push_back(std::make_unique<Problem>(results.scenario));
+            runners_.emplace_back(results.scenario);
     }
 
     void run() {
@@ -59,7 +58,7 @@ private:
         ScenarioResults& results = study_.scenarios[s];
         const std::size_t last = results.blocks.size() - 1;
         const auto size = static_cast<int>(block_rows(results, last));
-        remove_totals(results, run_block(*problems_[s], study_.root_seed, results.blocks[last], size));
+        remove_totals(results, runners_[s].run(study_.root_seed, results.blocks[last], size));
         if (options_.keeper != nullptr) options_.keeper->take_back(s, results.blocks[last]);
         taken_back_.push_back({s, results.blocks[last]});
         set_blocks(results, {results.blocks.begin(), results.blocks.end() - 1}, options_.trials);
@@ -105,7 +104,7 @@ private:
 
     void run_task(const Task& task) {
         const int trials = trials_in_block(options_.trials, task.block);
-        const Block block = run_block(*problems_[task.scenario], study_.root_seed, task.block, trials);
+        const Block block = runners_[task.scenario].run(study_.root_seed, task.block, trials);
         store_columns(study_.scenarios[task.scenario], block);
         if (finish_task(task, block)) options_.keeper->commit();
     }
@@ -179,7 +178,7 @@ private:
 
     Study& study_;
     const RunOptions& options_;
-    std::vector<std::unique_ptr<Problem>> problems_;
+    std::vector<BlockRunner> runners_;
     std::vector<std::vector<std::int64_t>> done_;  ///< by scenario: blocks that are there
     std::vector<Task> tasks_;
     std::atomic<std::size_t> next_ = 0;  ///< the first task that nobody has

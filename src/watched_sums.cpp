@@ -27,6 +27,13 @@ bool is_of(const Shard& shard, std::int64_t block) { return block % shard.count 
 
 }  // namespace
 
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
+    std::vector<std::size_t> watched;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (is_figure(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+    return watched;
+}
+
 void WatchedSums::add(const WatchedSums& other) {
     trials += other.trials;
     arms.resize(std::max(arms.size(), other.arms.size()));
@@ -45,15 +52,15 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
     std::vector<std::vector<double>> trace(results.arms.size());
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmSums& arm = sums.arms[a];
-        const std::vector<double> status = column(a, column_status);
+        const std::vector<double> status = column(a, status_column(results.columns));
         for (const double value : status) {
             arm.failed += failed(status_of(value));
             arm.diverged += status_of(value) == Status::diverged;
         }
-        for (const ColumnIndex index : watched_columns) {
+        for (const std::size_t index : watched_columns(results.columns)) {
             const std::vector<double> values = figure_of(column, a, index, status);
             arm.figures.push_back(RunningMoments::of(values));
-            if (index == column_trace_P) trace[a] = values;
+            if (index == 0) trace[a] = values;
         }
     }
     for (std::size_t a = 0; a < results.arms.size(); ++a)

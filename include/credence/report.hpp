@@ -45,7 +45,7 @@ struct Report {
     std::int64_t trials = 0;  ///< of each scenario that were asked for
     bool complete = true;
     double margin = 0;
-    std::vector<Scenario> scenarios;
+    std::vector<Declaration> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that are in no figure, the first ones
     std::vector<Comparison> pairs;          ///< planned against fixed: greedy - fixed of the same estimator, by trial

@@ -40,7 +40,7 @@ public:
 /// One arm of a scenario: per-trial columns and per-step totals.
 struct ArmResults {
     std::string name;
-    /// [column_count][trials]; NaN or fill where a trial failed. Empty where `kept` has them: read column_values.
+    /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them: read column_values.
     std::vector<std::vector<double>> columns;
     std::shared_ptr<const KeptColumns> kept;
     std::vector<FigureTotals> totals;          ///< [figure_count]
@@ -58,7 +58,7 @@ struct ArmResults {
 };
 
 struct ScenarioResults {
-    Scenario scenario;                         ///< resolved
+    Declaration scenario;                      ///< resolved
     std::vector<Column> columns;
     std::vector<Figure> figures;
     std::vector<ArmResults> arms;
@@ -74,8 +74,8 @@ struct ScenarioResults {
     int state_size() const { return figures.front().dimension; }
 };
 
-/// An empty result of a resolved scenario.
-ScenarioResults empty_results(const Scenario& scenario);
+/// An empty result of a resolved scenario. Throws InputError where there is no such world.
+ScenarioResults empty_results(const Declaration& scenario);
 
 /// Whether a column is a figure of the trial, not its status.
 bool is_figure(const Column& column);
