@@ -42,7 +42,7 @@ nearest() {
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test evidence_test ;;
+    *lane.hpp | *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 
