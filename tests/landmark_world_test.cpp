@@ -22,6 +22,13 @@ std::string refusal_of(const std::string& lines) {
     return refusal([&] { landmarks(lines); });
 }
 
+/// Watches nothing.
+struct Unobserved {
+    void started(const auto&...) {}
+    void predicted(const auto&...) {}
+    void updated(const auto&...) {}
+};
+
 }  // namespace
 
 TEST_CASE("landmark world: a scenario names its world, and its text reads back as the same") {
@@ -86,11 +93,7 @@ TEST_CASE("landmark world: a block is its trials one by one, on every unit") {
     const LandmarkProblem problem(scenario);
     const LandmarkView& view = problem.view();
     using Heading = Layout<Process::heading, any_count>;
-    struct Nothing {
-        void started(const Heading&, const auto&, const auto&) {}
-        void predicted(const auto&...) {}
-        void updated(const auto&...) {}
-    } nothing;
+    Unobserved nothing;
     const auto work = std::make_unique<LandmarkWorkspace<Heading, double>>();
     constexpr int trials = 11;
     for (const Unit& unit : runnable_units()) {
