@@ -9,7 +9,7 @@ namespace credence {
 
 namespace {
 
-std::vector<std::unique_ptr<const World>>& all_worlds() {
+std::vector<std::unique_ptr<const World>>& registry() {
     static std::vector<std::unique_ptr<const World>> all = [] {
         std::vector<std::unique_ptr<const World>> known;
         known.push_back(deformable_world());
@@ -24,17 +24,17 @@ std::vector<std::unique_ptr<const World>>& all_worlds() {
 void add_world(std::unique_ptr<const World> world) {
     if (find_world(world->name()))
         throw invalid_value(world_key, world->name(), "there is a world of that name", "Give yours another name");
-    all_worlds().push_back(std::move(world));
+    registry().push_back(std::move(world));
 }
 
-std::vector<const World*> worlds() {
+std::vector<const World*> all_worlds() {
     std::vector<const World*> all;
-    for (const auto& world : all_worlds()) all.push_back(world.get());
+    for (const auto& world : registry()) all.push_back(world.get());
     return all;
 }
 
 const World* find_world(const std::string& name) {
-    for (const auto& world : all_worlds())
+    for (const auto& world : registry())
         if (world->name() == name) return world.get();
     return nullptr;
 }
@@ -42,7 +42,7 @@ const World* find_world(const std::string& name) {
 const World& world_of(const Declaration& scenario) {
     if (const World* world = find_world(scenario.world)) return *world;
     std::vector<std::string> names;
-    for (const World* world : worlds()) names.push_back(world->name());
+    for (const World* world : all_worlds()) names.push_back(world->name());
     throw invalid_value(world_key, printable(scenario.world), "this program has no such world",
                         "Use the program that has it, or give one of " + joined(names));
 }

@@ -57,7 +57,7 @@ public:
 void add_world(std::unique_ptr<const World> world);
 
 /// All of them, the deformable one first.
-std::vector<const World*> worlds();
+std::vector<const World*> all_worlds();
 
 /// The world of this name; nullptr where there is none.
 const World* find_world(const std::string& name);

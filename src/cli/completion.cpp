@@ -83,7 +83,7 @@ std::string case_of(const Command& command) {
 /// Of every world there is, the first one's choices where several have a key.
 std::vector<DescribedKey> every_key() {
     std::vector<DescribedKey> keys;
-    for (const World* world : worlds())
+    for (const World* world : all_worlds())
         for (DescribedKey& key : world->keys())
             if (std::none_of(keys.begin(), keys.end(), [&](const DescribedKey& known) { return known.key == key.key; }))
                 keys.push_back(std::move(key));

@@ -64,7 +64,7 @@ std::string keys_text() {
     std::string text = roff::filled(
         "A scenario file is an INI text that names only what differs from the defaults; --set overrides it. Keys,\n"
         "with their defaults:");
-    for (const World* world : worlds()) {
+    for (const World* world : all_worlds()) {
         if (world->name() != first_world)
             text += roff::filled("Keys of the world " + world->name() + " (scenario.world = " + world->name() + "):");
         for (const DescribedKey& key : world->keys())
