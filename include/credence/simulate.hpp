@@ -23,7 +23,8 @@ struct Unit {
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
 };
 
-/// What a unit compiled from src/simulate_unit.cpp and src/simulate_landmarks_unit.cpp offers under its name, and its entry in a list of units.
+/// What a unit compiled from src/simulate_unit.cpp and src/simulate_landmarks_unit.cpp offers under its name, and its
+/// entry in a list of units.
 #define CREDENCE_DECLARE_UNIT(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
