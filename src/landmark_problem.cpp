@@ -23,7 +23,7 @@ LandmarkProblem::LandmarkProblem(const LandmarkScenario& scenario) {
     const Scenario slam = reported_as(scenario);
     view_.poses = scenario.poses;
     view_.features = scenario.landmarks.count;
-    view_.state_size = credence::state_size(slam);
+    view_.state_size = state_size(slam);
     const std::vector<StateBlock> blocks = state_blocks(slam);
     coverage_bounds_ = coverage_bounds(blocks);
     view_.block_count = static_cast<int>(blocks.size());

@@ -25,8 +25,8 @@ struct AtFirstEstimates {
 };
 
 /// F[r, theta] = J (r^-_k - r^-_{k-1}), the predicted positions of both poses. A feature that does not walk is one
-/// variable: its first estimate is the one that it entered with, carried along with its known motion. One that walks is a new variable
-/// at every pose, whose first estimate is the predicted one.
+/// variable: its first estimate is the one that it entered with, carried along with its known motion. One that walks is
+/// a new variable at every pose, whose first estimate is the predicted one.
 template <class Layout, class Real>
 struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;

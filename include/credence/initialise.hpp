@@ -1,5 +1,5 @@
 #pragma once
-// Room 6: the initialisation of a feature that is seen for the first time [docs/model.md, First sight].
+// Room 6: the initialisation of a feature that is seen for the first time [docs/landmarks.md, First sight].
 //
 //   z  the sighting, body frame; sigma^2 its believed variance; c = J d, what the heading's error moves the feature by:
 //   d = f^ - r^, but for estimators that linearise elsewhere
