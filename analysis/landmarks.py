@@ -91,14 +91,13 @@ def picture(scenario, path):
     """Heading NEES by step; and the heading's RMSE beside what the filter believes."""
     figure, (left, right) = style.panels(2, 72, style.PAGE)
     for index, (arm, group) in enumerate(scenario.items()):
-        line, step = style.arm_style(index), group["step"][:]
+        colour, step = style.arm_style(index)["color"], group["step"][:]
         means = results.per_step(group, "nees_heading")
-        left.fill_between(step, means.low, means.high, color=line["color"], alpha=0.25, linewidth=0)
-        left.plot(step, means.mean, label=estimator(arm), **line)
+        left.plot(step, means.mean, label=estimator(arm), color=colour, linewidth=0.6)
         if estimator(arm) in ("ekf", "riekf"):
             squares, variance = results.per_step(group, "squared_error_heading"), results.per_step(group, "variance_heading")
-            right.plot(step, np.sqrt(squares.mean), color=line["color"], label=f"{estimator(arm)}: RMSE")
-            right.plot(step, np.sqrt(variance.mean), color=line["color"], linestyle=":",
+            right.plot(step, np.sqrt(squares.mean), color=colour, linewidth=0.6, label=f"{estimator(arm)}: RMSE")
+            right.plot(step, np.sqrt(variance.mean), color=colour, linewidth=1.4, linestyle=":", zorder=3,
                        label=f"{estimator(arm)}: predicted σ")
     left.axhline(1, color=style.GREY, linewidth=0.6, zorder=0.5)
     left.set_ylabel("heading NEES")
@@ -109,14 +108,14 @@ def picture(scenario, path):
         axis.set_xlim(0, step[-1])
         style.legend_above(axis, columns=3 if axis is left else 2)
     trials = next(iter(scenario.values()))["trial"].size
-    style.headline(figure, f"Landmarks on a loop, {trials:,} trials; shades: 95 % intervals of the means")
-    figure.savefig(path, dpi=200)
+    style.headline(figure, f"Landmarks on a loop, {trials:,} trials")
+    style.save_png(figure, path.parent, path.stem, dots_per_inch=160, colours=128)
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description="Tables and picture of landmarks on a loop.")
     parser.add_argument("file", metavar="FILE.h5")
-    parser.add_argument("-o", "--output", metavar="PICTURE", help="draw it there")
+    parser.add_argument("-o", "--output", metavar="PICTURE.png", help="draw it there, a PNG")
     parser.add_argument("--sweep", metavar="SIGMA=FILE.h5", nargs="*", default=[], help="other heading noises")
     options = parser.parse_args(arguments)
     files = [tuple(one.split("=", 1)) for one in options.sweep]
@@ -131,8 +130,7 @@ def main(arguments=None):
             ratios(scenario, "nees_heading", "heading NEES")
             summary(scenario)
             if options.output:
-                pathlib.Path(options.output).parent.mkdir(parents=True, exist_ok=True)
-                picture(scenario, options.output)
+                picture(scenario, pathlib.Path(options.output))
         if files:
             sweep(files)
     except ValueError as error:

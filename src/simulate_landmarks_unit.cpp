@@ -1,6 +1,7 @@
 // The part of a unit of the engine that runs trials among landmarks; what simulate_unit.cpp says holds here.
 
 #include <credence/estimators.hpp>
+#include <credence/landmark_trial.hpp>
 #include <credence/simulate.hpp>
 #include <credence/simulate_batch.hpp>
 

@@ -3,6 +3,7 @@
 
 #include <credence/block.hpp>
 #include <credence/ini.hpp>
+#include <credence/landmark_trial.hpp>
 #include <credence/landmarks.hpp>
 
 #include "catch.hpp"

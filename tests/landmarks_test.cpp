@@ -2,7 +2,7 @@
 // a state that grows.
 
 #include <credence/estimators.hpp>
-#include <credence/landmark_problem.hpp>
+#include <credence/landmark_trial.hpp>
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

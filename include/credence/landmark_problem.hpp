@@ -2,9 +2,15 @@
 // Room 8: a scenario of the world of landmarks made ready: the tables that its equations read, computed once.
 
 #include <credence/landmark_scenario.hpp>
-#include <credence/landmark_trial.hpp>
+#include <credence/landmark_world.hpp>
+#include <credence/problem.hpp>
 
 namespace credence {
+
+/// What a trial among landmarks reads: plain numbers and pointers into a LandmarkProblem.
+struct LandmarkView : CommonView {
+    LandmarkParameters world;
+};
 
 /// The SLAM scenario whose trials report what these do: one with a heading, as many features and no edges.
 Scenario reported_as(const LandmarkScenario& scenario);

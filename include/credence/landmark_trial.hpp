@@ -4,15 +4,9 @@
 
 #include <credence/estimator.hpp>
 #include <credence/judge.hpp>
-#include <credence/landmark_world.hpp>
+#include <credence/landmark_problem.hpp>
 
 namespace credence {
-
-/// What a trial among landmarks reads: plain numbers and pointers into a LandmarkProblem.
-struct LandmarkView : CommonView {
-    LandmarkParameters world;
-};
-
 inline namespace CREDENCE_UNIT {
 
 /// What one trial needs room for.

@@ -2,7 +2,7 @@
 // Room 9: the door between the engine and the units: the same source, compiled once for each instruction set.
 
 #include <credence/batch.hpp>
-#include <credence/landmark_trial.hpp>
+#include <credence/landmark_problem.hpp>
 #include <credence/problem.hpp>
 
 #include <cstddef>
