@@ -72,11 +72,11 @@ def arms(file):
 
 
 def setting(scenario_group, section, key):
-    """A key of the scenario, as text."""
+    """A key of the scenario, as text; empty where its world has none of that name."""
     parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
     parser.optionxform = str
     parser.read_string(text(scenario_group, "scenario"))
-    return parser[section][key]
+    return parser.get(section, key, fallback="")
 
 
 def published(scenario_group, column_name):

@@ -123,8 +123,8 @@ def main(arguments=None):
         if any(len(pair) != 2 for pair in files):
             raise ValueError("invalid --sweep (must be SIGMA=FILE.h5). Write it so.")
         with results.open_file(options.file, (results.STUDY,)) as file:
-            name, scenario = results.scenarios(file)[0]
-            if results.setting(scenario, "scenario", "name") != name or "world = landmarks" not in results.text(scenario, "scenario"):
+            _, scenario = results.scenarios(file)[0]
+            if results.setting(scenario, "scenario", "world") != "landmarks":
                 raise ValueError(f"{options.file} holds no landmarks. Give a file of experiments/estimators/landmarks.ini.")
             ratios(scenario, "nees_pose", "pose NEES/3")
             ratios(scenario, "nees_heading", "heading NEES")
