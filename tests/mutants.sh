@@ -43,8 +43,11 @@ nearest() {
     *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
+    *initialise.hpp | *landmark*) echo landmarks_test ;;
+    *estimator*.hpp | *ideal.hpp | *first_estimates.hpp | *right_invariant.hpp | *iterated.hpp)
+      echo estimators_test landmarks_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test evidence_test ;;
+    *lane.hpp | *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 

@@ -6,14 +6,20 @@
 
 namespace credence {
 
-/// What a trial reads: plain numbers and pointers into a Problem.
-struct ProblemView {
-    Process process = Process::heading;
+/// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
+Point polar(double s, double angle);
+
+/// The range in which a feature is seen, both ends included.
+void set_range(SensorParameters& sensor, double range_min, double range_max);
+
+/// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
+std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks);
+
+/// What a trial of any world of ours reads: plain numbers and pointers into its problem.
+struct CommonView {
     int poses = 0, features = 0, state_size = 0;
-    WorldParameters world;
     SensorParameters sensor;
     FilterParameters filter;
-    ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
     Charts charts = Charts::euclidean;
@@ -24,6 +30,13 @@ struct ProblemView {
         if (controller != Controller::horizon) return 1;
         return control.horizon < poses - k ? control.horizon : poses - k;
     }
+};
+
+/// What a trial in the deforming world reads beside that.
+struct ProblemView : CommonView {
+    Process process = Process::heading;
+    WorldParameters world;
+    ControlParameters control;
 };
 
 /// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
