@@ -19,6 +19,7 @@ const std::vector<PublishedFigure>* published_of(const Scenario& scenario, const
     return nullptr;
 }
 
+/// `values` may be none: then nothing is known of its place.
 std::optional<PublishedPlace> place_of(const Scenario& scenario, const std::string& column, const std::string& arm,
                                        const std::vector<double>& values) {
     if (const auto* figures = published_of(scenario, column))
@@ -30,9 +31,21 @@ std::optional<PublishedPlace> place_of(const Scenario& scenario, const std::stri
 /// NEES and NIS ratios are judged by tests of their own.
 bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
+/// Of totals: mean and spread are known, and nothing of the distribution.
+FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const Column& column = results.columns[c];
+    FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
+                        std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
+                        place_of(results.scenario, column.name, arm.name, {}), std::nullopt};
+    if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
+    return report;
+}
+
 FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
+    if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
     std::vector<double> values = figure_values(results, arm, c);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
                         place_of(results.scenario, column.name, arm.name, values), std::nullopt};
@@ -51,10 +64,10 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, margin);
-    for (const double status : column_values(results, arm, column_status)) {
-        report.failed += failed(static_cast<Status>(static_cast<int>(status)));
-        report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
-    }
+    const std::vector<std::int64_t> statuses = status_counts(results, arm);
+    for (std::size_t status = 0; status < statuses.size(); ++status)
+        if (failed(static_cast<Status>(status))) report.failed += statuses[status];
+    report.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
     return report;
@@ -66,6 +79,7 @@ Report make_report(const Study& study, double margin) {
     report.root_seed = study.root_seed;
     report.trials = study.trials;
     report.complete = study.complete;
+    report.keep = keep_of(study);
     report.margin = margin;
     report.pairs = planned_against_fixed(study);
     for (const ScenarioResults& results : study.scenarios) {
