@@ -1,5 +1,7 @@
 #include <credence/results.hpp>
 
+#include "superaccumulator.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,7 +15,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// a b exactly: the product rounded, and what rounding it left.
-void add_product(ExactSum& sum, double a, double b) {
+template <class Sum>
+void add_product(Sum& sum, double a, double b) {
     const double product = a * b;
     sum.add(product);
     if (const double error = std::fma(a, b, -product); error != 0) sum.add(error);
@@ -42,13 +45,31 @@ std::vector<double> figures_of(const ArmBlock& arm, std::size_t column, std::siz
     return values;
 }
 
+/// Of a block's values.
+ExactMoments exact_moments(const std::vector<double>& values) {
+    static_assert(2 * block_size <= 1024, "a superaccumulator takes no more");
+    ExactMoments moments;
+    Superaccumulator sum, square_sum;
+    for (const double value : values) {
+        if (std::isnan(value)) continue;
+        ++moments.count;
+        sum.add(value);
+        add_product(square_sum, value, value);
+    }
+    moments.sum = sum.sum();
+    moments.square_sum = square_sum.sum();
+    return moments;
+}
+
 DifferenceTotals differences_of(const std::vector<double>& a, const std::vector<double>& b) {
     DifferenceTotals totals;
+    std::vector<double> differences(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
-        totals.difference.add(a[i] - b[i]);
+        differences[i] = a[i] - b[i];
         totals.below += a[i] < b[i];
         totals.above += a[i] > b[i];
     }
+    totals.difference = exact_moments(differences);
     return totals;
 }
 
@@ -63,13 +84,6 @@ void subtract_each(std::vector<T>& to, const std::vector<T>& from) {
 }
 
 }  // namespace
-
-void ExactMoments::add(double value) {
-    if (std::isnan(value)) return;
-    ++count;
-    sum.add(value);
-    add_product(square_sum, value, value);
-}
 
 void ExactMoments::add(const ExactMoments& other) {
     count += other.count;
@@ -172,7 +186,7 @@ std::vector<ArmAggregates> aggregates_of(const std::vector<Column>& columns, con
         std::vector<std::vector<double>> values;
         for (const ArmBlock& arm : block.arms) values.push_back(figures_of(arm, c, trials));
         for (std::size_t a = 0; a < values.size(); ++a) {
-            for (const double value : values[a]) aggregates[a].columns[c].add(value);
+            aggregates[a].columns[c] = exact_moments(values[a]);
             for (std::size_t b = 0; b < a; ++b) aggregates[a].differences[b][c] = differences_of(values[a], values[b]);
         }
     }

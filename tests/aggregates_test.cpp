@@ -7,9 +7,12 @@
 #include <credence/stopping.hpp>
 #include <credence/watch.hpp>
 
+#include "../src/superaccumulator.hpp"
 #include "journal_support.hpp"
 
 #include <nlohmann/json.hpp>
+
+#include <random>
 
 using namespace credence;
 using namespace credence::test;
@@ -30,18 +33,23 @@ void add_square(ExactSum& sum, double x) {
     for (const double part : {high * high, 2 * high * low, low * low}) sum.add(part);
 }
 
-void check_moments(const ExactMoments& moments, const std::vector<double>& values) {
-    ExactSum sum, square_sum;
-    std::int64_t count = 0;
+/// One value at a time; those that are NaN are left out.
+ExactMoments slow_moments(const std::vector<double>& values) {
+    ExactMoments moments;
     for (const double value : values) {
         if (std::isnan(value)) continue;
-        ++count;
-        sum.add(value);
-        add_square(square_sum, value);
+        ++moments.count;
+        moments.sum.add(value);
+        add_square(moments.square_sum, value);
     }
-    CHECK(moments.count == count);
-    CHECK(moments.sum.parts() == sum.parts());
-    CHECK(moments.square_sum.parts() == square_sum.parts());
+    return moments;
+}
+
+void check_moments(const ExactMoments& moments, const std::vector<double>& values) {
+    const ExactMoments expected = slow_moments(values);
+    CHECK(moments.count == expected.count);
+    CHECK(moments.sum.parts() == expected.sum.parts());
+    CHECK(moments.square_sum.parts() == expected.square_sum.parts());
 }
 
 void check_totals_of(const ScenarioResults& aggregates, const ScenarioResults& trials) {
@@ -98,6 +106,34 @@ void numbers_of(const nlohmann::json& json, const std::string& path, std::map<st
 
 }  // namespace
 
+TEST_CASE("aggregates: the sums of a block are those that are added one value at a time, at any exponent") {
+    std::minstd_rand random(3);
+    for (int repeat = 0; repeat < 200; ++repeat) {
+        Superaccumulator fast;
+        ExactSum slow;
+        for (int i = 0; i < 512; ++i) {
+            const int widest = repeat % 2 == 0 ? 4 : 2040;
+            const double mantissa = (static_cast<double>(random()) - 0x1p30) * 0x1p22 + static_cast<double>(random()),
+                         value = std::ldexp(mantissa, static_cast<int>(random() % static_cast<unsigned>(widest)) - 1072);
+            if (std::abs(value) > 1e290) continue;
+            fast.add(value);
+            slow.add(value);
+        }
+        REQUIRE(fast.sum().parts() == slow.parts());
+    }
+    for (const double value : {0.0, -0.0, 5e-324, -2.2250738585072014e-308, 9.99e299, 1.0}) {
+        Superaccumulator alone;
+        for (int i = 0; i < 1024; ++i) alone.add(value < 1 ? value : value / 1024);
+        CHECK(alone.sum().rounded() == (value < 1 ? 1024 * value : value));
+    }
+    for (const double value : {1e300, -HUGE_VAL}) {
+        Superaccumulator none;
+        none.add(value);
+        none.add(1);
+        CHECK(std::isnan(none.sum().rounded()));
+    }
+}
+
 TEST_CASE("aggregates: the totals are the exact sums over the columns of the same study, for any number of threads") {
     const Study trials = run(700, Keep::trials), one = run(700, Keep::aggregates), three = run(700, Keep::aggregates, 3);
     for (std::size_t s = 0; s < trials.scenarios.size(); ++s) {
@@ -139,19 +175,15 @@ TEST_CASE("aggregates: failed trials and missing values are in no sum, and break
 TEST_CASE("aggregates: spreads survive the cancellation that their sums invite") {
     // 1e8 + i 1e-6, i = 0 ... 99: in doubles n Q - S^2 has no digit left. The values themselves are rounded to 1.5e-8.
     std::vector<double> values;
-    ExactMoments moments;
     for (int i = 0; i < 100; ++i) values.push_back(1e8 + 1e-6 * i);
-    for (const double value : values) moments.add(value);
     const Summary expected = summarise(values);
-    const Moments found = moments_of(moments);
+    const Moments found = moments_of(slow_moments(values));
     CHECK(found.mean == expected.mean);
     // summarise's mean, from which it takes the deviations, is rounded to 1.5e-8 too: (1.5e-8 / 2.9e-5)^2 / 2 = 1.3e-7.
     CHECK(found.standard_deviation == Approx(expected.standard_deviation).epsilon(2e-7));
     CHECK(std::isnan(moments_of({}).mean));
-    ExactMoments alone;
-    alone.add(3);
-    CHECK(moments_of(alone).mean == 3);
-    CHECK(std::isnan(moments_of(alone).standard_error));
+    CHECK(moments_of(slow_moments({3})).mean == 3);
+    CHECK(std::isnan(moments_of(slow_moments({3})).standard_error));
 }
 
 TEST_CASE("aggregates: shards, a crash, a grown study and a partial block taken back end in the bytes of one run") {

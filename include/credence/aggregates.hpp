@@ -16,7 +16,6 @@ struct ExactMoments {
     std::int64_t count = 0;
     ExactSum sum, square_sum;
 
-    void add(double value);
     void add(const ExactMoments& other);
     /// Takes values back that were added: what is left is as if they never had been.
     void subtract(const ExactMoments& other);
