@@ -16,10 +16,11 @@ install(TARGETS credence RUNTIME COMPONENT runtime)
 install(FILES ${pages}/credence.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
 install(FILES ${pages}/credence DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
 
-# find_package(credence) gives credence::credence.
+# find_package(credence) gives credence::credence, and credence::program for a program with worlds of one's own.
 set_target_properties(credence_library PROPERTIES EXPORT_NAME credence)
 set_target_properties(credence_core PROPERTIES EXPORT_NAME core)
-install(TARGETS credence_library credence_core EXPORT credence-targets
+set_target_properties(credence_program PROPERTIES EXPORT_NAME program)
+install(TARGETS credence_program credence_library credence_core EXPORT credence-targets
   ARCHIVE COMPONENT development INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/credence DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(EXPORT credence-targets NAMESPACE credence:: DESTINATION ${CREDENCE_PACKAGE} COMPONENT development)
@@ -32,6 +33,6 @@ install(FILES ${PROJECT_BINARY_DIR}/credence-config.cmake ${PROJECT_BINARY_DIR}/
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
-install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples FILES_MATCHING PATTERN "*.ini")
+install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples FILES_MATCHING PATTERN "*.ini" PATTERN "own_filter/*")
 install(DIRECTORY analysis DESTINATION ${CREDENCE_DATA} COMPONENT examples
   PATTERN "__pycache__" EXCLUDE PATTERN "*.h5" EXCLUDE)

@@ -32,16 +32,12 @@ double spread_of(const ExactMoments& values) {
     return spread.rounded();
 }
 
-bool failed_trial(const double* statuses, std::size_t trial) {
-    return failed(static_cast<Status>(static_cast<int>(statuses[trial])));
-}
-
 /// A column of an arm's block, NaN where a trial failed.
-std::vector<double> figures_of(const ArmBlock& arm, std::size_t column, std::size_t trials) {
+std::vector<double> figures_of(const ArmBlock& arm, std::size_t column, std::size_t status, std::size_t trials) {
     const auto begin = arm.columns.begin() + static_cast<std::ptrdiff_t>(column * trials);
     std::vector<double> values(begin, begin + static_cast<std::ptrdiff_t>(trials));
     for (std::size_t i = 0; i < trials; ++i)
-        if (failed_trial(arm.columns.data() + column_status * trials, i)) values[i] = nan;
+        if (failed(static_cast<Status>(static_cast<int>(arm.columns[status * trials + i])))) values[i] = nan;
     return values;
 }
 
@@ -177,14 +173,15 @@ std::vector<ArmAggregates> empty_aggregates(const std::vector<Column>& columns, 
 
 std::vector<ArmAggregates> aggregates_of(const std::vector<Column>& columns, const Block& block) {
     const auto trials = static_cast<std::size_t>(block.trials);
+    const std::size_t status = status_column(columns);
     std::vector<ArmAggregates> aggregates = empty_aggregates(columns, block.arms.size());
     for (std::size_t a = 0; a < block.arms.size(); ++a)
         for (std::size_t i = 0; i < trials; ++i)
-            ++aggregates[a].statuses[static_cast<std::size_t>(block.arms[a].columns[column_status * trials + i])];
+            ++aggregates[a].statuses[static_cast<std::size_t>(block.arms[a].columns[status * trials + i])];
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!is_figure(columns[c])) continue;
         std::vector<std::vector<double>> values;
-        for (const ArmBlock& arm : block.arms) values.push_back(figures_of(arm, c, trials));
+        for (const ArmBlock& arm : block.arms) values.push_back(figures_of(arm, c, status, trials));
         for (std::size_t a = 0; a < values.size(); ++a) {
             aggregates[a].columns[c] = exact_moments(values[a]);
             for (std::size_t b = 0; b < a; ++b) aggregates[a].differences[b][c] = differences_of(values[a], values[b]);

@@ -48,12 +48,14 @@ std::vector<double> added_up(const std::vector<double>& octets) {
 /// Takes the columns out of their octets and fills those of failed trials.
 void store_columns(const std::vector<Column>& declared, const std::vector<double>& octets, std::size_t trials,
                    ArmBlock& arm) {
+    const std::size_t count = declared.size();
+    std::vector<double> own(count);
+    arm.columns.resize(count * trials);
     for (std::size_t trial = 0; trial < trials; ++trial) {
-        const double* in_octet = octets.data() + trial / octet * column_count * octet + trial % octet;
-        double own[column_count];
-        for (std::size_t c = 0; c < column_count; ++c) own[c] = in_octet[c * octet];
-        arm.counted += !fill_failed(declared, own);
-        for (std::size_t c = 0; c < column_count; ++c) arm.columns[c * trials + trial] = own[c];
+        const double* in_octet = octets.data() + trial / octet * count * octet + trial % octet;
+        for (std::size_t c = 0; c < count; ++c) own[c] = in_octet[c * octet];
+        arm.counted += !fill_failed(declared, own.data());
+        for (std::size_t c = 0; c < count; ++c) arm.columns[c * trials + trial] = own[c];
     }
 }
 
@@ -64,15 +66,15 @@ struct Octets {
     std::vector<std::int32_t> covered;
     std::vector<double> errors, product_sums, product_square_sums, product_counts;
 
-    Octets(const ProblemView& problem, std::size_t count, bool detail)
+    Octets(const SimulationShape& shape, std::size_t count, bool detail)
         : trials(count),
           padded((count + octet - 1) / octet * octet),
-          steps(static_cast<std::size_t>(problem.poses - 1)),
-          figures(static_cast<std::size_t>(problem.figure_count)),
-          blocks(static_cast<std::size_t>(problem.block_count)),
-          components(static_cast<std::size_t>(problem.state_size)),
-          lags(static_cast<std::size_t>(lag_count(problem.poses))),
-          columns(padded * column_count),
+          steps(static_cast<std::size_t>(shape.poses - 1)),
+          figures(static_cast<std::size_t>(shape.figure_count)),
+          blocks(static_cast<std::size_t>(shape.block_count)),
+          components(static_cast<std::size_t>(shape.state_size)),
+          lags(static_cast<std::size_t>(lag_count(shape.poses))),
+          columns(padded * static_cast<std::size_t>(shape.column_count)),
           sums(figures * steps * octet),
           square_sums(sums.size()),
           run_square_sums(figures * octet),
@@ -83,9 +85,9 @@ struct Octets {
         for (auto* products : {&product_sums, &product_square_sums, &product_counts}) products->resize(lags * octet);
     }
 
-    Batch batch(const Arm& arm, std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
+    Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
         const bool detail = !errors.empty();
-        Batch batch{arm, root_seed, first_trial, static_cast<int>(trials)};
+        Batch batch{root_seed, first_trial, static_cast<int>(trials)};
         batch.columns = columns.data();
         batch.sums = sums.data();
         batch.square_sums = square_sums.data();
@@ -101,31 +103,35 @@ struct Octets {
     }
 };
 
-bool failed_trial(const ArmBlock& arm, std::size_t trials, std::size_t trial) {
-    return failed(static_cast<Status>(static_cast<int>(arm.columns[column_status * trials + trial])));
+/// Which trials failed: [trials].
+std::vector<bool> failed_trials(const std::vector<Column>& declared, const ArmBlock& arm, std::size_t trials) {
+    const double* status = arm.columns.data() + status_column(declared) * trials;
+    std::vector<bool> all(trials);
+    for (std::size_t trial = 0; trial < trials; ++trial)
+        all[trial] = failed(static_cast<Status>(static_cast<int>(status[trial])));
+    return all;
 }
 
 /// The cell of every NEES.
-void store_cells(const Octets& from, const EquiprobableCells& cells, ArmBlock& arm) {
+void store_cells(const Octets& from, const EquiprobableCells& cells, const std::vector<bool>& failed, ArmBlock& arm) {
     arm.cells.resize(from.steps * from.trials);
     for (std::size_t k = 0; k < from.steps; ++k)
         for (std::size_t trial = 0; trial < from.trials; ++trial)
             arm.cells[k * from.trials + trial] = static_cast<std::uint16_t>(cells.cell(from.nees[k * from.padded + trial]));
     for (std::size_t trial = 0; trial < from.trials; ++trial)
-        if (failed_trial(arm, from.trials, trial))
+        if (failed[trial])
             for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
 }
 
 /// Errors and NEES by trial, rounded to single precision.
-void store_details(const Octets& from, ArmBlock& arm) {
+void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock& arm) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t trial = 0; trial < from.trials; ++trial) {
-        const bool failed = failed_trial(arm, from.trials, trial);
         for (std::size_t k = 0; k < from.steps; ++k) {
-            arm.nees.push_back(failed ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
+            arm.nees.push_back(failed[trial] ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
             for (std::size_t i = 0; i < from.components; ++i)
                 arm.errors.push_back(
-                    failed ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
+                    failed[trial] ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
         }
     }
     arm.product_sums = added_up(from.product_sums);
@@ -133,22 +139,22 @@ void store_details(const Octets& from, ArmBlock& arm) {
     arm.product_counts = added_up(from.product_counts);
 }
 
-ArmBlock run_arm(const Problem& problem, const Arm& arm_run, std::uint64_t root_seed, std::int64_t index, int trials,
-                 const Unit& unit) {
-    const ProblemView& view = problem.view();
-    Octets octets(view, static_cast<std::size_t>(trials), detailed(view, index));
+ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
+                 std::uint64_t root_seed, std::int64_t index, int trials) {
+    const SimulationShape& shape = simulation.shape();
+    Octets octets(shape, static_cast<std::size_t>(trials), detailed(shape, index));
     thread_local WorkRoom room;
-    void* workspace = room.of_size(unit.workspace_size(view, arm_run.estimator));
-    unit.simulate(view, octets.batch(arm_run, root_seed, index * block_size, workspace));
+    void* workspace = room.of_size(simulation.workspace_size(a));
+    simulation.simulate(a, octets.batch(root_seed, index * block_size, workspace));
     ArmBlock arm;
-    arm.columns.resize(column_count * octets.trials);
     arm.sums = added_up(octets.sums);
     arm.square_sums = added_up(octets.square_sums);
     arm.run_square_sums = added_up(octets.run_square_sums);
     arm.covered = std::move(octets.covered);
-    store_columns(trial_columns(problem.scenario()), octets.columns, octets.trials, arm);
-    if (shape_counted(view.poses - 1)) store_cells(octets, *equiprobable_cells(view.state_size), arm);
-    if (detailed(view, index)) store_details(octets, arm);
+    store_columns(columns, octets.columns, octets.trials, arm);
+    const std::vector<bool> failed = failed_trials(columns, arm, octets.trials);
+    if (shape_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);
+    if (detailed(shape, index)) store_details(octets, failed, arm);
     return arm;
 }
 
@@ -160,17 +166,26 @@ int trials_in_block(std::int64_t trials, std::int64_t index) {
     return static_cast<int>(std::min<std::int64_t>(block_size, trials - index * block_size));
 }
 
-bool detailed(const ProblemView& problem, std::int64_t index) {
+bool detailed(const SimulationShape& shape, std::int64_t index) {
     static_assert(block_size == 256, "detailed_trials counts whole blocks");
-    return index < detailed_trials(problem.poses - 1, problem.state_size) / block_size;
+    return index < detailed_trials(shape.poses - 1, shape.state_size) / block_size;
 }
 
-Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
-                const Unit& unit) {
+Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,
+                std::uint64_t root_seed, std::int64_t index, int trials) {
     Block block{index, trials, {}};
-    for (const Arm& arm : arms_of(problem.scenario()))
-        block.arms.push_back(run_arm(problem, arm, root_seed, index, trials, unit));
+    for (std::size_t a = 0; a < arms; ++a)
+        block.arms.push_back(run_arm(simulation, columns, a, root_seed, index, trials));
     return block;
+}
+
+BlockRunner::BlockRunner(const Declaration& scenario)
+    : columns_(world_of(scenario).columns(scenario)),
+      arms_(scenario.arms.size()),
+      simulation_(simulation_of(scenario)) {}
+
+Block BlockRunner::run(std::uint64_t root_seed, std::int64_t index, int trials) const {
+    return run_block(*simulation_, columns_, arms_, root_seed, index, trials);
 }
 
 }  // namespace credence

@@ -80,8 +80,8 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
     pair.title = a.scenario.title;
     pair.trials = common.count();
-    pair.a = side_of(chosen.a, chosen.file_a, common.of_a(column_values(a, chosen.a.arm, column_status)));
-    pair.b = side_of(chosen.b, chosen.file_b, common.of_b(column_values(b, chosen.b.arm, column_status)));
+    pair.a = side_of(chosen.a, chosen.file_a, common.of_a(column_values(a, chosen.a.arm, status_column(a.columns))));
+    pair.b = side_of(chosen.b, chosen.file_b, common.of_b(column_values(b, chosen.b.arm, status_column(b.columns))));
     pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
     pair.differences = shown_differences(a.scenario, b.scenario);
     add_means(pair, chosen, common);

@@ -59,8 +59,10 @@ void Dataset::require_extents(const Extents& extents) const {
         throw Error(place_, "has extents " + extents_text(extents_) + ", not " + extents_text(extents));
 }
 
+bool Dataset::has_type(hid_t type) const { return H5Tequal(type_.id(), type) > 0; }
+
 void Dataset::require_type(hid_t type) const {
-    if (H5Tequal(type_.id(), type) <= 0)
+    if (!has_type(type))
         throw Error(place_, "holds " + kind_text(type_.id()) + ", not " + kind_text(type));
 }
 

@@ -52,6 +52,13 @@ public:
 
     const std::string& place() const { return place_; }
     const Extents& extents() const { return extents_; }
+    /// For its attributes.
+    const Handle& object() const { return dataset_; }
+    /// Whether the type in the file is exactly T's.
+    template <class T>
+    bool holds() const {
+        return has_type(type_of<T>().file);
+    }
     /// Throws where the extents are others; the message shows both.
     void require_extents(const Extents& extents) const;
 
@@ -82,6 +89,7 @@ public:
 private:
     H5D_layout_t own_layout(const Handle& creation) const;
     void check_storage(H5D_layout_t layout) const;
+    bool has_type(hid_t type) const;
     void require_type(hid_t type) const;
     void read_into(hid_t memory_type, void* values) const;
     void read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const;

@@ -1,11 +1,12 @@
 #include <credence/ini.hpp>
 
+#include <credence/deformable.hpp>
 #include <credence/error.hpp>
-#include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
 
 #include <boost/program_options.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -65,41 +66,55 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
     return all;
 }
 
-}  // namespace
+/// An empty scenario of the world that the text or an override names.
+std::unique_ptr<Draft> draft_of(const std::vector<Assignment>& assignments, const std::string& origin,
+                                const Overrides& overrides) {
+    Declaration named;
+    std::string where = origin + ": ";
+    for (const Assignment& one : assignments)
+        if (one.key == world_key) named.world = one.value, where = place(origin, one.line);
+    for (const auto& [key, value] : overrides)
+        if (key == world_key) named.world = trimmed(value), where = "--set " + key + ": ";
+    try {
+        return world_of(named).draft();
+    } catch (const InputError& error) {
+        throw InputError(where + error.what(), error.key());
+    }
+}
 
-Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
-                            const Overrides& overrides) {
-    Scenario scenario;
-    scenario.name = default_name;
+bool says_name(const std::vector<Assignment>& assignments, const Overrides& overrides) {
+    const std::string name = "scenario.name";
+    return std::any_of(assignments.begin(), assignments.end(), [&](const Assignment& one) { return one.key == name; }) ||
+           std::any_of(overrides.begin(), overrides.end(), [&](const auto& one) { return one.first == name; });
+}
+
+/// Sets what the text and the overrides say. Refusals name the line, or --set. Returns the lines of the keys, for
+/// refusals of what comes after.
+std::map<std::string, int> fill(Draft& draft, const std::vector<Assignment>& assignments, const std::string& origin,
+                                const Overrides& overrides) {
     std::map<std::string, int> lines;
-    for (const Assignment& one : read_lines(text, origin)) {
+    for (const Assignment& one : assignments) {
+        if (one.key == world_key) continue;
         try {
-            set_key(scenario, one.key, one.value);
+            draft.set(one.key, one.value);
         } catch (const InputError& error) {
             throw InputError(place(origin, one.line) + error.what(), error.key());
         }
         lines[one.key] = one.line;
     }
     for (const auto& [key, value] : overrides) {
+        if (key == world_key) continue;
         try {
-            set_key(scenario, key, value);
+            draft.set(key, trimmed(value));
         } catch (const InputError& error) {
             throw InputError("--set " + printable(key) + ": " + error.what(), error.key());
         }
         lines.erase(key);
     }
-    try {
-        if (scenario.name == default_name) set_key(scenario, "scenario.name", default_name);
-        validate(scenario);
-    } catch (const InputError& error) {
-        const auto line = lines.find(error.key());
-        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
-                         error.key());
-    }
-    return resolved(scenario);
+    return lines;
 }
 
-Scenario read_scenario(const std::string& path, const Overrides& overrides) {
+std::string text_of_file(const std::string& path) {
     std::error_code trouble;
     const std::filesystem::file_status status = std::filesystem::status(path, trouble);
     if (!std::filesystem::exists(status))
@@ -113,7 +128,46 @@ Scenario read_scenario(const std::string& path, const Overrides& overrides) {
     text << stream.rdbuf();
     if (!stream || (!text && text.tellp() > 0))
         throw InputError("cannot read scenario " + path + " (reading failed). Check its permissions.");
-    return read_scenario_text(text.str(), path, std::filesystem::path(path).stem().string(), overrides);
+    return text.str();
+}
+
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+}  // namespace
+
+std::vector<Setting> read_settings(const std::string& text, const std::string& origin) {
+    std::vector<Setting> settings;
+    for (Assignment& one : read_lines(text, origin)) settings.push_back({std::move(one.key), std::move(one.value)});
+    return settings;
+}
+
+Declaration read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                                  const Overrides& overrides) {
+    const std::vector<Assignment> assignments = read_lines(text, origin);
+    const std::unique_ptr<Draft> draft = draft_of(assignments, origin, overrides);
+    const std::map<std::string, int> lines = fill(*draft, assignments, origin, overrides);
+    try {
+        // It is refused only where it is used.
+        if (!says_name(assignments, overrides)) draft->set("scenario.name", default_name);
+        return draft->declare();
+    } catch (const InputError& error) {
+        const auto line = lines.find(error.key());
+        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
+                         error.key());
+    }
+}
+
+Declaration read_declaration(const std::string& path, const Overrides& overrides) {
+    return read_declaration_text(text_of_file(path), path, stem(path), overrides);
+}
+
+Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                            const Overrides& overrides) {
+    return scenario_of(read_declaration_text(text, origin, default_name, overrides));
+}
+
+Scenario read_scenario(const std::string& path, const Overrides& overrides) {
+    return scenario_of(read_declaration(path, overrides));
 }
 
 }  // namespace credence

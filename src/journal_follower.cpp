@@ -12,14 +12,14 @@ namespace credence {
 WatchedScenario described(const ScenarioResults& results) {
     WatchedScenario scenario;
     scenario.name = results.scenario.name;
-    for (const ColumnIndex index : watched_columns) scenario.columns.push_back(results.columns[index]);
+    for (const std::size_t index : watched_columns(results.columns)) scenario.columns.push_back(results.columns[index]);
     return scenario;
 }
 
 std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const WatchedSums& sums) {
     std::vector<WatchedArm> arms;
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
-        const ArmSums nothing{std::vector<RunningMoments>(std::size(watched_columns)), {}, 0, 0};
+        const ArmSums nothing{std::vector<RunningMoments>(watched_columns(results.columns).size()), {}, 0, 0};
         const ArmSums& of_arm = a < sums.arms.size() ? sums.arms[a] : nothing;
         WatchedArm arm{results.arms[a].name, of_arm.failed, of_arm.diverged, {}, {}, of_arm.difference.moments()};
         for (const RunningMoments& figure : of_arm.figures) arm.figures.push_back(figure.moments());

@@ -4,7 +4,6 @@
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
-#include <credence/scenario_keys.hpp>
 
 #include <algorithm>
 
@@ -30,7 +29,7 @@ std::string header_bytes(const JournalHeader& header) {
     put_shard(body, header.shard);
     body.put(header.study.root_seed);
     body.put_count(header.study.scenarios.size());
-    for (const Scenario& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
+    for (const Declaration& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
     ByteWriter all;
     all.put_raw(magic.data(), magic.size());
     all.put(header.study.keep == Keep::trials ? journal_version : aggregates_version);
@@ -74,7 +73,7 @@ JournalHeader read_header(const std::string& start, const std::string& path, std
     header.shard = get_shard(body);
     header.study.root_seed = body.get<std::uint64_t>();
     for (std::uint64_t left = body.get_count(); left > 0; --left)
-        header.study.scenarios.push_back(read_scenario_text(body.get_text(), path + ": scenario", "scenario"));
+        header.study.scenarios.push_back(read_declaration_text(body.get_text(), path + ": scenario", "scenario"));
     return header;
 }
 

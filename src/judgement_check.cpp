@@ -2,6 +2,7 @@
 
 #include <credence/text.hpp>
 
+#include "hdf5_handle.hpp"
 #include "judgement_step.hpp"
 
 #include <algorithm>

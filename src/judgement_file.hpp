@@ -1,9 +1,8 @@
 #pragma once
 // Room 12: the datasets of a record for `judge`: their extents checked against each other, and read part by part.
 
-#include <credence/record.hpp>
-
 #include "hdf5_slab.hpp"
+#include "judgement_step.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -11,18 +10,6 @@
 #include <vector>
 
 namespace credence {
-
-/// What a record holds.
-struct RecordShape {
-    std::int64_t trials = 0;
-    int steps = 0;
-    int n = 0;                       ///< components of the state
-    int m = 0;                       ///< rows of an innovation; 0 without innovations
-    std::vector<StateBlock> blocks;  ///< all, and those of the attribute `blocks`
-    double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
-
-    bool has_innovations() const { return m > 0; }
-};
 
 /// A part that is read at once: whole trials, or some steps of one.
 struct RecordPart {

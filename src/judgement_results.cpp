@@ -1,5 +1,6 @@
 // What a record's results are before the first trial: the same lists as a run has, declared for a record.
 
+#include <credence/slam_record.hpp>
 #include <credence/text.hpp>
 
 #include "judgement_results.hpp"

@@ -37,48 +37,19 @@ std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, E
     return found == Definiteness::singular ? "is singular" : "is not positive definite";
 }
 
-const std::string error_squared = "unit of error squared";
-
-std::string described(const StateBlock& block) { return block.name == "all" ? "the whole state" : block.name; }
-std::string suffix(const StateBlock& block) { return block.name == "all" ? "" : "_" + block.name; }
-
 }  // namespace
 
-RecordFigures::RecordFigures(const RecordShape& shape) {
-    const auto add = [&](const std::string& name, const std::string& long_name, const std::string& unit,
-                         FigureRole role, int dimension, const std::string& part) {
-        list.push_back({name, long_name, unit, role, dimension, false, part, "", 0});
-    };
-    for (const StateBlock& block : shape.blocks)
-        add("nees" + suffix(block), "normalised estimation error squared of " + described(block), "1",
-            FigureRole::nees, block.count, block.name);
-    if (shape.has_innovations()) {
-        nis = list.size();
-        add("nis", "normalised innovation squared of all rows", "1", FigureRole::nis, 0, "all");
-        list.back().rows = "nis_rows";
-        rows = list.size();
-        add("nis_rows", "measurement rows", "1", FigureRole::rows, 0, "all");
-        list.back().integer = true;
-    }
-    squared_error = list.size();
-    for (const StateBlock& block : shape.blocks)
-        add("squared_error" + suffix(block), "squared error of " + described(block), error_squared,
-            FigureRole::squared_error, block.count, block.name);
-    variance = list.size();
-    for (const StateBlock& block : shape.blocks)
-        add(block.name == "all" ? "trace_P_step" : "variance" + suffix(block),
-            "trace of the covariance of " + described(block), error_squared, FigureRole::variance, block.count,
-            block.name);
-    standardised_error = list.size();
-    for (int j = 0; j < shape.n; ++j) {
-        const std::string name = "x" + std::to_string(j);
-        add("standardised_error_" + name, "error of component " + std::to_string(j) +
-                                              " over its predicted standard deviation",
-            "1", FigureRole::standardised_error, 1, name);
-    }
+StateFigures record_figures(const RecordShape& shape) {
+    std::vector<Component> components;
+    for (int j = 0; j < shape.n; ++j) components.push_back({"x" + std::to_string(j), "1"});
+    StateFigures figures(components, shape.blocks, shape.has_innovations() ? Innovations::given : Innovations::none);
+    for (Figure& figure : figures.list)
+        if (figure.role == FigureRole::squared_error || figure.role == FigureRole::variance)
+            figure.unit = "unit of error squared";
+    return figures;
 }
 
-StepJudge::StepJudge(const RecordShape& shape, const RecordFigures& figures)
+StepJudge::StepJudge(const RecordShape& shape, const StateFigures& figures)
     : shape_(shape), places_(figures), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
 
 std::string StepJudge::judge(const CheckedStep& step, double* figures, double* whitened) {

@@ -3,7 +3,7 @@
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]; NaN in rows not observed
 
-#include "judgement_file.hpp"
+#include <credence/state_figures.hpp>
 
 #include <Eigen/Dense>
 
@@ -12,6 +12,18 @@
 #include <vector>
 
 namespace credence {
+
+/// What a record holds.
+struct RecordShape {
+    std::int64_t trials = 0;
+    int steps = 0;
+    int n = 0;                       ///< components of the state
+    int m = 0;                       ///< rows of an innovation; 0 without innovations
+    std::vector<StateBlock> blocks;  ///< all, and those of the attribute `blocks`
+    double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
+
+    bool has_innovations() const { return m > 0; }
+};
 
 /// A step of a record as it stands in the file.
 struct RecordStep {
@@ -36,17 +48,13 @@ struct CheckedStep {
 /// an error or innovation is infinite, an error is NaN and another is not, or a covariance is not finite or symmetric.
 bool check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked);
 
-/// Positions of a record's figures, by their kind; of a kind there is one per block or component, in order.
-struct RecordFigures {
-    explicit RecordFigures(const RecordShape& shape);
-    std::vector<Figure> list;
-    std::size_t nis = 0, rows = 0, squared_error = 0, variance = 0, standardised_error = 0;  ///< nees: 0
-};
+/// The figures of a record, whose components are called x0, x1 ...
+StateFigures record_figures(const RecordShape& shape);
 
 /// Turns checked steps into figures. Keeps its matrices from step to step.
 class StepJudge {
 public:
-    StepJudge(const RecordShape& shape, const RecordFigures& figures);
+    StepJudge(const RecordShape& shape, const StateFigures& figures);
 
     /// Writes the step's figures [figure_count], and L^-1 nu [m], S = LL', NaN in rows not observed; without
     /// innovations that is left alone. Returns what is wrong with a covariance; empty where nothing is.
@@ -56,7 +64,7 @@ private:
     using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
     const RecordShape& shape_;
-    const RecordFigures& places_;
+    const StateFigures& places_;
     std::vector<Factor> factors_;  ///< by block
     std::vector<Eigen::VectorXd> solved_;
     Factor innovation_factor_;

@@ -2,6 +2,7 @@
 
 #include <credence/chi_square.hpp>
 #include <credence/goodness.hpp>
+#include <credence/slam_record.hpp>
 
 #include "judgement_results.hpp"
 
@@ -23,10 +24,12 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 }  // namespace
 
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
-    : shape_(shape), figures_(shape_), judge_(shape_, figures_) {
+    : shape_(shape),
+      figures_(record_figures(shape_)),
+      judge_(shape_, figures_),
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m)) {
     record_.results = empty_record_results(shape_, figures_.list, path);
     record_.has_innovations = shape.has_innovations();
-    const std::size_t lags = size(lag_count(record_.results.scenario.poses));
     keeps_nees_ = shape.trials <= most_values / shape.steps;
     keeps_cells_ = std::int64_t{shape.steps} * shape_cells <= most_values;
     if (keeps_nees_) nees_.resize(size(shape.steps));
@@ -34,17 +37,13 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     for (const StateBlock& block : shape.blocks)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
     values_.resize(size(shape.steps) * figures_.list.size());
-    whitened_.assign(lags + 1, std::vector<double>(size(shape.m)));
-    product_sum_.resize(lags);
-    product_count_.resize(lags);
 }
 
 void RecordTotals::add(const RecordStep& step) {
     if (step.step == 0) start_trial();
     const bool exists = check_step(step, shape_, checked_);
     if (exists && !failed(status_)) add_figures(step, checked_);
-    if (!exists) std::fill(whitened_[size(step.step) % whitened_.size()].begin(),
-                           whitened_[size(step.step) % whitened_.size()].end(), nan);
+    if (!exists) products_.leave_out(size(step.step));
     if (step.step + 1 < shape_.steps) return;
     if (present_.empty() && !failed(status_))
         fail({step.trial, 0}, Status::non_finite, "no step exists: every error is NaN");
@@ -55,20 +54,19 @@ void RecordTotals::start_trial() {
     status_ = Status::completed;
     status_pose_ = -1;
     present_.clear();
-    std::fill(product_sum_.begin(), product_sum_.end(), 0.0);
-    std::fill(product_count_.begin(), product_count_.end(), 0.0);
+    products_.start_trial();
 }
 
 void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
     const std::size_t k = size(step.step);
     double* values = &figure(0, k);
-    const std::string trouble = judge_.judge(checked, values, whitened_[k % whitened_.size()].data());
+    const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
     if (!trouble.empty()) return fail(step, Status::covariance_not_positive_definite, trouble);
     if (!std::all_of(values, values + figures_.list.size(), [](double v) { return std::abs(v) <= largest_figure; }))
         return fail(step, Status::non_finite, "a figure of this step is beyond 1e140");
     present_.push_back(k);
     keep_details(step.trial, k, checked);
-    correlate(k);
+    products_.correlate(k);
 }
 
 void RecordTotals::fail(const RecordStep& step, Status status, const std::string& what) {
@@ -83,21 +81,6 @@ void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const Checked
     const std::size_t at = size(trial) * size(shape_.steps) + k;
     arm().nees[at] = figure(0, k);
     std::copy(checked.e.begin(), checked.e.end(), arm().errors.begin() + static_cast<std::ptrdiff_t>(at) * shape_.n);
-}
-
-/// Products of whitened rows that were observed at this step and a lag before it. (NaN: at one of them it was not.)
-void RecordTotals::correlate(std::size_t k) {
-    if (!shape_.has_innovations()) return;
-    const std::vector<double>& now = whitened_[k % whitened_.size()];
-    for (std::size_t lag = 1; lag < whitened_.size() && lag <= k; ++lag) {
-        const std::vector<double>& before = whitened_[(k - lag) % whitened_.size()];
-        for (std::size_t row = 0; row < now.size(); ++row) {
-            const double product = now[row] * before[row];
-            if (std::isnan(product)) continue;
-            product_sum_[lag - 1] += product;
-            product_count_[lag - 1] += 1;
-        }
-    }
 }
 
 void RecordTotals::end_trial(std::int64_t trial) {
@@ -153,10 +136,10 @@ void RecordTotals::add_totals() {
         totals.run_square_sum.add(run * run);
     }
     add_shape();
-    for (std::size_t lag = 0; lag < product_sum_.size(); ++lag) {
-        arm().products.sum[lag].add(product_sum_[lag]);
-        arm().products.square_sum[lag].add(product_sum_[lag] * product_sum_[lag]);
-        arm().products.count[lag] += static_cast<std::int64_t>(product_count_[lag]);
+    for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
+        arm().products.sum[lag].add(products_.sum[lag]);
+        arm().products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
+        arm().products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
     }
 }
 

@@ -3,7 +3,9 @@
 
 #include <credence/judgement_record.hpp>
 
+#include "judgement_file.hpp"
 #include "judgement_step.hpp"
+#include "lag_products.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -34,14 +36,13 @@ private:
     void add_figures(const RecordStep& step, const CheckedStep& checked);
     void fail(const RecordStep& step, Status status, const std::string& what);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
-    void correlate(std::size_t k);
     void end_trial(std::int64_t trial);
     void add_columns(std::int64_t trial);
     void add_totals();
     void add_shape();
 
     RecordShape shape_;
-    RecordFigures figures_;
+    StateFigures figures_;
     StepJudge judge_;
     JudgedRecord record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
@@ -54,8 +55,7 @@ private:
     int status_pose_ = -1;
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
-    std::vector<std::vector<double>> whitened_;  ///< [lags + 1][m] by step, modulo its length; NaN where not observed
-    std::vector<double> product_sum_, product_count_;  ///< [lags]
+    LagProducts products_;
 };
 
 /// Reads a whole record, part by part. The same for parts of any size.

@@ -117,9 +117,9 @@ private:
 
     /// The totals of a file are of all its blocks: those that were there already are computed and taken out.
     void take_out(const BlockRanges& blocks, std::int64_t trials, std::uint64_t root_seed) {
-        const Problem problem(results_.scenario);
+        const BlockRunner runner(results_.scenario);
         for (const std::int64_t block : blocks)
-            remove_totals(results_, run_block(problem, root_seed, block, trials_in_block(trials, block)));
+            remove_totals(results_, runner.run(root_seed, block, trials_in_block(trials, block)));
     }
 
     ScenarioResults results_;

@@ -44,7 +44,7 @@ RankTasks read_tasks(const std::string& bytes) {
     return tasks;
 }
 
-ScenarioResults without_columns(const Scenario& scenario, Keep keep) {
+ScenarioResults without_columns(const Declaration& scenario, Keep keep) {
     ScenarioResults results = empty_results(scenario, keep);
     for (ArmResults& arm : results.arms) arm.columns.clear();
     return results;

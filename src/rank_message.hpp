@@ -50,6 +50,6 @@ private:
 ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty);
 
 /// Empty results that hold no columns.
-ScenarioResults without_columns(const Scenario& scenario, Keep keep = Keep::trials);
+ScenarioResults without_columns(const Declaration& scenario, Keep keep = Keep::trials);
 
 }  // namespace credence

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace credence {
 
@@ -60,8 +61,8 @@ private:
             if (message->word == Word::end) return false;
             if (message->word != Word::study) continue;
             order_ = read_order(message->bytes);
-            for (const Scenario& scenario : order_.study.scenarios) {
-                problems_.push_back(std::make_unique<Problem>(scenario));
+            for (const Declaration& scenario : order_.study.scenarios) {
+                runners_.emplace_back(scenario);
                 empty_.push_back(without_columns(scenario, order_.study.keep));
                 records_.emplace_back(empty_.back());
             }
@@ -98,7 +99,7 @@ private:
             const int trials = trials_in_block(trials_, task.block);
             lock.unlock();
             const Clock::time_point start = Clock::now();
-            const Block block = run_block(*problems_[task.scenario], order_.study.root_seed, task.block, trials);
+            const Block block = runners_[task.scenario].run(order_.study.root_seed, task.block, trials);
             const std::vector<ArmAggregates> aggregates = block_aggregates(empty_[task.scenario], block);
             lock.lock();
             take(task, block, aggregates, seconds_since(start));
@@ -216,7 +217,7 @@ private:
     const std::function<std::string()>& signal_;
     RankOrder order_;
     int threads_ = 0;
-    std::vector<std::unique_ptr<Problem>> problems_;
+    std::vector<BlockRunner> runners_;
     std::vector<ScenarioResults> empty_;
 
     std::mutex mutex_;                 ///< of what follows, up to the gap

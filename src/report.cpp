@@ -2,7 +2,10 @@
 
 #include <credence/bootstrap.hpp>
 #include <credence/error.hpp>
+#include <credence/slam_record.hpp>
 #include <credence/text.hpp>
+
+#include "scenario_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +15,20 @@ namespace credence {
 
 namespace {
 
-const std::vector<PublishedFigure>* published_of(const Scenario& scenario, const std::string& column) {
-    if (column == "trace_P") return &scenario.published.trace_P;
-    if (column == "unseen") return &scenario.published.unseen;
-    if (column == "pose_error") return &scenario.published.pose_error;
-    return nullptr;
+/// What `published.COLUMN` says; nothing where the scenario has no such key.
+std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scenario, const std::string& column) {
+    const std::string key = "published." + column;
+    for (const Setting& setting : scenario.settings)
+        if (setting.key == key) return parse_published(key, setting.value);
+    return std::nullopt;
 }
 
 /// `values` may be none: then nothing is known of its place.
-std::optional<PublishedPlace> place_of(const Scenario& scenario, const std::string& column, const std::string& arm,
-                                       const std::vector<double>& values) {
-    if (const auto* figures = published_of(scenario, column))
-        for (const PublishedFigure& figure : *figures)
-            if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
+std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedFigure>>& published,
+                                       const std::string& arm, const std::vector<double>& values) {
+    if (!published) return std::nullopt;
+    for (const PublishedFigure& figure : *published)
+        if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
     return std::nullopt;
 }
 
@@ -37,7 +41,7 @@ FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& 
     const Column& column = results.columns[c];
     FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
                         std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
-                        place_of(results.scenario, column.name, arm.name, {}), std::nullopt};
+                        place_of(published_of(results.scenario, column.name), arm.name, {}), std::nullopt};
     if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
     return report;
 }
@@ -47,14 +51,15 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
     const Column& column = results.columns[c];
     if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
     std::vector<double> values = figure_values(results, arm, c);
+    const auto published = published_of(results.scenario, column.name);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
-                        place_of(results.scenario, column.name, arm.name, values), std::nullopt};
+                        place_of(published, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
         report.bootstrap95 = bootstrap_mean_interval(
             values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
     std::erase_if(values, [](double value) { return std::isnan(value); });
     for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
-    if (published_of(results.scenario, column.name) != nullptr)
+    if (published)
         report.histogram = histogram(values, column.type == ColumnType::real ? BinWidths::ratio : BinWidths::equal);
     return report;
 }

@@ -16,7 +16,7 @@ namespace {
 
 Html paragraph(const std::string& text) { return element("p", escaped(text)) + "\n"_html; }
 
-Part part_of(const Report& report, const Scenario& scenario) {
+Part part_of(const Report& report, const Declaration& scenario) {
     Part part{report, scenario, {}, {}};
     for (const ArmReport& arm : report.arms)
         if (arm.scenario == scenario.name) part.arms.push_back(&arm);
@@ -52,7 +52,7 @@ Html intro(const Report& report, const PageOrigin& origin) {
 Html contents(const Report& report) {
     if (report.scenarios.size() < 2) return {};
     Html items;
-    for (const Scenario& scenario : report.scenarios) {
+    for (const Declaration& scenario : report.scenarios) {
         std::vector<Verdict> verdicts;  // each of them once
         for (const ArmReport* arm : part_of(report, scenario).arms)
             if (std::find(verdicts.begin(), verdicts.end(), arm->consistency.verdict) == verdicts.end())
@@ -93,7 +93,7 @@ std::string document(const std::string& title, const Html& header, const Html& m
 std::string report_html(const Report& report, const PageOrigin& origin) {
     using namespace page;
     Html body = verdicts(report) + contents(report);
-    for (const Scenario& scenario : report.scenarios) body += scenario_section(part_of(report, scenario));
+    for (const Declaration& scenario : report.scenarios) body += scenario_section(part_of(report, scenario));
     body += provenance(report, origin) + reproduction(report, origin) + terms();
     return document("credence: " + origin.file, intro(report, origin), body);
 }

@@ -1,6 +1,5 @@
 // The page's last parts: the scenario, where the figures came from, how to get them again, what the terms mean.
 
-#include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
 
 #include "report_html.hpp"
@@ -33,7 +32,7 @@ std::string quoted(const std::string& word) {
 /// The command that makes a study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
     std::string line = "credence run";
-    for (const Scenario& scenario : report.scenarios) line += " " + scenario.name + ".ini";
+    for (const Declaration& scenario : report.scenarios) line += " " + scenario.name + ".ini";
     return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
            (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
 }

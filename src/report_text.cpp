@@ -51,7 +51,7 @@ std::string report_text(const Report& report) {
             ".\nA consistent filter has NEES/dim 1 in every block of the state and at every step; the verdict holds all of "
             "them\nagainst 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
     text += verdicts_part(report);
-    for (const Scenario& scenario : report.scenarios) text += scenario_detail(report, scenario);
+    for (const Declaration& scenario : report.scenarios) text += scenario_detail(report, scenario);
     return text;
 }
 

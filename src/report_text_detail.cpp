@@ -99,18 +99,31 @@ std::string consistency_part(const ArmReport& arm) {
     return text + innovations_part(arm.evidence) + distribution_part(arm.evidence);
 }
 
-bool has_published(const Scenario& scenario) {
-    return !(scenario.published.trace_P.empty() && scenario.published.unseen.empty() &&
-             scenario.published.pose_error.empty());
+bool has_published(const Report& report, const std::string& scenario) {
+    for (const ArmReport& arm : report.arms)
+        for (const FigureReport& figure : arm.figures)
+            if (arm.scenario == scenario && figure.published) return true;
+    return false;
+}
+
+/// The figures of a scenario's trials, trace(P) at the end and over the run first; the ratios stand beside the verdict.
+std::vector<std::string> detailed_figures(const Report& report, const std::string& scenario) {
+    std::vector<std::string> names{"trace_P", "mean_trace_P"};
+    for (const ArmReport& arm : report.arms)
+        for (const FigureReport& figure : arm.figures)
+            if (arm.scenario == scenario && figure.name != "nees_ratio" && figure.name != "nis_ratio" &&
+                std::find(names.begin(), names.end(), figure.name) == names.end())
+                names.push_back(figure.name);
+    return names;
 }
 
 }  // namespace
 
-std::string scenario_detail(const Report& report, const Scenario& scenario) {
+std::string scenario_detail(const Report& report, const Declaration& scenario) {
     std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";
     text += padded("mean ± 95 %", 50) + padded("bootstrap 95 %", 22) + padded("median", 12) + padded("sd", 12) +
-            (has_published(scenario) ? padded("published (pctl.)", 20) : "") + "\n";
-    for (const char* name : {"trace_P", "mean_trace_P", "unseen", "pose_error"})
+            (has_published(report, scenario.name) ? padded("published (pctl.)", 20) : "") + "\n";
+    for (const std::string& name : detailed_figures(report, scenario.name))
         text += figure_part(report, scenario.name, name);
     for (const ArmReport& arm : report.arms)
         if (arm.scenario == scenario.name) text += consistency_part(arm);

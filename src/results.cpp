@@ -56,13 +56,14 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
 
 std::string keep_name(Keep keep) { return keep == Keep::trials ? "trials" : "aggregates"; }
 
-ScenarioResults empty_results(const Scenario& scenario, Keep keep) {
-    ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, 0, {}, keep};
+ScenarioResults empty_results(const Declaration& scenario, Keep keep) {
+    const World& world = world_of(scenario);
+    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
     const std::size_t steps = static_cast<std::size_t>(results.steps());
     const std::size_t lags = static_cast<std::size_t>(lag_count(scenario.poses));
-    for (const Arm& arm : arms_of(scenario)) {
+    for (const std::string& name : scenario.arms) {
         ArmResults one;
-        one.name = arm_name(arm);
+        one.name = name;
         if (keep == Keep::trials) one.columns.resize(results.columns.size());
         for (const Figure& figure : results.figures)
             one.totals.push_back(

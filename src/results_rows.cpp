@@ -50,13 +50,13 @@ std::vector<double> column_values(const ScenarioResults& results, const ArmResul
 std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm) {
     if (results.keep == Keep::aggregates) return arm.aggregates.statuses;
     std::vector<std::int64_t> counts(status_names().size());
-    for (const double status : column_values(results, arm, column_status)) ++counts[static_cast<std::size_t>(status)];
+    for (const double status : column_values(results, arm, status_column(results.columns))) ++counts[static_cast<std::size_t>(status)];
     return counts;
 }
 
 std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
     std::vector<double> values = column_values(results, arm, column);
-    const std::vector<double> status = column_values(results, arm, column_status);
+    const std::vector<double> status = column_values(results, arm, status_column(results.columns));
     for (std::size_t i = 0; i < values.size(); ++i)
         if (failed(static_cast<Status>(static_cast<int>(status[i]))))
             values[i] = std::numeric_limits<double>::quiet_NaN();

@@ -143,8 +143,6 @@ std::vector<Arm> arms_of(const Scenario& scenario) {
     return arms;
 }
 
-std::string controller_of(const std::string& arm) { return arm.substr(0, arm.find('.')); }
-
 std::string arm_name(const Arm& arm) {
     return controller_names()[static_cast<std::size_t>(arm.controller)] + "." +
            estimator_names()[static_cast<std::size_t>(arm.estimator)];

@@ -180,25 +180,4 @@ void set_key(Scenario& scenario, const std::string& name, const std::string& val
                      name);
 }
 
-std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b) {
-    std::vector<KeyDifference> differences;
-    for (const ScenarioKey& key : scenario_keys())
-        if (const std::string of_a = key.get(a), of_b = key.get(b); of_a != of_b)
-            differences.push_back({key.name, of_a, of_b});
-    return differences;
-}
-
-std::string scenario_text(const Scenario& scenario) {
-    std::string text, section;
-    for (const ScenarioKey& key : scenario_keys()) {
-        const std::size_t dot = key.name.find('.');
-        if (key.name.substr(0, dot) != section) {
-            section = key.name.substr(0, dot);
-            text += (text.empty() ? "[" : "\n[") + section + "]\n";
-        }
-        text += key.name.substr(dot + 1) + " = " + key.get(scenario) + "\n";
-    }
-    return text;
-}
-
 }  // namespace credence

@@ -138,7 +138,7 @@ struct Simulation {
         return sizeof(Room) + (figures + error_cells(problem)) * sizeof(Real);
     }
 
-    static void simulate(const ProblemView& problem, const Batch& batch) {
+    static void simulate(const ProblemView& problem, Controller controller, const Batch& batch) {
         auto& room = *static_cast<Room*>(batch.workspace);
         Real* errors = reinterpret_cast<Real*>(&room + 1);
         Unfolded<Real> unfolded(errors + error_cells(problem), problem);
@@ -151,7 +151,7 @@ struct Simulation {
                                          problem.world.truncate);
             Real columns[column_count];
             Real* figures = unfolded.next();
-            run_trial(problem, batch.arm.controller, draws, detail, room.trial, columns, figures);
+            run_trial(problem, controller, draws, detail, room.trial, columns, figures);
             const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
             const Mask<Real> counts = both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i));
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
@@ -217,8 +217,9 @@ auto with_simulation(const ProblemView& problem, Estimator estimator, const Use&
 
 }  // namespace
 
-void simulate(const ProblemView& problem, const Batch& batch) {
-    with_simulation(problem, batch.arm.estimator, [&](auto simulation) { simulation.simulate(problem, batch); });
+void simulate(const ProblemView& problem, const Arm& arm, const Batch& batch) {
+    with_simulation(problem, arm.estimator,
+                    [&](auto simulation) { simulation.simulate(problem, arm.controller, batch); });
 }
 
 std::size_t workspace_size(const ProblemView& problem, Estimator estimator) {

@@ -65,7 +65,7 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
     const auto detailed =
         hdf5::new_dimension(group, "detailed_trial", trial_numbers(results, 0, results.detailed()),
                             {"trials whose errors are kept: of the first ones of the study those in the file", "1"});
-    const auto component = new_component_dimension(group, results.scenario, "component", "component of the state");
+    const auto component = new_component_dimension(group, results.scenario.components, "component", "component of the state");
     const float fill = std::numeric_limits<float>::quiet_NaN();
     const Handle nees = hdf5::new_variable(group, "detailed_nees", single(arm.nees), {&detailed, &step},
                                            {"normalised estimation error squared of the whole state", "1"});
@@ -73,7 +73,7 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
     const Handle errors = hdf5::new_variable(group, "detailed_error", single(arm.errors),
                                              {&detailed, &step, &component},
                                              {"error of the state after the update, estimate - truth",
-                                              state_units(results.scenario)});
+                                              state_units(results.scenario.components)});
     hdf5::write_numbers<float>(errors, "_FillValue", {fill});
 }
 

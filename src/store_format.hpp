@@ -2,8 +2,6 @@
 // Room 12: what the two files that the store writes have in common. docs/results-format.md describes them.
 
 #include <credence/error.hpp>
-#include <credence/record.hpp>
-#include <credence/scenario_keys.hpp>
 #include <credence/store.hpp>
 #include <credence/text.hpp>
 
@@ -11,6 +9,7 @@
 #include "hdf5_driver.hpp"
 #include "hdf5_write.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,7 +22,7 @@ inline const std::string run_group = "run";
 inline double one_nan(double value) { return value == value ? value : std::numeric_limits<double>::quiet_NaN(); }
 
 /// The group /run would be mistaken for a scenario, and the other way round.
-inline void refuse_reserved_name(const Scenario& scenario) {
+inline void refuse_reserved_name(const Declaration& scenario) {
     if (scenario.name == run_group)
         throw invalid_value("scenario.name", scenario.name, "the file keeps that group for facts of the machine",
                             "Give another name");
@@ -35,11 +34,22 @@ inline void write_header(const hdf5::Handle& root, const std::string& format, co
     hdf5::write_text(root, "title", title);
 }
 
-inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario& scenario) {
+/// Blocks of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the whole state.
+inline std::string blocks_text(const std::vector<StateBlock>& blocks) {
+    std::vector<std::string> texts;
+    for (const StateBlock& block : blocks)
+        if (block.name != "all")
+            texts.push_back(block.name + " " + std::to_string(block.first) + ":" +
+                            std::to_string(block.first + block.count));
+    return joined(texts);
+}
+
+inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Declaration& scenario) {
     hdf5::Handle group = hdf5::new_group(root, scenario.name);
     hdf5::write_text(group, "title", scenario.title);
     hdf5::write_text(group, "length_unit", scenario.length_unit);
     hdf5::write_text(group, "scenario", scenario_text(scenario));
+    hdf5::write_text(group, "blocks", blocks_text(scenario.blocks));
     return group;
 }
 
@@ -66,16 +76,21 @@ inline void write_status_flags(const hdf5::Handle& variable) {
 }
 
 /// What `units` says of a state, whose components differ in units where one is a heading.
-inline std::string state_units(const Scenario& scenario) {
-    return scenario.process == Process::heading ? "see component_units" : scenario.length_unit;
+inline std::string state_units(const std::vector<Component>& components) {
+    const std::string& first = components.front().unit;
+    const bool one = std::all_of(components.begin(), components.end(),
+                                 [&](const Component& component) { return component.unit == first; });
+    return one ? first : "see component_units";
 }
 
 /// A dimension along the components of the state, which says what they are and in which units.
-inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const Scenario& scenario,
+inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const std::vector<Component>& components,
                                                const std::string& name, const std::string& long_name) {
-    const std::vector<std::string> names = component_names(scenario);
-    std::vector<std::string> units(names.size(), scenario.length_unit);
-    if (scenario.process == Process::heading) units.front() = "rad";
+    std::vector<std::string> names, units;
+    for (const Component& component : components) {
+        names.push_back(component.name);
+        units.push_back(component.unit);
+    }
     hdf5::Dimension dimension = numbered<std::int32_t>(group, name, 0, names.size(), long_name);
     hdf5::write_text(dimension.scale, "component_names", joined(names, " "));
     hdf5::write_text(dimension.scale, "component_units", joined(units, " "));

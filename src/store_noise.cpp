@@ -2,6 +2,8 @@
 
 #include <credence/text.hpp>
 
+#include <credence/scenario.hpp>
+
 #include "hdf5_read.hpp"
 
 #include <cmath>

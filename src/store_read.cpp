@@ -1,11 +1,11 @@
 #include <credence/store.hpp>
 
-#include <credence/ini.hpp>
 #include <credence/text.hpp>
 
 #include "hdf5_read.hpp"
 #include "store_aggregates.hpp"
 #include "store_columns.hpp"
+#include "store_declared.hpp"
 #include "store_evidence.hpp"
 #include "store_format.hpp"
 #include "store_sums.hpp"
@@ -131,8 +131,8 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
 
 ScenarioResults read_scenario_results(const std::string& name, const Source& source) {
     const Handle group = hdf5::open_group(*source.file, name);
-    const std::string origin = source.path + ": " + hdf5::attribute_place(group, "scenario");
-    const Scenario scenario = read_scenario_text(hdf5::read_text(group, "scenario"), origin, "scenario");
+    ScenarioResults results = read_declared(group, source.path, source.keep);
+    const Declaration& scenario = results.scenario;
     const auto agree = [&](const std::string& attribute, const std::string& found, const std::string& expected) {
         if (found != expected)
             throw Error(hdf5::attribute_place(group, attribute), "does not agree with the group's name and attributes");
@@ -140,11 +140,8 @@ ScenarioResults read_scenario_results(const std::string& name, const Source& sou
     agree("scenario", scenario.name, name);
     agree("title", hdf5::read_text(group, "title"), scenario.title);
     agree("length_unit", hdf5::read_text(group, "length_unit"), scenario.length_unit);
-    ScenarioResults results{scenario, trial_columns(scenario), step_figures(scenario), {}, 0, {}, source.keep};
-    std::vector<std::string> arms;
-    for (const Arm& arm : arms_of(scenario)) arms.push_back(arm_name(arm));
-    require_links(group, arms);
-    for (const std::string& arm : arms) results.arms.push_back(read_arm(group, arm, results, source));
+    require_links(group, scenario.arms);
+    for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
     return results;
 }
 

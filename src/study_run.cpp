@@ -10,7 +10,6 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -24,7 +23,7 @@ class Runner : private BlockDesk {
 public:
     Runner(Study& study, const RunOptions& options) : study_(study), options_(options), done_(study.scenarios.size()) {
         for (const ScenarioResults& results : study.scenarios)
-            problems_.push_back(std::make_unique<Problem>(results.scenario));
+            runners_.emplace_back(results.scenario);
     }
 
     void run() {
@@ -56,7 +55,7 @@ private:
         ScenarioResults& results = study_.scenarios[s];
         const std::int64_t last = results.blocks.back();
         const auto size = static_cast<int>(block_rows(results, results.blocks.size() - 1));
-        remove_totals(results, run_block(*problems_[s], study_.root_seed, last, size));
+        remove_totals(results, runners_[s].run(study_.root_seed, last, size));
         if (options_.keeper != nullptr) options_.keeper->take_back(s, last);
         taken_back_.push_back({s, last});
         set_blocks(results, results.blocks.without({last}), options_.trials);
@@ -103,7 +102,7 @@ private:
 
     void run_task(const Task& task) {
         const int trials = trials_in_block(options_.trials, task.block);
-        const Block block = run_block(*problems_[task.scenario], study_.root_seed, task.block, trials);
+        const Block block = runners_[task.scenario].run(study_.root_seed, task.block, trials);
         ScenarioResults& results = study_.scenarios[task.scenario];
         store_columns(results, block);
         if (finish_task(task, block, block_aggregates(results, block))) options_.keeper->commit();
@@ -176,7 +175,7 @@ private:
 
     Study& study_;
     const RunOptions& options_;
-    std::vector<std::unique_ptr<Problem>> problems_;
+    std::vector<BlockRunner> runners_;
     std::vector<BlockRanges> done_;      ///< by scenario: blocks that are there
     std::vector<BlockRanges> missing_;   ///< likewise: those that are this run's tasks, one scenario after the other
     std::size_t task_count_ = 0;

@@ -1,6 +1,8 @@
 #pragma once
 // Room 12: the group of one arm in a trajectory file: its dimensions, and variables that have a value for each pose.
 
+#include <credence/deformable.hpp>
+
 #include "store_format.hpp"
 
 namespace credence {
@@ -14,11 +16,11 @@ struct TrajectoryGroup {
           pose(number("pose", recorded.steps.size(), "pose")),
           feature(number("feature", recorded.scenario.features.positions.size(), "feature")),
           axis(number("axis", 2, "axis: 0 is x, 1 is y")),
-          component(new_component_dimension(group, recorded.scenario, "component", "component of the state")),
-          component_2(new_component_dimension(group, recorded.scenario, "component_2",
+          component(new_component_dimension(group, state_components(recorded.scenario), "component", "component of the state")),
+          component_2(new_component_dimension(group, state_components(recorded.scenario), "component_2",
                                               "component of the state, along columns")),
           length_unit(recorded.scenario.length_unit),
-          state_unit(state_units(recorded.scenario)),
+          state_unit(state_units(state_components(recorded.scenario))),
           covariance_unit(recorded.scenario.process == Process::heading ? "products of component_units"
                                                                         : length_unit + "^2") {}
 

@@ -41,6 +41,13 @@ RunningMoments running(const ExactMoments& exact) {
 
 }  // namespace
 
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
+    std::vector<std::size_t> watched;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (is_figure(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+    return watched;
+}
+
 void WatchedSums::add(const WatchedSums& other) {
     trials += other.trials;
     arms.resize(std::max(arms.size(), other.arms.size()));
@@ -59,15 +66,15 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
     std::vector<std::vector<double>> trace(results.arms.size());
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmSums& arm = sums.arms[a];
-        const std::vector<double> status = column(a, column_status);
+        const std::vector<double> status = column(a, status_column(results.columns));
         for (const double value : status) {
             arm.failed += failed(status_of(value));
             arm.diverged += status_of(value) == Status::diverged;
         }
-        for (const ColumnIndex index : watched_columns) {
+        for (const std::size_t index : watched_columns(results.columns)) {
             const std::vector<double> values = figure_of(column, a, index, status);
             arm.figures.push_back(RunningMoments::of(values));
-            if (index == column_trace_P) trace[a] = values;
+            if (index == 0) trace[a] = values;
         }
     }
     for (std::size_t a = 0; a < results.arms.size(); ++a)
@@ -84,10 +91,10 @@ WatchedSums sums_of_aggregates(const ScenarioResults& results) {
         const ArmResults& arm = results.arms[a];
         sums.arms[a].failed = arm.aggregates.trials() - arm.aggregates.counted();
         sums.arms[a].diverged = arm.aggregates.statuses[static_cast<std::size_t>(Status::diverged)];
-        for (const ColumnIndex index : watched_columns)
+        for (const std::size_t index : watched_columns(results.columns))
             sums.arms[a].figures.push_back(running(arm.aggregates.columns[index]));
         if (const ArmResults* fixed = fixed_partner(results, arm))
-            sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, column_trace_P).difference);
+            sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, 0).difference);
     }
     return sums;
 }

@@ -106,7 +106,7 @@ inline void add_products(const double* innovations, ProductTotals& products) {
 /// The results of a filter that claims `claimed` times the covariance that its errors have.
 inline ScenarioResults results(double claimed) {
     const std::vector<double> draws = numbers(expected()["draws"]), innovations = numbers(expected()["innovations"]);
-    Scenario scenario;
+    Declaration scenario;
     scenario.poses = steps + 1;
     ScenarioResults results{scenario, {}, figures(), {}, trials};
     ArmResults arm;

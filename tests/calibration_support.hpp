@@ -5,7 +5,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <credence/evidence.hpp>
-#include <credence/study.hpp>
+#include "of_scenarios.hpp"
 #include <functional>
 #include <map>
 #include <string>

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "matched.hpp"
+#include "of_scenarios.hpp"
 
 namespace credence::test {
 

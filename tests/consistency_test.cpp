@@ -2,6 +2,7 @@
 
 #include "catch.hpp"
 #include "matched.hpp"
+#include "of_scenarios.hpp"
 
 #include <credence/consistency.hpp>
 #include <credence/study.hpp>

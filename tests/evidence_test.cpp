@@ -3,6 +3,7 @@
 
 #include "catch.hpp"
 #include "support.hpp"
+#include "of_scenarios.hpp"
 
 #include <credence/chi_square.hpp>
 #include <credence/detail.hpp>

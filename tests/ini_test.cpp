@@ -1,6 +1,7 @@
 // Room 12: scenario files.
 
 #include "catch.hpp"
+#include "of_scenarios.hpp"
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>

@@ -1,6 +1,7 @@
 // Room 12, the journal: bytes that somebody made up, with right checksums, are refused and never believed.
 
 #include "journal_forged.hpp"
+#include "of_scenarios.hpp"
 
 #include <sys/resource.h>
 

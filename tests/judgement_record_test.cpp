@@ -124,7 +124,7 @@ JudgedRecord check_reference(const std::string& name) {
 
 TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes them with gzip") {
     const JudgedRecord record = check_reference("gaussian");
-    const Scenario& scenario = record.results.scenario;
+    const Declaration& scenario = record.results.scenario;
     CHECK(scenario.name == "record_gaussian");
     CHECK(scenario.title == "record " + printable(record_folder + "record_gaussian.h5"));
     std::string names;

@@ -1,7 +1,7 @@
 #pragma once
 // The world in which the linear filter is right.
 
-#include <credence/scenario.hpp>
+#include "of_scenarios.hpp"
 
 #include <limits>
 

@@ -178,7 +178,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
         // The totals are those of the blocks that are there, which another run computes by itself.
         const BlockRanges& blocks = study.scenarios.front().blocks;
         ScenarioResults& results = again.scenarios.front();
-        const Problem problem(results.scenario);
+        const Problem problem(scenario_of(results.scenario));
         for (const std::int64_t block : blocks)
             add_totals(results, run_block(problem, asked.root_seed, block, trials_in_block(asked.trials, block)));
         CHECK(results.arms.front().totals.front().sum.front().parts() ==
@@ -256,9 +256,10 @@ TEST_CASE("ranks: those that are sent home before they had work go") {
 TEST_CASE("ranks: a record holds the blocks' columns, details and totals, and none that is torn is believed") {
     const Asked asked = some();
     const Study whole = undisturbed(asked);
-    const std::vector<ScenarioResults> empty{without_columns(asked.scenarios[0]), without_columns(asked.scenarios[1])};
+    const std::vector<ScenarioResults> empty{without_columns(declaration_of(asked.scenarios[0])),
+                                             without_columns(declaration_of(asked.scenarios[1]))};
     RankRecord record(empty[1]);
-    const Problem problem(whole.scenarios[1].scenario);
+    const Problem problem(scenario_of(whole.scenarios[1].scenario));
     for (const std::int64_t block : {19, 2, 5})
         record.take(run_block(problem, 1, block, trials_in_block(asked.trials, block)));
     const std::string bytes = record.bytes(1, asked.trials);

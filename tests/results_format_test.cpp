@@ -40,7 +40,10 @@ TEST_CASE("results format: the documentation and the files say the same of every
     wide.features.positions.assign(23, {0.5, 0.5});
     write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0),
                                              replay_trial(Problem(wide), {Controller::fixed}, 1, 0)}, {});
-    const Facts results = found_in(folder / "study.h5"), trajectories = found_in(folder / "trace.h5");
+    Study aggregates = new_study({scenario("first")}, 1, Keep::aggregates);
+    run_study(aggregates, {3, 1, {}});
+    write_results(folder / "aggregates.h5", aggregates, {});
+    const Facts results = together(found_in(folder / "study.h5"), found_in(folder / "aggregates.h5")), trajectories = found_in(folder / "trace.h5");
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
     const Facts common = documented(part_of_page(page, "# The files", "## What a reader")),
                 of_results = documented(part_of_page(page, "## Results", "## `/run`")),

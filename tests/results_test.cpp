@@ -1,6 +1,7 @@
 // Room 10: what blocks add up to.
 
 #include "catch.hpp"
+#include "of_scenarios.hpp"
 #include "support.hpp"
 
 #include <credence/results.hpp>

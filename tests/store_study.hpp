@@ -6,6 +6,8 @@
 #include <credence/ini.hpp>
 #include <credence/store.hpp>
 
+#include "of_scenarios.hpp"
+
 #include "catch.hpp"
 #include "temporary_folder.hpp"
 

@@ -139,9 +139,8 @@ TEST_CASE("store: no clock and no machine outside /run") {
 
 TEST_CASE("store: a scenario named run is refused, its group is taken") {
     const TemporaryFolder folder;
-    Scenario taken = scenario("other");
-    taken.name = "run";  // past set_key, which refuses it too
-    const Study study = new_study({taken}, 1);
+    Study study = new_study({scenario("other")}, 1);
+    study.scenarios.front().scenario.name = "run";  // past the key, which refuses it too
     CHECK(refusal<InputError>([&] { write_results(folder / "study.h5", study, {}); }).find("scenario.name=run") !=
           std::string::npos);
     CHECK(folder.entries() == 0);

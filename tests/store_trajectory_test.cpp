@@ -4,6 +4,7 @@
 
 #include "../src/hdf5_read.hpp"
 #include "store_damage.hpp"
+#include "of_scenarios.hpp"
 
 using namespace credence;
 using namespace credence::test;

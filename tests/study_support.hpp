@@ -1,7 +1,7 @@
 #pragma once
 // Small studies, and what it means that two are the same.
 
-#include <credence/study.hpp>
+#include "of_scenarios.hpp"
 
 namespace credence {
 

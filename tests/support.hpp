@@ -5,7 +5,7 @@
 #include "oracle/oracle.hpp"
 
 #include <credence/draws.hpp>
-#include <credence/record.hpp>
+#include <credence/deformable.hpp>
 
 #include <Eigen/Dense>
 

@@ -20,10 +20,10 @@ double mahalanobis(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) { return 
 TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in every arm") {
     const Study study = small_study(3, 300, 2);
     for (const ScenarioResults& results : study.scenarios) {
-        const Problem problem(results.scenario);
+        const Problem problem(scenario_of(results.scenario));
         for (std::size_t a = 0; a < results.arms.size(); ++a)
             for (const std::int64_t trial : {0, 17, 255, 256, 299}) {
-                const Trajectory t = replay_trial(problem, arms_of(results.scenario)[a], 3, trial);
+                const Trajectory t = replay_trial(problem, arms_of(problem.scenario())[a], 3, trial);
                 for (std::size_t c = 0; c < t.columns.size(); ++c)
                     CHECK(std::bit_cast<std::uint64_t>(t.columns[c]) ==
                           std::bit_cast<std::uint64_t>(results.arms[a].columns[c][static_cast<std::size_t>(trial)]));

@@ -161,11 +161,11 @@ TEST_CASE("trial: figures of a step are what their names say") {
             CHECK(run.figure("nis_rows", k) == 2 * seen + 6);
             CHECK(run.figure("unseen_features", k) == 3 - seen);
             CHECK(run.figure("trace_P_step", k) == Approx(2.25 * step.covariance.trace()).epsilon(1e-14));
-            const std::vector<std::string> components = component_names(scenario);
+            const std::vector<Component> components = state_components(scenario);
             for (std::size_t i = 0; i < components.size(); ++i) {
                 const Eigen::Index at = static_cast<Eigen::Index>(i);
                 const double error = (step.mean - step.truth)[at] / std::sqrt(2.25 * step.covariance(at, at));
-                CHECK(run.figure("standardised_error_" + components[i], k) == Approx(error).epsilon(1e-14));
+                CHECK(run.figure("standardised_error_" + components[i].name, k) == Approx(error).epsilon(1e-14));
             }
         }
     }

@@ -7,6 +7,7 @@
 
 #include "catch.hpp"
 #include "program.hpp"
+#include "of_scenarios.hpp"
 
 using namespace credence;
 using Catch::Contains;

@@ -38,7 +38,7 @@ inline void check_says(const WatchLook& look, const Study& study) {
             CAPTURE(scenario.name, arm.name);
             CHECK(arm.failed == results.trials - results.arms[a].counted);
             for (std::size_t f = 0; f < arm.figures.size(); ++f)
-                check_same(arm.figures[f], summarise(figure_values(results, results.arms[a], watched_columns[f])));
+                check_same(arm.figures[f], summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
             const ArmResults* fixed = fixed_partner(results, results.arms[a]);
             CHECK(arm.other == (fixed ? fixed->name : ""));
             if (fixed) {

@@ -4,7 +4,6 @@
 // Comparison]
 
 #include <credence/comparison.hpp>
-#include <credence/scenario_keys.hpp>
 #include <optional>
 #include <string>
 #include <vector>

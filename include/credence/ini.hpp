@@ -1,6 +1,7 @@
 #pragma once
 // Room 12: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
 
+#include <credence/declaration.hpp>
 #include <credence/scenario.hpp>
 
 #include <string>
@@ -20,5 +21,14 @@ Scenario read_scenario_text(const std::string& text, const std::string& origin, 
 
 /// The same from a file of at most 1 MiB; the default name is the file's stem.
 Scenario read_scenario(const std::string& path, const Overrides& overrides = {});
+
+/// The same for a scenario of any world: `scenario.world` says which, the deformable one where it is not given.
+Declaration read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                                  const Overrides& overrides = {});
+Declaration read_declaration(const std::string& path, const Overrides& overrides = {});
+
+/// The keys and values of a text as they stand there, whatever they mean. Throws InputError for broken lines and
+/// repeated keys.
+std::vector<Setting> read_settings(const std::string& text, const std::string& origin);
 
 }  // namespace credence

@@ -2,7 +2,7 @@
 // Room 8: a scenario made ready: the tables that its equations read, computed once.
 
 #include <credence/planner.hpp>
-#include <credence/record.hpp>
+#include <credence/slam_record.hpp>
 
 namespace credence {
 

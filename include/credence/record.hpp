@@ -2,8 +2,7 @@
 // Room 8: what a trial reports, declared as data. Engine, statistics, store and report walk these lists and know
 // nothing else about the world.
 
-#include <credence/scenario.hpp>
-
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -71,27 +70,21 @@ struct StateBlock {
     int first = 0, count = 0;
 };
 
-/// all, pose, heading and position (heading model), features, feature_0 ...
-std::vector<StateBlock> state_blocks(const Scenario& scenario);
+/// A component of the state.
+struct Component {
+    std::string name, unit;
+    friend bool operator==(const Component&, const Component&) = default;
+};
 
-/// Name of each component of the state: theta, r_x, r_y, f0_x, f0_y ...
-std::vector<std::string> component_names(const Scenario& scenario);
+/// Position of the column that says how a trial ended. Every world declares one, and after it the pose at which that
+/// happened.
+std::size_t status_column(const std::vector<Column>& columns);
 
-/// Unit of trace(P): length^2, and in the heading model + rad^2.
-std::string trace_unit(const Scenario& scenario);
-
-/// Positions in the list of `trial_columns`.
-enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
-                   column_mean_trace_P, column_status, column_status_pose, column_count };
-
-/// The per-trial columns, in the order of ColumnIndex.
-std::vector<Column> trial_columns(const Scenario& scenario);
+/// The names and units of the last two columns of every world.
+std::vector<Column> status_columns();
 
 /// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they
-/// are. `values` [column_count]. Returns whether the trial failed.
+/// are. `values` [columns]. Returns whether the trial failed.
 bool fill_failed(const std::vector<Column>& columns, double* values);
-
-/// The per-step figures, in the order in which trial.hpp writes them.
-std::vector<Figure> step_figures(const Scenario& scenario);
 
 }  // namespace credence

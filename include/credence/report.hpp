@@ -46,7 +46,7 @@ struct Report {
     bool complete = true;
     Keep keep = Keep::trials;
     double margin = 0;
-    std::vector<Scenario> scenarios;
+    std::vector<Declaration> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that are in no figure, the first ones
     std::vector<Comparison> pairs;          ///< planned against fixed: greedy - fixed of the same estimator, by trial

@@ -50,8 +50,8 @@ public:
 /// One arm of a scenario: per-trial columns and per-step totals.
 struct ArmResults {
     std::string name;
-    /// [column_count][trials]; NaN or fill where a trial failed. Empty where `kept` has them (read column_values), and
-    /// where no trial is kept.
+    /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them (read column_values), and where no
+    /// trial is kept.
     std::vector<std::vector<double>> columns;
     std::shared_ptr<const KeptColumns> kept;
     ArmAggregates aggregates;                  ///< where no trial is kept; else empty
@@ -70,7 +70,7 @@ struct ArmResults {
 };
 
 struct ScenarioResults {
-    Scenario scenario;                         ///< resolved
+    Declaration scenario;                      ///< resolved
     std::vector<Column> columns;
     std::vector<Figure> figures;
     std::vector<ArmResults> arms;
@@ -87,8 +87,8 @@ struct ScenarioResults {
     int state_size() const { return figures.front().dimension; }
 };
 
-/// An empty result of a resolved scenario.
-ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials);
+/// An empty result of a resolved scenario. Throws InputError where there is no such world.
+ScenarioResults empty_results(const Declaration& scenario, Keep keep = Keep::trials);
 
 /// Whether a column is a figure of the trial, not its status.
 bool is_figure(const Column& column);

@@ -160,8 +160,6 @@ std::vector<Arm> arms_of(const Scenario& scenario);
 
 /// `controller.estimator`, such as `greedy.ekf`.
 std::string arm_name(const Arm& arm);
-/// The controller in an arm's name.
-std::string controller_of(const std::string& arm);
 
 /// The edge list of a scenario in graph order: for `all`, a outer and b inner, a < b.
 std::vector<Edge> edge_list(const Scenario& scenario);

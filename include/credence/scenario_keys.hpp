@@ -26,13 +26,4 @@ const std::vector<ScenarioKey>& scenario_keys();
 /// one) or a value out of range.
 void set_key(Scenario& scenario, const std::string& name, const std::string& value);
 
-/// A key in which two scenarios differ, with both values.
-struct KeyDifference {
-    std::string key, a, b;
-};
-std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b);
-
-/// A resolved scenario as an INI text that names every key. Reading it back gives the same scenario.
-std::string scenario_text(const Scenario& scenario);
-
 }  // namespace credence

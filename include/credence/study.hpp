@@ -27,7 +27,7 @@ struct Study {
 /// What makes a study that study: not its trials, threads, shards or stopping.
 struct StudyDefinition {
     std::uint64_t root_seed = 1;
-    std::vector<Scenario> scenarios;    ///< resolved
+    std::vector<Declaration> scenarios; ///< resolved
     Keep keep = Keep::trials;
 };
 StudyDefinition definition_of(const Study& study);
@@ -88,7 +88,7 @@ struct RunOptions {
 };
 
 /// An empty study of resolved, validated scenarios with names that differ.
-Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
+Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
 
 /// Runs what is missing of the shard's blocks of the first `options.trials` trials of every scenario; a partial last
 /// block is computed again. The same bits for any number of threads and any history. Returns early where `options.stop`

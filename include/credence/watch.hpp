@@ -13,22 +13,22 @@
 
 namespace credence {
 
-/// The columns whose means a look gives.
-inline constexpr ColumnIndex watched_columns[] = {column_trace_P, column_unseen, column_pose_error, column_nees_ratio,
-                                                  column_nis_ratio};
+/// The columns whose means a look gives: all figures of a trial but mean_trace_P. The first, trace_P in every world, is
+/// the one that pairs are compared by.
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 
 /// One arm, over its trials so far; failed ones are in no figure.
 struct WatchedArm {
     std::string name;
     std::int64_t failed = 0, diverged = 0;  ///< trials
-    std::vector<Moments> figures;           ///< of watched_columns
+    std::vector<Moments> figures;           ///< of the watched columns
     std::string other;                      ///< `fixed.X` beside `greedy.X`; empty: none
     Moments difference;                     ///< of trace_P of this arm - that of `other`, by trial, where there is one
 };
 
 struct WatchedScenario {
     std::string name;
-    std::vector<Column> columns;                     ///< of watched_columns
+    std::vector<Column> columns;                     ///< of the watched columns
     std::int64_t trials = 0, trials_asked = 0;       ///< committed, and all that the run will have in the end
     std::int64_t blocks = 0, blocks_asked = 0;       ///< of 256 trials, likewise
     std::vector<WatchedArm> arms;

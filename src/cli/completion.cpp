@@ -4,9 +4,10 @@
 #include "version.hpp"
 
 #include <credence/error.hpp>
-#include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
+#include <credence/worlds.hpp>
 
+#include <algorithm>
 #include <iostream>
 
 namespace credence::cli {
@@ -79,14 +80,24 @@ std::string case_of(const Command& command) {
            "            [[ $current == -* ]] || { " + (arguments.empty() ? ":" : arguments) + "; return; } ;;\n";
 }
 
+/// Of every world there is, the first one's choices where several have a key.
+std::vector<DescribedKey> every_key() {
+    std::vector<DescribedKey> keys;
+    for (const World* world : all_worlds())
+        for (DescribedKey& key : world->keys())
+            if (std::none_of(keys.begin(), keys.end(), [&](const DescribedKey& known) { return known.key == key.key; }))
+                keys.push_back(std::move(key));
+    return keys;
+}
+
 /// The keys of a scenario, and the values of those that have choices.
 std::string keys_text() {
     std::vector<std::string> names;
     std::string cases;
-    for (const ScenarioKey& key : scenario_keys()) {
-        names.push_back(key.name + "=");
+    for (const DescribedKey& key : every_key()) {
+        names.push_back(key.key + "=");
         if (!key.choices.empty())
-            cases += "        " + key.name + "=*) _credence_words_after '" + joined(key.choices, " ") + "' ;;\n";
+            cases += "        " + key.key + "=*) _credence_words_after '" + joined(key.choices, " ") + "' ;;\n";
     }
     return "_credence_keys() {\n    case $value in\n" + cases + "        *=*) ;;\n        *) _credence_words " +
            joined(names, " ") + "\n           compopt -o nospace 2>/dev/null ;;\n    esac\n}\n\n";

@@ -6,9 +6,8 @@
 #include "build_info.hpp"  // made by CMake
 
 #include <credence/error.hpp>
-#include <credence/ini.hpp>
-#include <credence/scenario_keys.hpp>
 #include <credence/simulate.hpp>
+#include <credence/worlds.hpp>
 
 #include <iostream>
 
@@ -62,12 +61,15 @@ std::string text_of(const Command& command) {
 }
 
 std::string keys_text() {
-    const Scenario defaults = read_scenario_text("", "defaults", "scenario");
     std::string text = roff::filled(
         "A scenario file is an INI text that names only what differs from the defaults; --set overrides it. Keys,\n"
         "with their defaults:");
-    for (const ScenarioKey& key : scenario_keys())
-        text += roff::tagged(roff::bold(key.name) + " = " + roff::plain(key.get(defaults)), key.help);
+    for (const World* world : all_worlds()) {
+        if (world->name() != first_world)
+            text += roff::filled("Keys of the world " + world->name() + " (scenario.world = " + world->name() + "):");
+        for (const DescribedKey& key : world->keys())
+            text += roff::tagged(roff::bold(key.key) + " = " + roff::plain(key.value), key.help);
+    }
     return text;
 }
 

@@ -2,7 +2,7 @@
 #include "version.hpp"
 
 #include <credence/error.hpp>
-#include <credence/problem.hpp>
+#include <credence/deformable.hpp>
 #include <credence/store.hpp>
 #include <credence/text.hpp>
 
@@ -97,8 +97,8 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const ScenarioResults& results = find_scenario(study, scenario_name);
     const std::size_t a = find_arm(results, arm);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
-    const Problem problem(results.scenario);
-    Trajectory trajectory = replay_trial(problem, arms_of(results.scenario)[a], study.root_seed, trial);
+    const Problem problem(scenario_of(results.scenario));
+    Trajectory trajectory = replay_trial(problem, arms_of(problem.scenario())[a], study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
         const double stored = column_values(results.arms[a], c, row, 1).front();
         if (!same(stored, trajectory.columns[c]))

@@ -61,7 +61,7 @@ RunRequest read_request(const Parsed& parsed) {
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
                          "one of them.");
     for (const std::string& path : parsed.arguments)
-        request.scenarios.push_back(read_scenario(path, parsed.overrides()));
+        request.scenarios.push_back(read_declaration(path, parsed.overrides()));
     return request;
 }
 

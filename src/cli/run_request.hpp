@@ -13,7 +13,7 @@
 namespace credence::cli {
 
 struct RunRequest {
-    std::vector<Scenario> scenarios;
+    std::vector<Declaration> scenarios;
     std::string output;
     std::uint64_t root_seed = 1;
     RunOptions options;

@@ -1,7 +1,7 @@
 #include "command.hpp"
 
 #include <credence/error.hpp>
-#include <credence/scenario_keys.hpp>
+#include <credence/worlds.hpp>
 
 #include <iostream>
 
@@ -18,12 +18,14 @@ const Command& show_command() {
 int show(const Parsed& parsed) {
     if (parsed.arguments.size() > 1) throw InputError("show takes one scenario. Give one file.");
     if (!parsed.arguments.empty()) {
-        std::cout << scenario_text(read_scenario(parsed.arguments.front(), parsed.overrides()));
+        std::cout << scenario_text(read_declaration(parsed.arguments.front(), parsed.overrides()));
         return 0;
     }
-    const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
-    for (const ScenarioKey& key : scenario_keys())
-        std::cout << "# " << key.help << "\n" << key.name << " = " << key.get(scenario) << "\n";
+    const Declaration scenario = read_declaration_text("", "defaults", "scenario", parsed.overrides());
+    const std::vector<DescribedKey> keys = world_of(scenario).keys();
+    for (const Setting& setting : scenario.settings)
+        for (const DescribedKey& key : keys)
+            if (key.key == setting.key) std::cout << "# " << key.help << "\n" << key.key << " = " << setting.value << "\n";
     return 0;
 }
 

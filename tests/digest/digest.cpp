@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 #include <credence/error.hpp>
 #include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>

@@ -5,6 +5,7 @@
 #include "scratch_file.hpp"
 
 #include "../../src/journal_record.hpp"
+#include "../of_scenarios.hpp"
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>

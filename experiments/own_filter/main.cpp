@@ -1,0 +1,10 @@
+// credence with one world more.
+
+#include "tracker.hpp"
+
+#include <credence/program.hpp>
+
+int main(int argc, char** argv) {
+    credence::add_own_world<Tracker>();
+    return credence::program(argc, argv);
+}

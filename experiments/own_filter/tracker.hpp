@@ -1,0 +1,89 @@
+#pragma once
+// A world of one's own: a target that moves with nearly constant velocity, seen by its position, and two filters for it.
+//
+//   x = [p_x, p_y, v_x, v_y]   p in m, v in m/s; T  time between steps (s)
+//   x_k = F x_{k-1} + G a_k,   F = [I, T I; 0, I],  G = [T^2/2 I; T I],  a ~ N(0, acceleration^2 I)
+//   z_k = p_k + sigma w_k,     every `seen` steps on average
+// Kalman filter: [Bar-Shalom, Li, Kirubarajan 2001, 5.2, 6.3.2]
+
+#include <credence/own_world.hpp>
+
+struct Tracker {
+    struct Settings {
+        double period = 1;            ///< T (s)
+        double acceleration = 0.2;    ///< of the target, each axis (m/s^2)
+        double sigma = 2;             ///< of a measured position, each axis (m)
+        double detection = 0.9;       ///< probability that a step has a measurement
+    };
+
+    static constexpr const char* name = "tracker";
+
+    static void keys(credence::OwnKeys<Settings>& keys) {
+        keys.real("target.period", &Settings::period, 1e-3, 1e3, "T, time between steps (s)");
+        keys.real("target.acceleration", &Settings::acceleration, 1e-6, 1e3, "sigma of the acceleration (m/s^2)");
+        keys.real("sensor.sigma", &Settings::sigma, 1e-6, 1e6, "sigma of a measured position (m)");
+        keys.real("sensor.detection", &Settings::detection, 0, 1, "probability that a step has a measurement");
+    }
+
+    static std::vector<credence::Component> components(const Settings&) {
+        return {{"p_x", "m"}, {"p_y", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}};
+    }
+    static std::vector<credence::StateBlock> blocks(const Settings&) {
+        return {{"position", 0, 2}, {"velocity", 2, 2}};
+    }
+    static int innovation_rows(const Settings&) { return 2; }
+
+    /// `kf` knows the model; `calm` takes Q for a fifth of what it is, a mistake that is easily made.
+    static std::vector<std::string> arms(const Settings&) { return {"kf", "calm"}; }
+
+    static std::vector<credence::Column> columns(const Settings&) {
+        return {{"measurements", "steps with a measurement", "1", credence::ColumnType::integer, -1}};
+    }
+
+    static void run(const Settings& s, credence::OwnTrial& trial) {
+        // Sources of draws: any number of one's own from 0 to 15, each used for one thing only.
+        enum Source { initial_position, initial_velocity, acceleration, measurement, detection };
+        const Model model(s);
+        const double believed = trial.arm() == 0 ? 1 : 0.2;
+
+        Eigen::Vector4d x;
+        x << 50 * trial.normal(initial_position, 0), 5 * trial.normal(initial_velocity, 0);
+        Eigen::Vector4d estimate = Eigen::Vector4d::Zero();
+        Eigen::Matrix4d P = Eigen::Vector4d(2500, 2500, 25, 25).asDiagonal();
+        int measurements = 0;
+        for (int k = 1; k < trial.poses(); ++k) {
+            x = model.F * x + model.G * (s.acceleration * trial.normal(acceleration, k));
+
+            estimate = model.F * estimate;
+            P = model.F * P * model.F.transpose() + believed * model.Q;
+            if (trial.uniform(detection, k) >= s.detection) {
+                trial.step(estimate - x, P);
+                continue;
+            }
+            const Eigen::Vector2d z = x.head<2>() + s.sigma * trial.normal(measurement, k);
+            const Eigen::Vector2d innovation = z - estimate.head<2>();
+            const Eigen::Matrix2d S = P.topLeftCorner<2, 2>() + model.R;
+            const Eigen::Matrix<double, 4, 2> K = P.leftCols<2>() * S.inverse();
+            estimate += K * innovation;
+            P -= K * S * K.transpose();
+            trial.step(estimate - x, P, innovation, S);
+            ++measurements;
+        }
+        trial.set(0, measurements);
+    }
+
+private:
+    struct Model {
+        Eigen::Matrix4d F = Eigen::Matrix4d::Identity(), Q;
+        Eigen::Matrix<double, 4, 2> G;
+        Eigen::Matrix2d R;
+
+        explicit Model(const Settings& s) {
+            const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+            F.topRightCorner<2, 2>() = s.period * I;
+            G << s.period * s.period / 2 * I, s.period * I;
+            Q = s.acceleration * s.acceleration * G * G.transpose();
+            R = s.sigma * s.sigma * I;
+        }
+    };
+};

@@ -1,0 +1,48 @@
+#pragma once
+// Room 8: a scenario of any world, as everything from the block up knows it: what it is called, what it reports, and its
+// settings as text. What the settings mean, its world knows [worlds.hpp].
+
+#include <credence/record.hpp>
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// `section.key` and its value, as they stand in a scenario file.
+struct Setting {
+    std::string key, value;
+    friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+/// The world of a scenario that names none.
+inline const std::string first_world = "deformable";
+/// The key that names another.
+inline const std::string world_key = "scenario.world";
+
+/// A resolved scenario.
+struct Declaration {
+    std::string world = first_world;
+    std::string name = "scenario";
+    std::string title;
+    std::string length_unit = "dm";
+    int poses = 20;                      ///< K, the first included: K - 1 steps
+    std::vector<Setting> settings;       ///< every key of it, in the order in which they are shown
+    std::vector<Component> components;   ///< of the state, [n]
+    std::vector<StateBlock> blocks;      ///< that are judged by themselves, the whole state (`all`) first
+    std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
+};
+
+/// A scenario as an INI text that names every key. Reading it back gives the same scenario.
+std::string scenario_text(const Declaration& scenario);
+
+/// The controller in an arm's name.
+std::string controller_of(const std::string& arm);
+
+/// A key in which two scenarios differ, with both values; empty where one of them has no such key.
+struct KeyDifference {
+    std::string key, a, b;
+};
+std::vector<KeyDifference> key_differences(const Declaration& a, const Declaration& b);
+
+}  // namespace credence

@@ -1,0 +1,136 @@
+#pragma once
+// Room 9: the world contract: what a type provides so that its trials run through the engine, and are judged, stored,
+// reported and compared like those of the worlds that are here already. experiments/own_filter is an example.
+//
+// A world is a type W with
+//
+//   struct W::Settings { ... };
+//       a plain struct with its defaults: the scenario's settings, copyable. `poses` and what a scenario is called are
+//       not among them: every world has scenario.name, scenario.title, scenario.length_unit and scenario.poses.
+//   static constexpr const char* W::name
+//       letters, digits, _ and -: what `scenario.world` says in a scenario file.
+//   static void W::keys(OwnKeys<Settings>&)
+//       the keys of the scenario file, see OwnKeys.
+//   static std::vector<Component> W::components(const Settings&)
+//       name and unit of each component of the state, [n], n up to 1000. Names and units have no blanks.
+//   static std::vector<StateBlock> W::blocks(const Settings&)
+//       parts of the state that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway.
+//   static std::vector<std::string> W::arms(const Settings&)
+//       the filters that every trial runs under, with the same draws.
+//   static int W::innovation_rows(const Settings&)
+//       m, the most rows of an innovation; 0 where trials give none.
+//   static void W::run(const Settings&, OwnTrial& trial)
+//       one trial under trial.arm(): the truth, the measurements, the filter; trial.step(...) after each step. All
+//       randomness comes from trial.normal and trial.uniform; the same key is the same draw under every arm.
+// and, if it has use for them,
+//   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set
+//   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
+//
+// run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
+// draw from anywhere else: a block of trials is a pure function of scenario, root seed and index [docs/design.md]. Its
+// figures are the same bits on one machine for any number of threads; over machines they are so where its own
+// arithmetic is.
+
+#include <credence/error.hpp>
+#include <credence/own_keys.hpp>
+#include <credence/own_trial.hpp>
+
+#include <concepts>
+#include <utility>
+
+namespace credence {
+
+/// Whether W provides what is written above; where not, the compiler says what is missing.
+template <class W>
+constexpr bool meets_the_world_contract() {
+    static_assert(requires { typename W::Settings; }, "a world has a type Settings");
+    using Settings = typename W::Settings;
+    static_assert(std::default_initializable<Settings> && std::copyable<Settings>,
+                  "a world's Settings have defaults and can be copied");
+    static_assert(requires { { W::name } -> std::convertible_to<std::string>; }, "a world has a static name");
+    static_assert(requires(OwnKeys<Settings> keys) { W::keys(keys); }, "a world has static keys(OwnKeys<Settings>&)");
+    static_assert(requires(const Settings s) { { W::components(s) } -> std::same_as<std::vector<Component>>; },
+                  "a world has static components(const Settings&), a vector of Component");
+    static_assert(requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<StateBlock>>; },
+                  "a world has static blocks(const Settings&), a vector of StateBlock");
+    static_assert(requires(const Settings s) { { W::arms(s) } -> std::same_as<std::vector<std::string>>; },
+                  "a world has static arms(const Settings&), a vector of names");
+    static_assert(requires(const Settings s) { { W::innovation_rows(s) } -> std::convertible_to<int>; },
+                  "a world has static innovation_rows(const Settings&), a number");
+    static_assert(requires(const Settings s, OwnTrial& trial) { W::run(s, trial); },
+                  "a world has static run(const Settings&, OwnTrial&)");
+    return true;
+}
+
+/// A world of somebody's own as one of the worlds.
+template <class W>
+class OwnWorld : public World {
+    static_assert(meets_the_world_contract<W>());
+    using Settings = typename W::Settings;
+
+public:
+    OwnWorld() { W::keys(keys_); }
+
+    std::string name() const override { return W::name; }
+    std::vector<DescribedKey> keys() const override { return keys_.described(Settings()); }
+    std::unique_ptr<Draft> draft() const override { return std::make_unique<OwnDraft>(keys_); }
+    std::vector<Column> columns(const Declaration& scenario) const override {
+        return own_columns(scenario, report_of(settings_of(scenario)));
+    }
+    std::vector<Figure> figures(const Declaration& scenario) const override {
+        return own_figures(scenario, report_of(settings_of(scenario)));
+    }
+    std::unique_ptr<const Simulation> simulation(const Declaration& scenario) const override {
+        const Settings settings = settings_of(scenario);
+        return own_simulation(scenario, report_of(settings), [settings](OwnTrial& trial) { W::run(settings, trial); });
+    }
+
+private:
+    class OwnDraft : public Draft {
+    public:
+        explicit OwnDraft(const OwnKeys<Settings>& keys) : keys_(keys) {}
+        void set(const std::string& key, const std::string& value) override { keys_.set(basics_, settings_, key, value); }
+        Declaration declare() const override { return declared(keys_, basics_, settings_); }
+        const Settings& settings() const { return settings_; }
+
+    private:
+        const OwnKeys<Settings>& keys_;
+        OwnBasics basics_;
+        Settings settings_;
+    };
+
+    static Declaration declared(const OwnKeys<Settings>& keys, const OwnBasics& basics, const Settings& settings) {
+        if constexpr (requires { W::validate(settings); }) W::validate(settings);
+        Declaration scenario{W::name, basics.name, basics.title, basics.length_unit, basics.poses, {}, {}, {}, {}};
+        scenario.settings = keys.settings(W::name, basics, settings);
+        scenario.components = W::components(settings);
+        scenario.blocks = {{"all", 0, static_cast<int>(scenario.components.size())}};
+        for (StateBlock& block : W::blocks(settings)) scenario.blocks.push_back(std::move(block));
+        scenario.arms = W::arms(settings);
+        check_declared(scenario);
+        return scenario;
+    }
+
+    static OwnReport report_of(const Settings& settings) {
+        OwnReport report{{}, W::innovation_rows(settings)};
+        if constexpr (requires { W::columns(settings); }) report.columns = W::columns(settings);
+        return report;
+    }
+
+    Settings settings_of(const Declaration& scenario) const {
+        OwnDraft draft(keys_);
+        for (const auto& [key, value] : scenario.settings)
+            if (key != world_key) draft.set(key, value);
+        return draft.settings();
+    }
+
+    OwnKeys<Settings> keys_;
+};
+
+/// Adds W to the worlds that there are: in main, before anything else. Throws like add_world.
+template <class W>
+void add_own_world() {
+    add_world(std::make_unique<OwnWorld<W>>());
+}
+
+}  // namespace credence

@@ -1,0 +1,10 @@
+#pragma once
+// Room 14: the program credence as a function: with the worlds that were added before, `main` of somebody's own is two
+// lines.
+
+namespace credence {
+
+/// Runs the command line and returns the exit code.
+int program(int argc, char** argv);
+
+}  // namespace credence

@@ -1,0 +1,28 @@
+#pragma once
+// Room 8: what the trials of a SLAM scenario report: columns, figures, components and blocks of its state.
+
+#include <credence/record.hpp>
+#include <credence/scenario.hpp>
+
+namespace credence {
+
+/// all, pose, heading and position (heading model), features, feature_0 ...
+std::vector<StateBlock> state_blocks(const Scenario& scenario);
+
+/// The components of the state: theta, r_x, r_y, f0_x, f0_y ...
+std::vector<Component> state_components(const Scenario& scenario);
+
+/// Unit of trace(P): length^2, and in the heading model + rad^2.
+std::string trace_unit(const Scenario& scenario);
+
+/// Positions in the list of `trial_columns`.
+enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
+                   column_mean_trace_P, column_status, column_status_pose, column_count };
+
+/// The per-trial columns, in the order of ColumnIndex.
+std::vector<Column> trial_columns(const Scenario& scenario);
+
+/// The per-step figures, in the order in which trial.hpp writes them.
+std::vector<Figure> step_figures(const Scenario& scenario);
+
+}  // namespace credence

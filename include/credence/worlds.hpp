@@ -1,0 +1,71 @@
+#pragma once
+// Room 9: the worlds that there are, as engine, store and program see them. The one who writes a world of his own reads
+// own_world.hpp.
+
+#include <credence/batch.hpp>
+#include <credence/declaration.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Trials of one scenario, ready to run. Thread-safe.
+class Simulation {
+public:
+    virtual ~Simulation() = default;
+    virtual const SimulationShape& shape() const = 0;
+    /// Bytes that a batch of this arm needs as its workspace.
+    virtual std::size_t workspace_size(std::size_t arm) const = 0;
+    /// Simulates a batch of trials of the arm at that place in the scenario's list.
+    virtual void simulate(std::size_t arm, const Batch& batch) const = 0;
+};
+
+/// A scenario while its settings are read.
+class Draft {
+public:
+    virtual ~Draft() = default;
+    /// Throws InputError for an unknown key, or a value out of its range. `value` has no outer blanks.
+    virtual void set(const std::string& key, const std::string& value) = 0;
+    /// The resolved scenario. Throws InputError where keys contradict each other.
+    virtual Declaration declare() const = 0;
+};
+
+/// A key as `credence show` prints it.
+struct DescribedKey {
+    std::string key, value, help;         ///< its default, and what it means
+    std::vector<std::string> choices{};   ///< to offer; empty: any in range
+};
+
+/// A kind of world.
+class World {
+public:
+    virtual ~World() = default;
+    virtual std::string name() const = 0;
+    virtual std::vector<DescribedKey> keys() const = 0;
+    virtual std::unique_ptr<Draft> draft() const = 0;
+    /// What the trials and steps of a scenario report; the same for every arm.
+    virtual std::vector<Column> columns(const Declaration& scenario) const = 0;
+    virtual std::vector<Figure> figures(const Declaration& scenario) const = 0;
+    virtual std::unique_ptr<const Simulation> simulation(const Declaration& scenario) const = 0;
+};
+
+/// Adds a world to those that there are. Not thread-safe: before anything else. Throws InputError where there is one of
+/// that name.
+void add_world(std::unique_ptr<const World> world);
+
+/// All of them, the deformable one first.
+std::vector<const World*> all_worlds();
+
+/// The world of this name; nullptr where there is none.
+const World* find_world(const std::string& name);
+
+/// The same; throws InputError where there is none: the program that has it must be used.
+const World& world_of(const Declaration& scenario);
+
+/// The scenario made ready by its world. Throws like world_of.
+std::unique_ptr<const Simulation> simulation_of(const Declaration& scenario);
+
+}  // namespace credence

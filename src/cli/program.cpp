@@ -1,0 +1,126 @@
+// The program: its subcommands, and what becomes of errors.
+
+#include "command.hpp"
+#include "ranks.hpp"
+#include "version.hpp"
+
+#include <credence/error.hpp>
+#include <credence/program.hpp>
+#include <credence/simulate.hpp>
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+
+namespace {
+
+using namespace credence;
+
+/// A subcommand: how it describes itself, and its work.
+struct Subcommand {
+    const cli::Command& (*command)();
+    int (*work)(const cli::Parsed&, const std::string& command_line);
+};
+
+template <int (*work)(const cli::Parsed&)>
+int without_line(const cli::Parsed& parsed, const std::string&) {
+    return work(parsed);
+}
+
+const std::vector<Subcommand>& subcommands() {
+    static const std::vector<Subcommand> all{{cli::run_command, cli::run},
+                                             {cli::report_command, without_line<cli::report>},
+                                             {cli::judge_command, without_line<cli::judge>},
+                                             {cli::compare_command, without_line<cli::compare>},
+                                             {cli::replay_command, cli::replay},
+                                             {cli::merge_command, cli::merge},
+                                             {cli::watch_command, without_line<cli::watch>},
+                                             {cli::show_command, without_line<cli::show>},
+                                             {cli::completion_command, without_line<cli::completion>},
+                                             {cli::manual_command, without_line<cli::manual>}};
+    return all;
+}
+
+int help() {
+    std::cout << "credence: can a filter's covariance be believed, and does planning a path pay?\n\n"
+                 "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
+    for (const Subcommand& subcommand : subcommands()) {
+        const cli::Command& command = subcommand.command();
+        std::cout << "  " << command.name << std::string(12 - command.name.size(), ' ') << command.summary << "\n";
+    }
+    std::cout << "\n  --help      this\n  --version   the version and how it was built\n\nExit codes: ";
+    std::vector<std::string> codes;
+    for (const cli::ExitCode& exit : cli::exit_codes()) codes.push_back(std::to_string(exit.code) + " " + exit.meaning);
+    std::cout << joined(codes) << ".\n";
+    return 0;
+}
+
+/// The command line as it was given, quoted where a shell would need it.
+std::string command_line(int argc, char** argv) {
+    std::vector<std::string> words{"credence"};
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#!~") == std::string::npos;
+        words.push_back(plain ? word : "'" + word + "'");
+    }
+    return joined(words, " ");
+}
+
+std::vector<std::string> arguments(int argc, char** argv) { return {argv + std::min(argc, 2), argv + argc}; }
+
+/// One line on the error stream, whatever was given to the program.
+int complain(const std::string& message, int exit_code) {
+    std::cerr << printable(message, 1000) << "\n";
+    return exit_code;
+}
+
+int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
+    best_unit();  // refuses a bad CREDENCE_FORCE_UNIT before any work
+    std::vector<std::string> names{"--help", "--version"};
+    for (const Subcommand& subcommand : subcommands()) {
+        if (subcommand.command().name == name) {
+            const std::optional<cli::Parsed> parsed = cli::parse(subcommand.command(), arguments);
+            return parsed ? subcommand.work(*parsed, line) : 0;
+        }
+        names.push_back(subcommand.command().name);
+    }
+    const std::string meant = closest(name, names);
+    throw InputError("unknown command " + printable(name) + ". " +
+                     (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+}
+
+}  // namespace
+
+namespace credence {
+
+std::vector<const cli::Command*> cli::all_commands() {
+    std::vector<const Command*> commands;
+    for (const Subcommand& subcommand : subcommands()) commands.push_back(&subcommand.command());
+    return commands;
+}
+
+int program(int argc, char** argv) {
+    const std::string name = argc > 1 ? argv[1] : "--help";
+    const bool known = name != "--help" && name != "-h" && name != "--version" && !name.empty() && name.front() != '-';
+    const std::string prefix = known ? "credence " + name + ": " : "credence: ";
+    try {
+        if (name == "--help" || name == "-h" || name == "help") return help();
+        if (name == "--version") { std::cout << version_text(); return 0; }
+        const int code =
+            dispatch(name, arguments(argc, argv), command_line(argc, argv));
+        if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
+        return code;
+    } catch (const InputError& error) {
+        if (cli::follows_rank_0(name, arguments(argc, argv))) return 0;
+        return complain(prefix + error.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
+                                                : "out of memory. The file holds more than fits."),
+                        1);
+    } catch (const std::exception& error) {
+        return complain(prefix + error.what(), 1);
+    }
+}
+
+}  // namespace credence

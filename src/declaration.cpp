@@ -1,0 +1,51 @@
+#include <credence/declaration.hpp>
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+const Setting* find(const Declaration& scenario, const std::string& key) {
+    const auto found = std::find_if(scenario.settings.begin(), scenario.settings.end(),
+                                    [&](const Setting& setting) { return setting.key == key; });
+    return found == scenario.settings.end() ? nullptr : &*found;
+}
+
+std::string value_of(const Declaration& scenario, const std::string& key) {
+    const Setting* setting = find(scenario, key);
+    return setting ? setting->value : "";
+}
+
+}  // namespace
+
+std::string scenario_text(const Declaration& scenario) {
+    std::string text, section;
+    for (const auto& [key, value] : scenario.settings) {
+        const std::size_t dot = key.find('.');
+        if (key.substr(0, dot) != section) {
+            section = key.substr(0, dot);
+            text += (text.empty() ? "[" : "\n[") + section + "]\n";
+        }
+        text += key.substr(dot + 1) + " = " + value + "\n";
+    }
+    return text;
+}
+
+std::string controller_of(const std::string& arm) { return arm.substr(0, arm.find('.')); }
+
+std::vector<KeyDifference> key_differences(const Declaration& a, const Declaration& b) {
+    std::vector<KeyDifference> differences;
+    if (a.world != b.world) differences.push_back({world_key, a.world, b.world});
+    const auto note = [&](const std::string& key) {
+        if (key == world_key) return;
+        const std::string of_a = value_of(a, key), of_b = value_of(b, key);
+        if (of_a != of_b) differences.push_back({key, of_a, of_b});
+    };
+    for (const Setting& setting : a.settings) note(setting.key);
+    for (const Setting& setting : b.settings)
+        if (find(a, setting.key) == nullptr) note(setting.key);
+    return differences;
+}
+
+}  // namespace credence
