@@ -26,6 +26,18 @@ if grep -nE -- '-Werror|-Wall|-fsanitize|-march' "$package"/*.cmake; then echo "
 
 cmake -S "$source/tests/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/usr" >"$work/log" 2>&1 &&
   cmake --build consumer >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+cmake -S "$source/experiments/own_filter" -B own_filter -DCMAKE_PREFIX_PATH="$work/usr" >"$work/log" 2>&1 &&
+  cmake --build own_filter >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+own_filter/tracker run "$source/experiments/own_filter/tracker.ini" --trials 4000 --quiet -o tracker.h5
+# The program without that world says the same of the file, word for word.
+own_filter/tracker report tracker.h5 --format json >own.json
+$credence report tracker.h5 --format json >other.json
+cmp own.json other.json
+verdicts=$(grep -o '"verdict": *"[a-z]*"' own.json | tr -d ' "' | sort | uniq | tr '\n' ' ')
+[ "$verdicts" = "verdict:consistent verdict:optimistic " ] || { echo "the verdicts are $verdicts"; exit 1; }
+if $credence run --resume "$source/experiments/own_filter/tracker.ini" -o tracker.h5 2>refusal; then exit 1; fi
+grep -q 'scenario.world=tracker (this program has no such world)' refusal
+
 consumer/mean >means
 $credence run mine.ini --trials 256 --quiet -o mine.h5
 $credence report mine.h5 --format csv >report.csv
