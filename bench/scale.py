@@ -5,7 +5,7 @@ usage: scale.py [--credence build/credence] [--repeats 5] PART...
   cost    processor time of a million trials on one core, for each of the seed's scenarios, both arms
   sizes   bytes of journal and file of a million trials
   merge   time and memory of merging 1,000 shards, and of 100 shards of the same study
-  aggregates  time, memory, journal and file of 10^6 and of 10^7 trials that are kept, and of totals alone
+  aggregates  time, memory, journal and file of 10^6 trials that are kept, and of 10^6 and 10^7 of which totals are
   ranks   a study on one rank and on two of mpirun, one thread each, beside one process of one and of two threads
 Medians of the repeats; the spread is (largest - smallest) / median.
 """
@@ -86,14 +86,13 @@ def sizes(credence, repeats, folder):
 def aggregates(credence, repeats, folder):
     name, output = "kf-straight-constant", f"{folder}/x.h5"
     print(f"{name}, both arms, on all processors:")
-    for trials in (1_000_000, 10_000_000):
-        for keep in ("trials", "aggregates"):
-            wall, processor, memory, journal = watched(run(credence, [name], trials, output, "--keep", keep), output)
-            report = measured([credence, "report", output, "--format", "json"])
-            print(f"  {trials:9d} trials, keep {keep:10s}: {wall:.1f} s, processor {processor:.1f} s, {memory:.0f} MB of memory; "
-                  f"journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB; report: {report[1]:.1f} s "
-                  f"of processor, {report[2]:.0f} MB", flush=True)
-            os.remove(output)
+    for trials, keep in ((1_000_000, "trials"), (1_000_000, "aggregates"), (10_000_000, "aggregates")):
+        wall, processor, memory, journal = watched(run(credence, [name], trials, output, "--keep", keep), output)
+        report = measured([credence, "report", output, "--format", "json"])
+        print(f"  {trials:9d} trials, keep {keep:10s}: {wall:.1f} s, processor {processor:.1f} s, {memory:.0f} MB of memory; "
+              f"journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB; report: {report[1]:.1f} s of "
+              f"processor, {report[2]:.0f} MB", flush=True)
+        os.remove(output)
 
 
 def merge(credence, repeats, folder):
