@@ -86,7 +86,7 @@ Report make_report(const Study& study, double margin) {
     report.complete = study.complete;
     report.keep = keep_of(study);
     report.margin = margin;
-    report.pairs = planned_against_fixed(study);
+    report.pairs = planned_against_partners(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         for (const ArmResults& arm : results.arms)

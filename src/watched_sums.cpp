@@ -78,7 +78,7 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
         }
     }
     for (std::size_t a = 0; a < results.arms.size(); ++a)
-        if (const ArmResults* fixed = fixed_partner(results, results.arms[a])) {
+        if (const ArmResults* fixed = partner_of(results, results.arms[a])) {
             const auto partner = static_cast<std::size_t>(fixed - results.arms.data());
             sums.arms[a].difference = RunningMoments::of(paired_differences(trace[a], trace[partner]));
         }
@@ -93,7 +93,7 @@ WatchedSums sums_of_aggregates(const ScenarioResults& results) {
         sums.arms[a].diverged = arm.aggregates.statuses[static_cast<std::size_t>(Status::diverged)];
         for (const std::size_t index : watched_columns(results.columns))
             sums.arms[a].figures.push_back(running(arm.aggregates.columns[index]));
-        if (const ArmResults* fixed = fixed_partner(results, arm))
+        if (const ArmResults* fixed = partner_of(results, arm))
             sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, 0).difference);
     }
     return sums;
