@@ -12,7 +12,7 @@ import sys
 
 try:
     import credence_results as results
-    from pictures import study, style, trajectory, verdicts
+    from pictures import study, style, sweep, trajectory, verdicts
 except ImportError as missing:
     print(f"cannot draw: {missing}. Install python3-h5py, python3-scipy and python3-matplotlib "
           "(pip: h5py scipy matplotlib).", file=sys.stderr)
@@ -20,6 +20,7 @@ except ImportError as missing:
 
 STUDY_PICTURES = {"consistency": study.consistency, "distributions": study.distributions, "paired": study.paired,
                   "coverage": study.coverage}
+NEED_TRIALS = ("distributions", "paired")
 
 
 def parse_arguments(arguments):
@@ -65,10 +66,19 @@ def study_figures(scenario, report, width):
             print(f"no pictures of {scenario.name[1:]}: every trial of {name} failed.", file=sys.stderr)
             return
     for name, draw in STUDY_PICTURES.items():
+        if name in NEED_TRIALS and not results.keeps_trials(scenario):
+            continue
         if (figure := draw(scenario, width)) is not None:
             yield f"{scenario.name[1:]}-{name}", figure
     if report:
         yield f"{scenario.name[1:]}-blocks", verdicts.blocks(scenario, report)
+
+
+def grid_figures(file, width):
+    """(stem, figure) of each grid of a study."""
+    for grid in results.grids(file):
+        keys = "-".join(key.split(".")[-1] for key in grid.coordinates)
+        yield f"{grid.of}-{keys}-sweep", sweep.curves(file, grid, width)
 
 
 def trajectory_figures(scenario, ellipses, width):
@@ -79,21 +89,30 @@ def trajectory_figures(scenario, ellipses, width):
         yield f"{stem}-judged", trajectory.judged(arm)
 
 
+def save_all(figures, options):
+    for stem, figure in figures:
+        for path in style.save(figure, options.output, stem, options.vector):
+            print(path)
+
+
 def main(arguments):
     options = parse_arguments(arguments)
     try:
         with results.open_file(options.file) as file:
             scenarios = chosen_scenarios(file, options.scenario)
             is_study = results.kind(file) == results.STUDY
-            if is_study and not any(group["trial"].size for scenario in scenarios for group in scenario.values()):
+            if is_study and not any(results.trials(group) for scenario in scenarios for group in scenario.values()):
                 raise ValueError(f"{options.file} has no trials (an empty part of a study). Merge the parts first.")
-            report = report_of(options) if is_study else None
+            if is_study and not results.keeps_trials(file):
+                print(f"no pictures of {' and '.join(NEED_TRIALS)} differences: {options.file} keeps aggregates. They need "
+                      "the trials (credence run --keep trials).", file=sys.stderr)
+            if is_study and not options.scenario:  # a grid has curves; of its points those that are named
+                save_all(grid_figures(file, options.width), options)
+                scenarios = [scenario for scenario in scenarios if results.place(scenario) is None]
+            report = report_of(options) if is_study and scenarios else None
             for scenario in scenarios:
-                figures = (study_figures(scenario, report, options.width) if is_study
-                           else trajectory_figures(scenario, options.ellipses, options.width))
-                for stem, figure in figures:
-                    for path in style.save(figure, options.output, stem, options.vector):
-                        print(path)
+                save_all(study_figures(scenario, report, options.width) if is_study
+                         else trajectory_figures(scenario, options.ellipses, options.width), options)
     except ValueError as problem:
         print(problem, file=sys.stderr)
         return 2

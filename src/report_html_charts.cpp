@@ -90,13 +90,24 @@ Html chart_group(const std::string& head, const std::string& text, const Html& d
            drawings + "</div>\n"_html;
 }
 
-Html legend(const Part& part) {
+Html no_distributions(Keep keep) {
+    if (keep == Keep::trials) return {};
+    return element("p", escaped(std::string("No chart of how trials and pairs are spread: ") + no_trials_note)) + "\n"_html;
+}
+
+Html legend(const std::vector<std::string>& names) {
     const char* const shapes[] = {"●", "◆", "■", "▲"};
     Html items;
-    for (std::size_t i = 0; i < part.arms.size(); ++i)
+    for (std::size_t i = 0; i < names.size(); ++i)
         items += " <span><span aria-hidden=\"true\" class=\"k"_html + escaped(std::to_string(i % 4)) + "\">"_html +
-                 escaped(shapes[i % 4]) + "</span> "_html + escaped(part.arms[i]->arm) + "</span>"_html;
+                 escaped(shapes[i % 4]) + "</span> "_html + escaped(names[i]) + "</span>"_html;
     return element("p", items, "class=\"legend\""_html) + "\n"_html;
+}
+
+Html legend(const Part& part) {
+    std::vector<std::string> names;
+    for (const ArmReport* arm : part.arms) names.push_back(arm->arm);
+    return legend(names);
 }
 
 Html equivalence_chart(const Part& part) {
@@ -187,7 +198,8 @@ Html charts(const Part& part) {
                       chart_group("Differences of pairs",
                                   "Trial by trial, with the same draws. Left of 0 the first arm is lower. The mark is "
                                   "the mean with its 95 % interval.",
-                                  differences);
+                                  differences) +
+                      no_distributions(part.report.keep);
     return html.empty() ? html
                         : element("h3", "Charts"_html, "id=\""_html + escaped(part.id("charts")) + "\""_html) +
                               "\n<p>Values show where the pointer rests on a mark.</p>\n"_html + legend(part) + html;

@@ -4,6 +4,7 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -110,6 +111,15 @@ Json evidence_json(const Evidence& evidence) {
               {"credibility", credibility_json(evidence.credibility)}};
     if (!evidence.charts.empty()) json["other_charts"] = each_json(evidence.charts, chart_json);
     return json;
+}
+
+Json sweep_json(const SweepPoint& sweep) {
+    Json at;
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::optional<double> number = to_number(one.value);
+        at[one.key] = number && std::isfinite(*number) ? Json(*number) : Json(one.value);
+    }
+    return {{"of", sweep.of}, {"at", at}};
 }
 
 Json comparison_json(const Comparison& comparison) {

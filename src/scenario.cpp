@@ -27,9 +27,6 @@ bool plans_by_horizon(const Scenario& s) {
     return std::find(controllers.begin(), controllers.end(), Controller::horizon) != controllers.end();
 }
 
-/// Whether sigma^2 is a number that an inverse can be taken of.
-bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
-
 void check_sensor(const SensorSettings& sensor) {
     if (!(sensor.range_min < sensor.range_max))
         throw invalid_value("sensor.range_max", to_text(sensor.range_max),

@@ -12,13 +12,7 @@ namespace {
 using Keys = std::vector<ScenarioKey>;
 
 void add_scenario_keys(Keys& keys) {
-    keys.push_back(text_key("scenario.name", "letters, digits, _ and -; unique in a run; default the file's stem",
-                            [](auto& s) -> auto& { return s.name; }, is_name));
-    keys.push_back(text_key("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
-    keys.push_back(text_key("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
-                            [](auto& s) -> auto& { return s.length_unit; }, is_unit));
-    keys.push_back(integer_key("scenario.poses", "K, the first pose included", 2, largest_pose_count,
-                               [](auto& s) -> auto& { return s.poses; }));
+    add_common_keys(keys);
     keys.push_back(choice_key<Process>("model.process", {"heading", "translation"},
                                        [](auto& s) -> auto& { return s.process; }));
 }
@@ -177,15 +171,7 @@ const std::vector<ScenarioKey>& scenario_keys() {
 }
 
 void set_key(Scenario& scenario, const std::string& name, const std::string& value) {
-    std::vector<std::string> names;
-    for (const ScenarioKey& key : scenario_keys()) {
-        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
-        names.push_back(key.name);
-    }
-    const std::string meant = closest(name, names);
-    throw InputError("unknown key " + printable(name) + ". " +
-                         (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
-                     name);
+    set_one_of(scenario_keys(), scenario, name, value);
 }
 
 }  // namespace credence

@@ -8,6 +8,7 @@
 #include "durable_file.hpp"
 #include "hdf5_driver.hpp"
 #include "hdf5_write.hpp"
+#include "store_sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,7 @@ inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Declarati
     hdf5::write_text(group, "length_unit", scenario.length_unit);
     hdf5::write_text(group, "scenario", scenario_text(scenario));
     hdf5::write_text(group, "blocks", blocks_text(scenario.blocks));
+    write_sweep(group, scenario.sweep);
     return group;
 }
 
@@ -65,6 +67,14 @@ hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T f
     std::vector<T> values(count);
     for (T& value : values) value = first++;
     return hdf5::new_dimension(group, name, values, {long_name, "1"});
+}
+
+/// What the codes of a variable mean that are statuses.
+inline void write_status_flags(const hdf5::Handle& variable) {
+    std::vector<std::int8_t> codes;
+    for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
+    hdf5::write_numbers(variable, "flag_values", codes);
+    hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
 }
 
 /// What `units` says of a state, whose components differ in units where one is a heading.

@@ -29,6 +29,7 @@ run_make() {
 nearest() {
   local whole="filter_oracle_test keys_test"  # whole trials; they see the engine through support.cpp only
   case "$1" in
+    *sweep.cpp) echo sweep_test ;;
     *elementary.hpp | *real.hpp) echo elementary_test ;;
     *draws.hpp) echo draws_test draws_statistics_test ;;
     *world.hpp) echo world_test trial_test "$whole" ;;
@@ -37,13 +38,18 @@ nearest() {
     *belief.hpp | *update.hpp | *condition.hpp) echo filter_belief_test status_test "$whole" ;;
     *edges.hpp) echo evidence_test filter_belief_test ;;
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
+    *aggregates.cpp | *superaccumulator.hpp | *paired.cpp) echo aggregates_test ;;
+    *block_ranges.cpp) echo block_ranges_test ;;
     *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
     *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
+    *initialise.hpp | *landmark*) echo landmarks_test ;;
+    *estimator*.hpp | *ideal.hpp | *first_estimates.hpp | *right_invariant.hpp | *iterated.hpp)
+      echo estimators_test landmarks_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test evidence_test ;;
+    *lane.hpp | *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 

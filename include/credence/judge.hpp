@@ -156,7 +156,7 @@ CREDENCE_INLINE void add_by_block(const Layout& layout, const Real* square, Told
 
 /// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
-CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
+CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
                               const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
                               const Update<Real, state_capacity>& update, int k,
                               Elimination<Real, state_capacity>& work, Sums<Real>& sums, Outcome<Real>& outcome,

@@ -6,18 +6,31 @@
 
 namespace credence {
 
-/// What a trial reads: plain numbers and pointers into a Problem.
-struct ProblemView {
-    Process process = Process::heading;
+/// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
+Point polar(double s, double angle);
+
+/// The range in which a feature is seen, both ends included.
+void set_range(SensorParameters& sensor, double range_min, double range_max);
+
+/// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
+std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks);
+
+/// What a trial of any world of ours reads: plain numbers and pointers into its problem.
+struct CommonView {
     int poses = 0, features = 0, state_size = 0;
-    WorldParameters world;
     SensorParameters sensor;
     FilterParameters filter;
-    ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
     Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+};
+
+/// What a trial in the deforming world reads beside that.
+struct ProblemView : CommonView {
+    Process process = Process::heading;
+    WorldParameters world;
+    ControlParameters control;
 
     /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
     int steps_ahead(Controller controller, int k) const {
