@@ -5,17 +5,17 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh
+source experiments/planning/tables.sh
 build_program >&2
 trials=${1:-100000}
 out=results/planning
-cells=() labels=()
 
 # cell LABEL NAME SCENARIO.ini [section.key=value...]
 cell() {
   local label=$1 name=$2 scenario=$3
   shift 3
   study "$out/$name" "$trials" "$scenario" "$@"
-  cells+=("$name") labels+=("$label")
+  stems+=("$out/$name") labels+=("$label")
 }
 
 for process in kf ekf; do
@@ -31,33 +31,15 @@ done
 cell "ekf, circle, ranged, matched truth" matched experiments/planning/matched-circle.ini
 cell "the same, σ_head 0.05" matched-0.05 experiments/planning/matched-circle.ini noise.heading=0.05
 
-# table TITLE HEAD FUNCTION: a row for each cell.
-table() {
-  printf '\n%s\n\n| cell | %s |\n|---|%s|\n' "$1" "$2" "$(sed 's/[^|]\+/---/g' <<<"$2")"
-  local i
-  for i in "${!cells[@]}"; do
-    local csv=$out/${cells[i]}.csv process
-    process=$(awk -F, 'NR == 2 { sub(/.*\./, "", $2); print $2 }' "$csv")
-    printf '| %s %s|\n' "${labels[i]}" "$($3 "$csv" "fixed.$process" "greedy.$process")"
-  done
-}
-
 gains() {
   local figure
   printf '| %s | %s ' "$(interval "$1" "$2" trace_P)" "$(interval "$1" "$3" trace_P)"
   for figure in trace_P mean_trace_P unseen pose_error; do printf '| %s ' "$(interval "$1" "$3 - $2" $figure)"; done
 }
 
-credibility() {
-  local arm
-  for arm in "$2" "$3"; do
-    printf '| %s | %s | %s ' "$(interval "$1" "$arm" nees_per_dimension:all)" \
-      "$(interval "$1" "$arm" nees_per_dimension:pose)" "$(interval "$1" "$arm" rmse_ratio:all)"
-  done
-  printf '| %s | %s ' "$(verdict "$1" "$2")" "$(verdict "$1" "$3")"
-}
-
 table "What planning gains ($trials trials each; planned − fixed is by trial)" \
-  "trace(P) fixed | planned | planned − fixed | mean trace(P) over the steps, planned − fixed | unseen, planned − fixed | pose error, planned − fixed" gains
+  "cell | trace(P) fixed | planned | planned − fixed | mean trace(P) over the steps, planned − fixed | unseen, planned − fixed | pose error, planned − fixed" \
+  gains fixed greedy
 table "What it does to consistency" \
-  "fixed: NEES/dim all | pose | RMSE/σ | planned: NEES/dim all | pose | RMSE/σ | verdict fixed | planned" credibility
+  "cell | fixed: NEES/dim all | pose | RMSE/σ | planned: NEES/dim all | pose | RMSE/σ | verdict fixed | planned" \
+  credibility fixed greedy

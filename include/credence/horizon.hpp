@@ -30,8 +30,8 @@ Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity
                Belief<Real, capacity>* ahead, Real limit);
 
 /// Tells each candidate's least sum of trace(P) over `steps` > 1 steps, the candidate being the first of them:
-/// told(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` as for least_sum. A trace is
-/// positive: where the first one reaches the limit in all lanes, so does the sum, and the candidate is not told.
+/// told(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` as for least_sum. A covariance's
+/// trace is positive: where the first one reaches the limit in all lanes, so does the sum, and the candidate is not told.
 template <class Layout, class Real, int capacity, class Limit, class Told>
 void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                 Belief<Real, capacity>* ahead, const Limit& limit, Told&& told) {

@@ -28,8 +28,8 @@ void prepare_still(const Belief<Real, capacity>& belief, const FilterParameters&
     });
 }
 
-// Each form chooses from `work.still`. Whoever knows of something that costs `limit` gives it: a choice is exact where
-// it costs no more than that, or as good as no more; where it costs more, it costs more than that in any case.
+// Each form chooses from `work.still`. Whoever knows of something that costs `limit` says so: a choice that costs no more,
+// or so little more that the tie rule takes it for equal, is exact; of a dearer one it is only certain that it is dearer.
 
 /// By screening, then deciding in the space of the measurements.
 template <bool ranged, class Layout, class Real>
