@@ -147,11 +147,11 @@ def as_dataset(file, grid, columns=("trace_P", "pose_error", "nees_ratio", "nis_
 
 
 def setting(scenario_group, section, key):
-    """A key of the scenario, as text."""
+    """A key of the scenario, as text; empty where its world has none of that name."""
     parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
     parser.optionxform = str
     parser.read_string(text(scenario_group, "scenario"))
-    return parser[section][key]
+    return parser.get(section, key, fallback="")
 
 
 def published(scenario_group, column_name):

@@ -35,10 +35,11 @@ without(include/credence/update.hpp
   "    update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone)" "    (void)0"
   "    update.nis_features = update.nis" "    (void)0")
 # What is left: NEES by block, NIS, its rows, trace(P).
-without(src/simulate_unit.cpp
+without(include/credence/simulate_batch.hpp
   "problem.figure_count" "(problem.block_count + 3)"
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
 
 credence_unit(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
-set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES ${bare_folder}/include SOURCES ${bare_folder}/src/simulate_unit.cpp)
+set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES ${bare_folder}/include SOURCES
+  "${PROJECT_SOURCE_DIR}/src/simulate_unit.cpp;${PROJECT_SOURCE_DIR}/src/simulate_landmarks_unit.cpp")
 target_compile_options(credence_unit_bare PRIVATE -Wno-unused-but-set-variable)

@@ -28,12 +28,6 @@ double greatest_square(double range) {
     return s;
 }
 
-/// s (cos angle, sin angle)
-Point polar(double s, double angle) {
-    const Rotation<double> r = rotation(angle);
-    return {s * r.cosine, s * r.sine};
-}
-
 double squared(double x) { return x * x; }
 
 /// phi_k = delta/2 + k delta, the direction in which the features leave pose k on the circle.
@@ -61,6 +55,25 @@ Control fixed_control(const Scenario& s, int k) {
 }
 
 }  // namespace
+
+Point polar(double s, double angle) {
+    const Rotation<double> r = rotation(angle);
+    return {s * r.cosine, s * r.sine};
+}
+
+void set_range(SensorParameters& sensor, double range_min, double range_max) {
+    sensor.range_min = range_min;
+    sensor.range_max = range_max;
+    sensor.squared_range_min = least_square(range_min);
+    sensor.squared_range_max = greatest_square(range_max);
+}
+
+std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks) {
+    std::vector<double> bounds;
+    for (const StateBlock& block : blocks)
+        for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, block.count));
+    return bounds;
+}
 
 std::vector<Point> feature_translations(const Scenario& s) {
     std::vector<Point> translations;
@@ -120,11 +133,10 @@ Problem::Problem(const Scenario& resolved_scenario)
     view_.state_size = state_size(scenario_);
     const std::vector<StateBlock> blocks = state_blocks(scenario_);
     view_.block_count = static_cast<int>(blocks.size());
-    for (const StateBlock& block : blocks)
-        for (const double level : coverage_levels)
-            coverage_bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    coverage_bounds_ = coverage_bounds(blocks);
     view_.coverage_bounds = coverage_bounds_.data();
     view_.figure_count = static_cast<int>(step_figures(scenario_).size());
+    view_.charts = charts_of(scenario_);
     fill_world();
     fill_filter();
     fill_control();
@@ -180,10 +192,7 @@ void Problem::fill_world() {
 
     const SensorSettings& settings = scenario_.sensor;
     SensorParameters& sensor = view_.sensor;
-    sensor.range_min = settings.range_min;
-    sensor.range_max = settings.range_max;
-    sensor.squared_range_min = least_square(settings.range_min);
-    sensor.squared_range_max = greatest_square(settings.range_max);
+    set_range(sensor, settings.range_min, settings.range_max);
     sensor.noise = settings.noise;
     sensor.sigma = settings.sigma;
     sensor.sigma_near = settings.sigma_near;
@@ -216,6 +225,7 @@ void Problem::fill_control() {
     view_.control.fixed = fixed_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
+    view_.control.horizon = *scenario_.planner.horizon;
 }
 
 }  // namespace credence

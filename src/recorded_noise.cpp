@@ -17,7 +17,8 @@ Vector2<double> RecordedDraws::normal(Source source, int pose, int index) const 
         case Source::deformation: return pair(record.deformation, pose, record.features, index);
         case Source::measurement: return pair(record.measurement, pose, record.features, index);
         case Source::edge: return pair(record.edge, pose, record.edges, index);
-        case Source::detection: break;
+        case Source::detection:
+        case Source::landmark_prior: break;  // a record has none of these
     }
     return {};
 }

@@ -85,6 +85,12 @@ public:
 
     std::string text() {
         for (const BlockEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const ChartEvidence& chart : arm_.evidence.charts) {
+            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
+            add_moments(name, chart.run);
+            for (std::size_t k = 0; k < chart.step.size(); ++k)
+                add_moments(name + ":" + std::to_string(k + 1), chart.step[k]);
+        }
         for (const NisEvidence& nis : arm_.evidence.nis) {
             add("nis_per_row:" + nis.part, nis.ratio, nan, nis.ratio95);
             add_steps("nis_per_row:" + nis.part, nis.nis.ratio, nis.nis.simultaneous_band);

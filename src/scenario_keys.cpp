@@ -12,13 +12,7 @@ namespace {
 using Keys = std::vector<ScenarioKey>;
 
 void add_scenario_keys(Keys& keys) {
-    keys.push_back(text_key("scenario.name", "letters, digits, _ and -; unique in a run; default the file's stem",
-                            [](auto& s) -> auto& { return s.name; }, is_name));
-    keys.push_back(text_key("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
-    keys.push_back(text_key("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
-                            [](auto& s) -> auto& { return s.length_unit; }, is_unit));
-    keys.push_back(integer_key("scenario.poses", "K, the first pose included", 2, largest_pose_count,
-                               [](auto& s) -> auto& { return s.poses; }));
+    add_common_keys(keys);
     keys.push_back(choice_key<Process>("model.process", {"heading", "translation"},
                                        [](auto& s) -> auto& { return s.process; }));
 }
@@ -122,9 +116,17 @@ void add_control_keys(Keys& keys) {
                     "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
                     [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
                     [](const Scenario& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
-    keys.push_back(integer_key("planner.horizon", "steps planned ahead: 1", 1, 1,
-                               [](auto& s) -> auto& { return s.planner.horizon; }));
-    keys.push_back({"arms.controllers", "fixed, greedy",
+    keys.push_back(
+        {"planner.horizon",
+         "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
+         [](Scenario& s, const std::string& v) {
+             s.planner.horizon.reset();
+             if (v != "default")
+                 s.planner.horizon = static_cast<int>(parse_integer("planner.horizon", v, 1, largest_horizon));
+         },
+         [](const Scenario& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
+         {"default"}});
+    keys.push_back({"arms.controllers", "any of " + joined(controller_names()),
                     [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
                     [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
                     controller_names()});
@@ -169,15 +171,7 @@ const std::vector<ScenarioKey>& scenario_keys() {
 }
 
 void set_key(Scenario& scenario, const std::string& name, const std::string& value) {
-    std::vector<std::string> names;
-    for (const ScenarioKey& key : scenario_keys()) {
-        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
-        names.push_back(key.name);
-    }
-    const std::string meant = closest(name, names);
-    throw InputError("unknown key " + printable(name) + ". " +
-                         (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
-                     name);
+    set_one_of(scenario_keys(), scenario, name, value);
 }
 
 }  // namespace credence

@@ -23,6 +23,9 @@ inline Range above(double low) { return {low, largest_value, false, false}; }
 inline Range above_or_infinite(double low) { return {low, largest_value, false, true}; }
 inline Range between(double low, double high) { return {low, high, true, false}; }
 
+/// Whether sigma^2 is a number that an inverse can be taken of.
+inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
+
 double parse_real(const std::string& name, const std::string& value, const Range& range);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
@@ -58,17 +61,17 @@ std::string names_text(const std::vector<Enum>& values, const std::vector<std::s
 
 // A key of one field. `field` gives the field of a scenario, constant or not, as a reference.
 
-template <class Field>
-ScenarioKey real_key(const std::string& name, const std::string& help, const Range& range, Field field) {
-    return {name, help, [=](Scenario& s, const std::string& v) { field(s) = parse_real(name, v, range); },
-            [=](const Scenario& s) { return to_text(field(s)); }};
+template <class S = Scenario, class Field>
+KeyOf<S> real_key(const std::string& name, const std::string& help, const Range& range, Field field) {
+    return {name, help, [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
+            [=](const S& s) { return to_text(field(s)); }};
 }
 
-template <class Field>
-ScenarioKey integer_key(const std::string& name, const std::string& help, int low, int high, Field field) {
+template <class S = Scenario, class Field>
+KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, int high, Field field) {
     return {name, help,
-            [=](Scenario& s, const std::string& v) { field(s) = static_cast<int>(parse_integer(name, v, low, high)); },
-            [=](const Scenario& s) { return std::to_string(field(s)); }};
+            [=](S& s, const std::string& v) { field(s) = static_cast<int>(parse_integer(name, v, low, high)); },
+            [=](const S& s) { return std::to_string(field(s)); }};
 }
 
 template <class Enum, class Field>
@@ -78,15 +81,41 @@ ScenarioKey choice_key(const std::string& name, const std::vector<std::string>& 
             [=](const Scenario& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
 }
 
-template <class Field, class Check>
-ScenarioKey text_key(const std::string& name, const std::string& help, Field field, Check refusal) {
+template <class S = Scenario, class Field, class Check>
+KeyOf<S> text_key(const std::string& name, const std::string& help, Field field, Check refusal) {
     return {name, help,
-            [=](Scenario& s, const std::string& v) {
+            [=](S& s, const std::string& v) {
                 const std::string why = refusal(v);
                 if (!why.empty()) throw invalid_value(name, v, why, "Give another text");
                 field(s) = v;
             },
-            [=](const Scenario& s) { return field(s); }};
+            [=](const S& s) { return field(s); }};
+}
+
+/// The keys that scenarios of every world of ours have.
+template <class S>
+void add_common_keys(std::vector<KeyOf<S>>& keys) {
+    keys.push_back(text_key<S>("scenario.name", "letters, digits, _ and -; unique in a run; default the file's stem",
+                               [](auto& s) -> auto& { return s.name; }, is_name));
+    keys.push_back(text_key<S>("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
+    keys.push_back(text_key<S>("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
+                               [](auto& s) -> auto& { return s.length_unit; }, is_unit));
+    keys.push_back(integer_key<S>("scenario.poses", "K, the first pose included", 2, largest_pose_count,
+                                  [](auto& s) -> auto& { return s.poses; }));
+}
+
+/// Sets one of these keys [scenario_keys.hpp, set_key].
+template <class S>
+void set_one_of(const std::vector<KeyOf<S>>& keys, S& scenario, const std::string& name, const std::string& value) {
+    std::vector<std::string> names;
+    for (const KeyOf<S>& key : keys) {
+        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
+        names.push_back(key.name);
+    }
+    const std::string meant = closest(name, names);
+    throw InputError("unknown key " + printable(name) + ". " +
+                         (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
+                     name);
 }
 
 }  // namespace credence

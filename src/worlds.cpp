@@ -2,6 +2,7 @@
 
 #include <credence/deformable.hpp>
 #include <credence/error.hpp>
+#include <credence/landmarks.hpp>
 #include <credence/text.hpp>
 
 namespace credence {
@@ -12,6 +13,7 @@ std::vector<std::unique_ptr<const World>>& registry() {
     static std::vector<std::unique_ptr<const World>> all = [] {
         std::vector<std::unique_ptr<const World>> known;
         known.push_back(deformable_world());
+        known.push_back(landmark_world());
         return known;
     }();
     return all;

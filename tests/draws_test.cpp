@@ -21,7 +21,7 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr Source all_sources[] = {Source::odometry_heading, Source::odometry_position, Source::walk, Source::deformation,
-                                  Source::measurement, Source::edge, Source::detection};
+                                  Source::measurement, Source::edge, Source::detection, Source::landmark_prior};
 
 /// The four words that belong to a key, by Random123 and the counter's documented layout.
 philox4x32_ctr_t reference_words(std::uint64_t seed, std::uint64_t trial, int pose, Source source, int index, int attempt) {
@@ -85,7 +85,7 @@ TEST_CASE("draws: uniforms are 52 bits of the words of their key, bit for bit") 
     for (int i = 0; i < 5000; ++i) {
         const std::uint64_t seed = random(), trial = random();
         const int pose = static_cast<int>(random() % 100000), index = static_cast<int>(random() % 65536);
-        const Source source = all_sources[random() % 7];
+        const Source source = all_sources[random() % std::size(all_sources)];
         const philox4x32_ctr_t words = reference_words(seed, trial, pose, source, index, 0);
         REQUIRE(KeyedDraws<double>(seed, trial, never).uniform(source, pose, index) == fraction(words[0], words[1]));
     }
@@ -96,7 +96,7 @@ TEST_CASE("draws: normals are Box and Muller's of the words of their key") {
     for (int i = 0; i < 20000; ++i) {
         const std::uint64_t seed = random(), trial = random() % 100000;
         const int pose = static_cast<int>(random() % 20), index = static_cast<int>(random() % 3);
-        const Source source = all_sources[random() % 7];
+        const Source source = all_sources[random() % std::size(all_sources)];
         // The C library's log, sqrt, sin and cos and ours err by a few ulp of at most 8.5.
         REQUIRE(distance(KeyedDraws<double>(seed, trial, never).normal(source, pose, index),
                          reference_normal(seed, trial, pose, source, index, 0)) < 2e-14);

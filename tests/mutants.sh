@@ -40,10 +40,14 @@ nearest() {
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
     *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
+    *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
+    *initialise.hpp | *landmark*) echo landmarks_test ;;
+    *estimator*.hpp | *ideal.hpp | *first_estimates.hpp | *right_invariant.hpp | *iterated.hpp)
+      echo estimators_test landmarks_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *Makefile) echo block_test evidence_test ;;
+    *lane.hpp | *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 

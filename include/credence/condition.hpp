@@ -60,6 +60,7 @@ template <class Real, int capacity>
 struct Update {
     Real correction[capacity];
     Real nis{}, nis_features{}, nis_edges{}, rows{}, unseen{};
+    Real unsettled{};                ///< 1 where an iterated update had not come to rest, else 0
     Mask<Real> positive_definite{};  ///< every S was
     Elimination<Real, capacity> alone;  ///< room for nis_edges
 };

@@ -4,7 +4,7 @@
 //
 //   nu~ = L^-1 nu, S = L L', rows features (body frame) then edges in graph order
 
-#include <credence/trial.hpp>
+#include <credence/judge.hpp>
 
 namespace credence {
 
@@ -48,7 +48,7 @@ template <class Layout, class Real>
 class Detail {
 public:
     bool on = false;
-    const ProblemView* problem = nullptr;
+    const CommonView* problem = nullptr;
     Real* errors = nullptr;           ///< [n, K - 1] x^ - x after the updates
     Real product_sum[largest_lag];    ///< [lag - 1] sum over poses and rows of nu~_k nu~_{k + lag}
     Real product_count[largest_lag];  ///< [lag - 1]
@@ -101,6 +101,9 @@ private:
         update_.positive_definite = all_lanes<Real>();
         for (int j = 0; j < features; ++j) {
             const Sighting<Real>& sighting = sightings[j];
+            now.observed[j] = Real(0);
+            now.pair[j] = {Real(0), Real(0)};
+            if (!any(sighting.seen)) continue;
             const auto [rows, innovation] = linearised(j, sighting);
             now.observed[j] = select(sighting.seen, Real(1), Real(0));
             now.pair[j] = take(layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,

@@ -20,6 +20,7 @@ enum class Source : std::uint32_t {
     measurement = 4,        ///< by feature; at pose 0 the initial estimate
     edge = 5,               ///< by edge in graph order
     detection = 6,          ///< by feature, uniform
+    landmark_prior = 7,     ///< by landmark: what is believed of it before it is seen
 };
 
 /// What one of a pose's draws is for.

@@ -15,12 +15,16 @@
 //               const Linearisation&, Update&)
 //       the predicted belief becomes the updated one; `update` gets the correction, the NIS of the first linearisation,
 //       its rows, and whether every S was positive definite.
+//   void initialise(Belief&, const FilterParameters&, const Layout&, int j, const Sighting<Real>&, const Truth&)
+//       after the update, feature j enters the belief where it is seen for the first time, in place of whatever was
+//       believed of it; in a world where features are not all known from the start, and with a heading.
 //
 // Shapes, units and frames are those of filter.hpp and update.hpp. The truth is that of pose k: an estimator that looks
 // at it cannot be had in the world, and says so. An estimator must not draw, must not branch on a Real (several trials
 // run at once), and writes nothing but the belief, the update and itself. What the judge takes as its error is
 // x^ - x, heading wrapped [judge.hpp], whatever chart its own mathematics live in.
 
+#include <credence/initialise.hpp>
 #include <credence/update.hpp>
 
 #include <type_traits>
@@ -52,6 +56,13 @@ struct KalmanFilter {
                 Update<Real, Layout::capacity>& update) {
         update_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
     }
+
+    void initialise(State& belief, const FilterParameters& filter, const Layout& layout, int j,
+                    const Sighting<Real>& sighting, const World&) {
+        const Vector2<Real> position = point_at(belief.mean, Layout::position);
+        initialise_feature(belief, filter, layout, j, sighting,
+                           [&](const Vector2<Real>& place) { return place - position; });
+    }
 };
 
 /// Whether E provides what is written above; where not, the compiler says what is missing.
@@ -80,6 +91,10 @@ constexpr bool meets_the_contract() {
                            Update<Real, Layout::capacity> update) {
         e.update(state, filter, layout, sightings, edge, e.linearised(state, layout, world), update);
     }, "an estimator has update(belief, filter, layout, sightings, edge_measurement, linearised, update)");
+    static_assert(requires(E e, State state, const FilterParameters filter, const Layout layout, const World world,
+                           const Sighting<Real> sighting) {
+        e.initialise(state, filter, layout, 0, sighting, world);
+    }, "an estimator has initialise(belief, filter, layout, j, sighting, truth)");
     return true;
 }
 

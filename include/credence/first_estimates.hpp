@@ -25,8 +25,8 @@ struct AtFirstEstimates {
 };
 
 /// F[r, theta] = J (r^-_k - r^-_{k-1}), the predicted positions of both poses. A feature that does not walk is one
-/// variable: its first estimate is that of pose 0, carried along with its known motion. One that walks is a new variable
-/// at every pose, whose first estimate is the predicted one.
+/// variable: its first estimate is the one that it entered with, carried along with its known motion. One that walks is
+/// a new variable at every pose, whose first estimate is the predicted one.
 template <class Layout, class Real>
 struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;
@@ -56,8 +56,16 @@ struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
         return {predicted.mean, first_};
     }
 
+    void initialise(State& belief, const FilterParameters& filter, const Layout& layout, int j,
+                    const Sighting<Real>& sighting, const World&) {
+        initialise_feature(belief, filter, layout, j, sighting, [&](const Vector2<Real>& place) {
+            first_[j] = place;
+            return place - position_;
+        });
+    }
+
 private:
-    Vector2<Real> position_;                         ///< r^-, predicted, of the pose before
+    Vector2<Real> position_;                         ///< r^-, predicted, of the last pose that was predicted
     Vector2<Real> first_[Layout::feature_capacity];  ///< first estimates of the features, of this pose
 };
 

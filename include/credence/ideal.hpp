@@ -48,6 +48,12 @@ struct IdealFilter : KalmanFilter<Layout, Real> {
         return {predicted.mean, truth};
     }
 
+    void initialise(State& belief, const FilterParameters& filter, const Layout& layout, int j,
+                    const Sighting<Real>& sighting, const World& truth) {
+        initialise_feature(belief, filter, layout, j, sighting,
+                           [&](const Vector2<Real>&) { return truth.feature[j] - truth.position; });
+    }
+
 private:
     Vector2<Real> position_;  ///< true, of the pose before
 };

@@ -11,6 +11,10 @@ inline namespace CREDENCE_UNIT {
 /// world.
 inline constexpr int iterated_passes = 8;
 
+/// An update has come to rest where its last pass moved no component of the mean by more than this share of its standard
+/// deviation.
+inline constexpr double settled_share = 0.01;
+
 /// Linearises sightings at x^- + delta. The innovation is z - h(x^- + delta) + H delta, about the predicted mean.
 template <class Layout, class Real>
 struct AtIterate {
@@ -48,13 +52,24 @@ struct FilterOfPasses : KalmanFilter<Layout, Real> {
                              AtIterate<Layout, Real>(belief.mean, delta_), update);
         }
         for (int i = 0; i < n; ++i) belief.mean[i] = belief.mean[i] + update.correction[i];
+        if constexpr (passes > 1) update.unsettled = unsettled(belief.covariance, n, update.correction);
         update.nis = nis;
         update.nis_features = nis_features;
     }
 
 private:
+    /// 1 where the last pass moved a component by more than settled_share of its standard deviation, or to no number.
+    Real unsettled(const Symmetric<Real, Layout::capacity>& P, int n, const Real* correction) const {
+        Mask<Real> settled = all_lanes<Real>();
+        for (int i = 0; i < n; ++i) {
+            const Real moved = correction[i] - delta_[i];
+            settled = both(settled, moved * moved <= Real(settled_share * settled_share) * P.entry[i][i]);
+        }
+        return select(settled, Real(0), Real(1));
+    }
+
     Symmetric<Real, Layout::capacity> predicted_;  ///< P^-
-    Real delta_[Layout::capacity];
+    Real delta_[Layout::capacity];                 ///< the correction of the pass before
 };
 
 template <class Layout, class Real>

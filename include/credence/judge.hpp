@@ -3,6 +3,7 @@
 //
 //   e  error x^ - x [n], P  covariance [n, n]; NEES e' P^-1 e of the whole state and of each block, with its own P
 
+#include <credence/invariant_chart.hpp>
 #include <credence/problem.hpp>
 
 namespace credence {
@@ -155,7 +156,7 @@ CREDENCE_INLINE void add_by_block(const Layout& layout, const Real* square, Told
 
 /// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
-CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
+CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
                               const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
                               const Update<Real, state_capacity>& update, int k,
                               Elimination<Real, state_capacity>& work, Sums<Real>& sums, Outcome<Real>& outcome,
@@ -188,6 +189,12 @@ CREDENCE_FLAT void judge_step(const ProblemView& problem, const Layout& layout,
     add_by_block(layout, square, write);
     const Real inverse_root = Real(1 / __builtin_sqrt(reported));
     each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
+    if constexpr (Layout::has_heading)
+        if (problem.charts == Charts::euclidean_and_invariant) {
+            const InvariantNees<Real> nees = nees_in_invariant_chart(belief, layout, error, work);
+            write(nees.all * Real(1 / reported));
+            write(nees.pose * Real(1 / reported));
+        }
 
     sums.nees = sums.nees + whole;
     sums.nis = sums.nis + update.nis;

@@ -1,22 +1,42 @@
 #pragma once
 // Room 8: a scenario made ready: the tables that its equations read, computed once.
 
-#include <credence/planner.hpp>
+#include <credence/horizon.hpp>
 #include <credence/slam_record.hpp>
 
 namespace credence {
 
-/// What a trial reads: plain numbers and pointers into a Problem.
-struct ProblemView {
-    Process process = Process::heading;
+/// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
+Point polar(double s, double angle);
+
+/// The range in which a feature is seen, both ends included.
+void set_range(SensorParameters& sensor, double range_min, double range_max);
+
+/// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
+std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks);
+
+/// What a trial of any world of ours reads: plain numbers and pointers into its problem.
+struct CommonView {
     int poses = 0, features = 0, state_size = 0;
-    WorldParameters world;
     SensorParameters sensor;
     FilterParameters filter;
-    ControlParameters control;
     int block_count = 0;
     int figure_count = 0;
+    Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+
+    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    int steps_ahead(Controller controller, int k) const {
+        if (controller != Controller::horizon) return 1;
+        return control.horizon < poses - k ? control.horizon : poses - k;
+    }
+};
+
+/// What a trial in the deforming world reads beside that.
+struct ProblemView : CommonView {
+    Process process = Process::heading;
+    WorldParameters world;
+    ControlParameters control;
 };
 
 /// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
@@ -52,7 +72,7 @@ std::vector<Point> feature_translations(const Scenario& scenario);
 std::vector<Point> sway_offsets(const Scenario& scenario);
 /// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
 std::vector<Control> fixed_controls(const Scenario& scenario);
-/// The greedy planner's candidates in the order that decides ties [model.md, Controllers].
+/// The planners' candidates in the order that decides ties [model.md, Controllers].
 std::vector<Control> planner_candidates(const Scenario& scenario);
 
 }  // namespace credence

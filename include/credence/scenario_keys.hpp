@@ -10,14 +10,16 @@
 
 namespace credence {
 
-/// One key `section.name` of a scenario.
-struct ScenarioKey {
+/// One key `section.name` of a scenario that is a plain struct.
+template <class Settings>
+struct KeyOf {
     std::string name;     ///< section.key
     std::string help;     ///< one line: meaning, unit, choices
-    std::function<void(Scenario&, const std::string&)> set;  ///< throws InputError where the value is not in range
-    std::function<std::string(const Scenario&)> get;         ///< text that `set` reads back to the same value
+    std::function<void(Settings&, const std::string&)> set;  ///< throws InputError where the value is not in range
+    std::function<std::string(const Settings&)> get;         ///< text that `set` reads back to the same value
     std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
 };
+using ScenarioKey = KeyOf<Scenario>;
 
 /// All keys, grouped by section, in the order in which they are shown.
 const std::vector<ScenarioKey>& scenario_keys();

@@ -2,6 +2,7 @@
 // Room 9: the door between the engine and the units: the same source, compiled once for each instruction set.
 
 #include <credence/batch.hpp>
+#include <credence/landmark_problem.hpp>
 #include <credence/problem.hpp>
 
 #include <cstddef>
@@ -18,15 +19,21 @@ struct Unit {
     int lanes = 1;
     SimulateFunction simulate = nullptr;
     std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
+    void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
+    std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
 };
 
-/// What a unit compiled from src/simulate_unit.cpp offers under its name, and its entry in a list of units.
+/// What a unit compiled from src/simulate_unit.cpp and src/simulate_landmarks_unit.cpp offers under its name, and its
+/// entry in a list of units.
 #define CREDENCE_DECLARE_UNIT(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
     std::size_t workspace_size(const ProblemView&, Estimator); \
+    void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
+    std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
     }
-#define CREDENCE_LIST_UNIT(name, lanes) Unit{#name, lanes, name::simulate, name::workspace_size}
+#define CREDENCE_LIST_UNIT(name, lanes) \
+    Unit{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
 
 /// Environment variable that names the unit to run, for tests.
 inline constexpr const char* force_unit_variable = "CREDENCE_FORCE_UNIT";

@@ -14,13 +14,15 @@ void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& fi
                       const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                       const Linearisation& linearised, Update<Real, capacity>& update) {
     const auto n = layout.size();
-    update.nis = update.unseen = Real(0);
+    update.nis = update.nis_edges = update.unseen = update.unsettled = Real(0);
     update.rows = Real(2 * filter.edge_count);
     update.positive_definite = all_lanes<Real>();
     each(zero, n, [&](auto i) { update.correction[i] = Real(0); });
     ContrastInnovations<Layout, Real> contrasts;
-    contrast_innovations(belief, filter, layout, edge_measurement, contrasts);
-    update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone);
+    if (filter.edge_count > 0) {
+        contrast_innovations(belief, filter, layout, edge_measurement, contrasts);
+        update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone);
+    }
 
     each(zero, layout.features(), [&](auto j) {
         const Sighting<Real>& sighting = sightings[j];
@@ -32,7 +34,7 @@ void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& fi
                 update);
     });
     update.nis_features = update.nis;
-    take_in_edges(belief, filter, layout, contrasts, update);
+    if (filter.edge_count > 0) take_in_edges(belief, filter, layout, contrasts, update);
 }
 
 /// Updates a predicted belief: x <- x + K nu, P <- P - K S K'.

@@ -6,6 +6,7 @@
 #include <bit>
 #include <credence/deformable.hpp>
 #include <credence/error.hpp>
+#include <credence/landmarks.hpp>
 #include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
 #include <cstdio>
@@ -94,13 +95,16 @@ Scenario scenario_of(const World& world) {
     return scenario;
 }
 
-/// The lines of one world, an arm each.
-std::vector<std::string> lines(const Problem& problem, const Unit& unit) {
-    const Block block = run_block(problem, root_seed, block_index, trials, unit);
-    const Block details = run_block(problem, root_seed, 0, detailed_count, unit);
-    const std::vector<Arm> arms = arms_of(problem.scenario());
+/// The lines of one scenario, an arm each. `simulation(unit)` runs it.
+template <class SimulationOn>
+std::vector<std::string> lines(const Declaration& scenario, const SimulationOn& simulation, const Unit& unit) {
+    const auto on_unit = simulation(unit);
+    const std::vector<Column> columns = world_of(scenario).columns(scenario);
+    const std::size_t arms = scenario.arms.size();
+    const Block block = run_block(on_unit, columns, arms, root_seed, block_index, trials);
+    const Block details = run_block(on_unit, columns, arms, root_seed, 0, detailed_count);
     std::vector<std::string> lines;
-    for (std::size_t a = 0; a < arms.size(); ++a) {
+    for (std::size_t a = 0; a < arms; ++a) {
         const ArmBlock& arm = block.arms[a];
         Digest digest;
         for (const auto* values : {&arm.columns, &arm.sums, &arm.square_sums, &arm.run_square_sums})
@@ -114,28 +118,39 @@ std::vector<std::string> lines(const Problem& problem, const Unit& unit) {
             digest.add(*values);
         char text[100];
         std::snprintf(text, sizeof text, " %d %016llx", arm.counted, static_cast<unsigned long long>(digest.value()));
-        lines.push_back(problem.scenario().name + " " + arm_name(arms[a]) + text);
+        lines.push_back(scenario.name + " " + scenario.arms[a] + text);
     }
     return lines;
 }
 
-/// Prints every line as the first unit has it, and on the error stream those that another unit has otherwise.
+/// Prints every line of a scenario as the first unit has it, and on the error stream those that another unit has
+/// otherwise.
+template <class SimulationOn>
+bool agree_on(const std::vector<Unit>& units, const Declaration& scenario, const SimulationOn& simulation) {
+    bool agree = true;
+    const std::vector<std::string> first = lines(scenario, simulation, units.front());
+    std::printf("%s\n", joined(first, "\n").c_str());
+    for (std::size_t u = 1; u < units.size(); ++u) {
+        const std::vector<std::string> other = lines(scenario, simulation, units[u]);
+        for (std::size_t a = 0; a < first.size(); ++a) {
+            if (other[a] == first[a]) continue;
+            std::fprintf(stderr, "%s has %s\n", units[u].name.c_str(), other[a].c_str());
+            agree = false;
+        }
+    }
+    return agree;
+}
+
 bool all_agree(const std::vector<Unit>& units) {
     bool agree = true;
     for (const World& world : all_worlds()) {
         const Problem problem(scenario_of(world));
-        const std::vector<std::string> first = lines(problem, units.front());
-        std::printf("%s\n", joined(first, "\n").c_str());
-        for (std::size_t u = 1; u < units.size(); ++u) {
-            const std::vector<std::string> other = lines(problem, units[u]);
-            for (std::size_t a = 0; a < first.size(); ++a) {
-                if (other[a] == first[a]) continue;
-                std::fprintf(stderr, "%s has %s\n", units[u].name.c_str(), other[a].c_str());
-                agree = false;
-            }
-        }
+        const auto simulation = [&](const Unit& unit) { return DeformableSimulation(problem, unit); };
+        agree = agree_on(units, declaration_of(problem.scenario()), simulation) && agree;
     }
-    return agree;
+    const LandmarkScenario landmarks = small_loop();
+    const auto simulation = [&](const Unit& unit) { return LandmarkSimulation(landmarks, unit); };
+    return agree_on(units, declaration_of(landmarks), simulation) && agree;
 }
 
 int run(const std::vector<std::string>& names) {

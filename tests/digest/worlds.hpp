@@ -1,6 +1,8 @@
 #pragma once
 // The small study of the digest: worlds that together reach every branch of the equations.
 
+#include <credence/landmark_scenario.hpp>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,6 +89,17 @@ inline std::vector<World> fragile_worlds() {
           {"sensor.range_max", "inf"},
           {"sensor.detection", "0.5"}}},
     };
+}
+
+/// Landmarks on a loop, walked a little more than once, with every estimator.
+inline LandmarkScenario small_loop() {
+    LandmarkScenario scenario;
+    scenario.name = "landmarks";
+    scenario.poses = 10;
+    scenario.loop = {7, 1};
+    scenario.landmarks = {5, 0.5, 2};
+    scenario.sensor = {1.2, 0.3};
+    return scenario;
 }
 
 /// The default number of poses of the worlds that do not set their own.

@@ -97,24 +97,6 @@ MatrixXd process_noise_of(const Scenario& scenario, Eigen::Index n) {
 }
 
 /// The right-invariant filter in its own chart: eta = chi chi^^-1, P of its logarithm.
-MatrixXd chart(const VectorXd& x) {
-    MatrixXd T = MatrixXd::Identity(x.size(), x.size());
-    for (Eigen::Index i = r; i < x.size(); i += 2) T.block<2, 1>(i, theta) = -quarter_turn() * x.segment<2>(i);
-    return T;
-}
-
-/// exp(xi) x
-VectorXd moved(const VectorXd& x, const VectorXd& xi) {
-    const double a = xi[theta];
-    Matrix2d V = Matrix2d::Identity();
-    if (a != 0) V << std::sin(a) / a, -(1 - std::cos(a)) / a, (1 - std::cos(a)) / a, std::sin(a) / a;
-    VectorXd result = x;
-    result[theta] += a;
-    for (Eigen::Index i = r; i < x.size(); i += 2)
-        result.segment<2>(i) = rotation(a) * x.segment<2>(i) + V * xi.segment<2>(i);
-    return result;
-}
-
 Estimate right_invariant_step(const Scenario& scenario, const RunStep& step, const Estimate& before,
                               const VectorXd& feature_motion) {
     const Eigen::Index n = before.mean.size();
@@ -173,6 +155,23 @@ Estimate euclidean_step(const Scenario& scenario, Estimator estimator, const Run
 }
 
 }  // namespace
+
+MatrixXd chart(const VectorXd& x) {
+    MatrixXd T = MatrixXd::Identity(x.size(), x.size());
+    for (Eigen::Index i = r; i < x.size(); i += 2) T.block<2, 1>(i, theta) = -quarter_turn() * x.segment<2>(i);
+    return T;
+}
+
+VectorXd moved(const VectorXd& x, const VectorXd& xi) {
+    const double a = xi[theta];
+    Matrix2d V = Matrix2d::Identity();
+    if (a != 0) V << std::sin(a) / a, -(1 - std::cos(a)) / a, (1 - std::cos(a)) / a, std::sin(a) / a;
+    VectorXd result = x;
+    result[theta] += a;
+    for (Eigen::Index i = r; i < x.size(); i += 2)
+        result.segment<2>(i) = rotation(a) * x.segment<2>(i) + V * xi.segment<2>(i);
+    return result;
+}
 
 std::vector<Estimate> estimates(const Scenario& scenario, Estimator estimator, const test::Run& run) {
     std::vector<Estimate> all{{run.steps.front().mean, run.steps.front().covariance}};

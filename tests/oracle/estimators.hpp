@@ -15,4 +15,9 @@ struct Estimate {
 /// estimate and takes from each step the control, the sightings, the edges, and for `ideal` the truth.
 std::vector<Estimate> estimates(const Scenario& scenario, Estimator estimator, const test::Run& run);
 
+/// T(x): from the Euclidean error to the right-invariant one, I with the column of theta (1; -J r; -J f_j).
+Eigen::MatrixXd chart(const Eigen::VectorXd& x);
+/// exp(xi) x
+Eigen::VectorXd moved(const Eigen::VectorXd& x, const Eigen::VectorXd& xi);
+
 }  // namespace credence::oracle
