@@ -40,7 +40,7 @@ public:
         for (const std::string& name : pairs_) tables += pair_table(name);
         return "<section aria-labelledby=\""_html + escaped(id_) + "\">\n"_html +
                element("h2", escaped("Sweep of " + grid_.of + " over " + keys_), "id=\""_html + escaped(id_) + "\""_html) +
-               "\n"_html + curves() + tables + "</section>\n"_html;
+               "\n<h3>Curves</h3>\n"_html + curves() + "<h3>By point</h3>\n"_html + tables + "</section>\n"_html;
     }
 
 private:

@@ -12,11 +12,11 @@ cmake --preset fuzz -B $folder -DCREDENCE_SANITIZE= -DCMAKE_CXX_FLAGS="$flags" >
 nice -n 15 cmake --build $folder --target "fuzz_$target" -j "${FUZZ_JOBS:-1}" | tail -n 1
 
 declare -A readers=(
-  [scenario]="ini scenario scenario_keys scenario_values text"
+  [scenario]="ini scenario scenario_keys scenario_values sweep text"
   [noise]="store_noise hdf5_read hdf5_handle"
   [judge]="judgement_record judgement_file judgement_blocks judgement_check judgement_step judgement_totals
     judgement_results hdf5_slab hdf5_read hdf5_handle"
-  [results]="store_read store_columns store_evidence store_sums study_hash exact_sum hdf5_dataset hdf5_read hdf5_handle"
+  [results]="store_read store_columns store_evidence store_sweep store_sums study_hash exact_sum hdf5_dataset hdf5_read hdf5_handle"
   [journal]="journal_load journal_record journal_totals journal_file bytes"
 )
 sources=()

@@ -26,7 +26,7 @@ def check_grid(file, report):
         of, at = results.place(file[name])
         assert {"of": of, "at": at} == parts[name, "fixed.ekf"]["sweep"]
     means = results.over_grid(file, grid, lambda group: results.mean_with_interval(
-        results.column(group["greedy.ekf"], "trace_P")))
+        group["greedy.ekf"], "trace_P"))
     assert means.shape == (2, 2, 3)
     for place, name in np.ndenumerate(grid.names):
         expected = parts[name, "greedy.ekf"]["trace_P"]
