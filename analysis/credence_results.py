@@ -71,6 +71,81 @@ def arms(file):
     return [(scenario, arm, group) for scenario, groups in scenarios(file) for arm, group in groups.items()]
 
 
+class Grid(NamedTuple):
+    """The grid that --sweep made of a scenario: `coordinates` {key: its values}, numbers where all are, along the axes of
+    `names`, the scenarios at the points; an empty text where there is none."""
+    of: str
+    coordinates: dict
+    names: np.ndarray
+
+
+def place(scenario_group):
+    """(of, {key: value}) of a scenario that is a point of a grid; None of another one."""
+    if "sweep_of" not in scenario_group.attrs:
+        return None
+    values = {key: scenario_group.attrs[f"sweep.{key}"] for key in text(scenario_group, "sweep_keys").split()}
+    texts = {key: text(scenario_group, f"sweep.{key}") if isinstance(value, (bytes, str)) else float(value)
+             for key, value in values.items()}
+    return text(scenario_group, "sweep_of"), texts
+
+
+def grids(file):
+    """Every Grid of a study, numbers rising and texts in the order of the study."""
+    found = {}
+    for name, group in scenarios(file):
+        if (point := place(group)) is not None:
+            found.setdefault((point[0], tuple(point[1])), {})[name] = tuple(point[1].values())
+    return [_grid(of, keys, points) for (of, keys), points in found.items()]
+
+
+def _grid(of, keys, points):
+    axes = []
+    for values in zip(*points.values()):
+        numbers = not any(isinstance(value, str) for value in values)
+        axes.append(sorted(set(values)) if numbers else list(dict.fromkeys(map(_as_text, values))))
+    names = np.full([len(axis) for axis in axes], "", dtype=object)
+    for name, values in points.items():
+        names[tuple(axis.index(value if value in axis else _as_text(value)) for axis, value in zip(axes, values))] = name
+    return Grid(of, {key: np.array(axis) for key, axis in zip(keys, axes)}, names)
+
+
+def _as_text(value):
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def over_grid(file, grid, figure):
+    """`figure(scenario group)`, a number or an array of them, at every point of a grid, along its axes and then its own;
+    NaN where the grid has no scenario or figure(...) is None."""
+    values = {name: figure(file[name]) for name in grid.names.flat if name}
+    shape = next((np.shape(value) for value in values.values() if value is not None), ())
+    missing = np.full(shape, np.nan)
+    points = [missing if values.get(name) is None else values[name] for name in grid.names.flat]
+    return np.reshape(np.array(points, dtype=float), grid.names.shape + shape)
+
+
+def mean_with_interval(values, level=0.95):
+    """[mean, low, high] of values, one a trial, with Student's interval; NaNs are left out."""
+    values = values[~np.isnan(values)]
+    if values.size < 2:
+        return np.array([values.mean() if values.size else np.nan, np.nan, np.nan])
+    half = stats.t.ppf(0.5 + level / 2, values.size - 1) * values.std(ddof=1) / np.sqrt(values.size)
+    return values.mean() + np.array([0, -half, half])
+
+
+def as_dataset(file, grid, columns=("trace_P", "pose_error", "nees_ratio", "nis_ratio")):
+    """The grid as an xarray.Dataset: COLUMN, COLUMN_low and COLUMN_high over the swept keys and the arms. Needs xarray."""
+    import xarray
+
+    arm_names = list(dict.fromkeys(arm for name in grid.names.flat if name for arm in file[name]))
+    variables = {}
+    for name in columns:
+        values = over_grid(file, grid, lambda group, name=name: np.array(
+            [mean_with_interval(column(group[arm], name)) if arm in group else np.full(3, np.nan) for arm in arm_names]))
+        for number, suffix in enumerate(("", "_low", "_high")):
+            variables[name + suffix] = ([*grid.coordinates, "arm"], values[..., number])
+    return xarray.Dataset(variables, coords={**grid.coordinates, "arm": arm_names}, attrs={"sweep_of": grid.of})
+
+
 def setting(scenario_group, section, key):
     """A key of the scenario, as text; empty where its world has none of that name."""
     parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))

@@ -12,7 +12,7 @@ import sys
 
 try:
     import credence_results as results
-    from pictures import study, style, trajectory, verdicts
+    from pictures import study, style, sweep, trajectory, verdicts
 except ImportError as missing:
     print(f"cannot draw: {missing}. Install python3-h5py, python3-scipy and python3-matplotlib "
           "(pip: h5py scipy matplotlib).", file=sys.stderr)
@@ -71,12 +71,25 @@ def study_figures(scenario, report, width):
         yield f"{scenario.name[1:]}-blocks", verdicts.blocks(scenario, report)
 
 
+def grid_figures(file, width):
+    """(stem, figure) of each grid of a study."""
+    for grid in results.grids(file):
+        keys = "-".join(key.split(".")[-1] for key in grid.coordinates)
+        yield f"{grid.of}-{keys}-sweep", sweep.curves(file, grid, width)
+
+
 def trajectory_figures(scenario, ellipses, width):
     for name, arm in scenario.items():
         source = re.sub("[^A-Za-z0-9]+", "-", results.text(arm, "source").removeprefix("root "))
         stem = f"{scenario.name[1:]}-{name}-{source}"
         yield f"{stem}-path", trajectory.path(arm, ellipses, width)
         yield f"{stem}-judged", trajectory.judged(arm)
+
+
+def save_all(figures, options):
+    for stem, figure in figures:
+        for path in style.save(figure, options.output, stem, options.vector):
+            print(path)
 
 
 def main(arguments):
@@ -87,13 +100,13 @@ def main(arguments):
             is_study = results.kind(file) == results.STUDY
             if is_study and not any(group["trial"].size for scenario in scenarios for group in scenario.values()):
                 raise ValueError(f"{options.file} has no trials (an empty part of a study). Merge the parts first.")
-            report = report_of(options) if is_study else None
+            if is_study and not options.scenario:  # a grid has curves; of its points those that are named
+                save_all(grid_figures(file, options.width), options)
+                scenarios = [scenario for scenario in scenarios if results.place(scenario) is None]
+            report = report_of(options) if is_study and scenarios else None
             for scenario in scenarios:
-                figures = (study_figures(scenario, report, options.width) if is_study
-                           else trajectory_figures(scenario, options.ellipses, options.width))
-                for stem, figure in figures:
-                    for path in style.save(figure, options.output, stem, options.vector):
-                        print(path)
+                save_all(study_figures(scenario, report, options.width) if is_study
+                         else trajectory_figures(scenario, options.ellipses, options.width), options)
     except ValueError as problem:
         print(problem, file=sys.stderr)
         return 2

@@ -10,21 +10,24 @@ build_program() {
   build build credence "${tests[@]}"
 }
 
-# study STEM TRIALS SCENARIO.ini [section.key=value...]: runs it, or goes on with what is there, and reports it: STEM.h5
-# and STEM.csv.
+# study STEM TRIALS SCENARIO.ini [section.key=value | --sweep=section.key=VALUES ...]: runs it, or goes on with what is
+# there, and reports it: STEM.h5 and STEM.csv.
 study() {
   local stem=$1 trials=$2 scenario=$3 settings=() setting
   shift 3
-  for setting in "$@"; do settings+=(--set "$setting"); done
+  for setting in "$@"; do
+    case $setting in --*) settings+=("$setting") ;; *) settings+=(--set "$setting") ;; esac
+  done
   mkdir -p "$(dirname "$stem")"
   build/credence run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume --quiet
   build/credence report "$stem.h5" --format csv >"$stem.csv"
 }
 
-# interval FILE.csv ARM FIGURE: `mean ± half-width` of a figure, with two digits of the half-width.
+# interval FILE.csv ARM FIGURE [SCENARIO]: `mean ± half-width` of a figure, with two digits of the half-width; of the
+# first scenario where none is named.
 interval() {
-  awk -F, -v arm="$2" -v figure="$3" '
-    $2 == arm && $5 == figure {
+  awk -F, -v arm="$2" -v figure="$3" -v scenario="${4:-}" '
+    $2 == arm && $5 == figure && (scenario == "" || $1 == scenario) {
       half = ($10 - $9) / 2
       digits = half > 0 ? 1 - int(log(half) / log(10) - (half < 1)) : 4
       if (digits < 0) digits = 0
@@ -33,5 +36,10 @@ interval() {
     }' "$1"
 }
 
-# verdict FILE.csv ARM
-verdict() { awk -F, -v arm="$2" '$2 == arm { print $17; exit }' "$1"; }
+# verdict FILE.csv ARM [SCENARIO]
+verdict() {
+  awk -F, -v arm="$2" -v scenario="${3:-}" '$2 == arm && (scenario == "" || $1 == scenario) { print $17; exit }' "$1"
+}
+
+# points FILE.csv: the scenarios of a study swept over one key, each with its value.
+points() { awk -F, 'NR > 1 && !seen[$1]++ { print $1, $19 }' "$1"; }

@@ -53,16 +53,16 @@ public:
 
     std::vector<ChosenPair> take() { return std::move(pairs_); }
 
-    void planned_against_fixed() {
+    void planned_against_partners() {
         for (const ScenarioResults& results : files_[0].study.scenarios) {
             const std::size_t before = pairs_.size();
             for (const ArmResults& arm : results.arms)
-                if (const ArmResults* partner = fixed_partner(results, arm)) add(0, results, arm, 0, results, *partner);
-            if (pairs_.size() == before) leave_out(results, "no greedy arm has its fixed one");
+                if (const ArmResults* partner = partner_of(results, arm)) add(0, results, arm, 0, results, *partner);
+            if (pairs_.size() == before) leave_out(results, "no planned arm has one to compare with");
         }
         if (pairs_.empty())
             throw InputError("nothing to compare in " + files_[0].path +
-                             " (no greedy arm has a fixed one of the same estimator beside it). Give --arms A,B: " +
+                             " (no greedy arm has a fixed one of the same estimator beside it, and no horizon a greedy one). Give --arms A,B: " +
                              contents(files_[0]) + ".");
     }
 
@@ -158,7 +158,7 @@ std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const 
     if (choice)
         chooser.chosen(*choice);
     else if (files.size() == 1)
-        chooser.planned_against_fixed();
+        chooser.planned_against_partners();
     else
         for (std::size_t later = 1; later < files.size(); ++later) chooser.same_arms(later);
     return chooser.take();

@@ -52,11 +52,11 @@ void correct_together(std::vector<Comparison>& comparisons) {
         for (ComparedFigure& figure : comparison.figures) figure.holm_p = *next++;
 }
 
-std::vector<Comparison> planned_against_fixed(const Study& study) {
+std::vector<Comparison> planned_against_partners(const Study& study) {
     std::vector<Comparison> comparisons;
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms)
-            if (const ArmResults* partner = fixed_partner(results, arm))
+            if (const ArmResults* partner = partner_of(results, arm))
                 comparisons.push_back(
                     compare_arms({results, arm, arm.name}, {results, *partner, partner->name}, study.root_seed));
     correct_together(comparisons);

@@ -12,12 +12,12 @@ const Setting* find(const Declaration& scenario, const std::string& key) {
     return found == scenario.settings.end() ? nullptr : &*found;
 }
 
+}  // namespace
+
 std::string value_of(const Declaration& scenario, const std::string& key) {
     const Setting* setting = find(scenario, key);
     return setting ? setting->value : "";
 }
-
-}  // namespace
 
 std::string scenario_text(const Declaration& scenario) {
     std::string text, section;
@@ -29,6 +29,8 @@ std::string scenario_text(const Declaration& scenario) {
         }
         text += key.substr(dot + 1) + " = " + value + "\n";
     }
+    if (const SweepPoint& sweep = scenario.sweep; !sweep.at.empty())
+        text += "\n[sweep]\nof = " + sweep.of + "\nat = " + coordinates_text(sweep.at) + "\n";
     return text;
 }
 

@@ -118,6 +118,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     for (std::size_t f = 0; f < results.figures.size(); ++f) {
         const Figure& figure = results.figures[f];
         if (figure.role == FigureRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));
+        if (figure.role == FigureRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
         if (figure.role == FigureRole::standardised_error)
             evidence.bias.push_back(bias_evidence(figure, arm, arm.totals[f]));
         if (figure.role == FigureRole::nis)

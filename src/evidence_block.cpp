@@ -83,6 +83,23 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
     return accuracy;
 }
 
+/// Ratios of a NEES to its dimension, over the run and step by step: what every chart of the error has.
+template <class Ratios>
+void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
+    const Figure& figure = results.figures[f];
+    const FigureTotals& totals = arm.totals[f];
+    evidence.block = figure.part;
+    evidence.dimension = figure.dimension;
+    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / figure.dimension);
+    std::vector<double> sums;
+    for (std::size_t k = 0; k < totals.sum.size(); ++k) {
+        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / figure.dimension));
+        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * figure.dimension);
+        sums.push_back(totals.sum[k].rounded());
+    }
+    fill_bands(sums, evidence.anees);
+}
+
 bool within(double value, const Interval& interval) { return value >= interval.low && value <= interval.high; }
 
 }  // namespace
@@ -112,23 +129,23 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
 }
 
 BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
-    const Figure& figure = results.figures[f];
-    const FigureTotals& totals = arm.totals[f];
     BlockEvidence evidence;
-    evidence.block = figure.part;
-    evidence.dimension = figure.dimension;
-    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / figure.dimension);
-    std::vector<double> sums;
-    for (std::size_t k = 0; k < totals.sum.size(); ++k) {
-        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / figure.dimension));
-        const double deviation = evidence.step.back().standard_deviation * figure.dimension;
-        evidence.variance_ratio.push_back(deviation * deviation / (2 * figure.dimension));
-        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * figure.dimension);
-        sums.push_back(totals.sum[k].rounded());
+    fill_ratios(results, arm, f, evidence);
+    for (const Moments& step : evidence.step) {
+        const double deviation = step.standard_deviation * evidence.dimension;
+        evidence.variance_ratio.push_back(deviation * deviation / (2 * evidence.dimension));
     }
-    fill_bands(sums, evidence.anees);
-    evidence.coverage = coverage_of(arm, totals);
-    evidence.accuracy = accuracy_of(results, arm, figure.part);
+    evidence.coverage = coverage_of(arm, arm.totals[f]);
+    evidence.accuracy = accuracy_of(results, arm, evidence.block);
+    return evidence;
+}
+
+ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+    ChartEvidence evidence;
+    fill_ratios(results, arm, f, evidence);
+    // The figure is nees_CHART or nees_CHART_BLOCK.
+    const std::string rest = results.figures[f].name.substr(std::string("nees_").size());
+    evidence.chart = rest.substr(0, rest.find('_'));
     return evidence;
 }
 

@@ -14,4 +14,7 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
 /// The block of the state that the nees figure f is of.
 BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
+/// The block and chart that the figure f of role nees_in_chart is of.
+ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+
 }  // namespace credence

@@ -88,15 +88,22 @@ bool says_name(const std::vector<Assignment>& assignments, const Overrides& over
            std::any_of(overrides.begin(), overrides.end(), [&](const auto& one) { return one.first == name; });
 }
 
+/// Sets a key of the world, or of the place in a grid, which scenarios of every world have.
+void set(Draft& draft, SweepPoint& sweep, const std::string& key, const std::string& value) {
+    if (key == "sweep.at") sweep.at = parse_coordinates(value);
+    else if (key == "sweep.of") sweep.of = value;
+    else draft.set(key, value);
+}
+
 /// Sets what the text and the overrides say. Refusals name the line, or --set. Returns the lines of the keys, for
 /// refusals of what comes after.
-std::map<std::string, int> fill(Draft& draft, const std::vector<Assignment>& assignments, const std::string& origin,
-                                const Overrides& overrides) {
+std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vector<Assignment>& assignments,
+                                const std::string& origin, const Overrides& overrides) {
     std::map<std::string, int> lines;
     for (const Assignment& one : assignments) {
         if (one.key == world_key) continue;
         try {
-            draft.set(one.key, one.value);
+            set(draft, sweep, one.key, one.value);
         } catch (const InputError& error) {
             throw InputError(place(origin, one.line) + error.what(), error.key());
         }
@@ -105,7 +112,7 @@ std::map<std::string, int> fill(Draft& draft, const std::vector<Assignment>& ass
     for (const auto& [key, value] : overrides) {
         if (key == world_key) continue;
         try {
-            draft.set(key, trimmed(value));
+            set(draft, sweep, key, trimmed(value));
         } catch (const InputError& error) {
             throw InputError("--set " + printable(key) + ": " + error.what(), error.key());
         }
@@ -133,6 +140,45 @@ std::string text_of_file(const std::string& path) {
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
+/// Throws where a scenario is not at the place of a grid that it says.
+void check_place(const Declaration& scenario) {
+    const SweepPoint& sweep = scenario.sweep;
+    if (sweep.at.empty() && sweep.of.empty()) return;
+    if (sweep.at.empty() || sweep.of.empty() || !std::all_of(sweep.of.begin(), sweep.of.end(), is_name_character))
+        throw invalid_value("sweep.of", sweep.of, "a point of a grid says of which scenario, and where in sweep.at",
+                            "Give both, or neither");
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::string value = value_of(scenario, one.key);
+        if (value == one.value) continue;
+        const std::unique_ptr<Draft> said = world_of(scenario).draft();  // `default` may be the same
+        for (const Setting& setting : scenario.settings)
+            if (setting.key != world_key) said->set(setting.key, setting.value);
+        said->set(one.key, one.value);
+        if (value_of(said->declare(), one.key) != value)
+            throw invalid_value("sweep.at", coordinates_text(sweep.at), "the scenario has " + one.key + "=" + value,
+                                "Give the value that it has");
+    }
+}
+
+/// A scenario at a point of its grid, where it goes by another name.
+Declaration declared_at(Draft& draft, const std::string& origin, const SweepPoint& point, const std::string& name) {
+    for (const SweepCoordinate& one : point.at) {
+        try {
+            draft.set(one.key, one.value);
+        } catch (const InputError& error) {
+            throw InputError("--sweep " + printable(one.key) + ": " + error.what(), error.key());
+        }
+    }
+    try {
+        draft.set("scenario.name", name);
+        Declaration scenario = draft.declare();
+        scenario.sweep = point;
+        return scenario;
+    } catch (const InputError& error) {
+        throw InputError(origin + " at " + printable(coordinates_text(point.at)) + ": " + error.what(), error.key());
+    }
+}
+
 }  // namespace
 
 std::vector<Setting> read_settings(const std::string& text, const std::string& origin) {
@@ -145,11 +191,15 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
                                   const Overrides& overrides) {
     const std::vector<Assignment> assignments = read_lines(text, origin);
     const std::unique_ptr<Draft> draft = draft_of(assignments, origin, overrides);
-    const std::map<std::string, int> lines = fill(*draft, assignments, origin, overrides);
+    SweepPoint sweep;
+    const std::map<std::string, int> lines = fill(*draft, sweep, assignments, origin, overrides);
     try {
         // It is refused only where it is used.
         if (!says_name(assignments, overrides)) draft->set("scenario.name", default_name);
-        return draft->declare();
+        Declaration scenario = draft->declare();
+        scenario.sweep = std::move(sweep);
+        check_place(scenario);
+        return scenario;
     } catch (const InputError& error) {
         const auto line = lines.find(error.key());
         throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
@@ -159,6 +209,28 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
 
 Declaration read_declaration(const std::string& path, const Overrides& overrides) {
     return read_declaration_text(text_of_file(path), path, stem(path), overrides);
+}
+
+std::vector<Declaration> read_grid(const std::string& path, const Overrides& overrides,
+                                   const std::vector<SweepAxis>& axes) {
+    if (axes.empty()) return {read_declaration(path, overrides)};
+    const std::vector<Assignment> assignments = read_lines(text_of_file(path), path);
+    std::string name = stem(path);
+    for (const Assignment& one : assignments)
+        if (one.key == "scenario.name") name = one.value;
+    for (const auto& [key, value] : overrides)
+        if (key == "scenario.name") name = trimmed(value);
+    std::vector<Declaration> scenarios;
+    for (const std::vector<SweepCoordinate>& at : grid_points(axes)) {
+        const std::unique_ptr<Draft> draft = draft_of(assignments, path, overrides);
+        SweepPoint before;
+        fill(*draft, before, assignments, path, overrides);
+        if (!before.of.empty())
+            throw InputError("cannot sweep " + path + " (it is a point of a grid already: sweep.of=" +
+                             printable(before.of) + "). Remove its section [sweep], or sweep the scenario it is of.");
+        scenarios.push_back(declared_at(*draft, path, {name, at}, point_name(name, axes, at)));
+    }
+    return scenarios;
 }
 
 Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,

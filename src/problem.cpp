@@ -136,6 +136,7 @@ Problem::Problem(const Scenario& resolved_scenario)
     coverage_bounds_ = coverage_bounds(blocks);
     view_.coverage_bounds = coverage_bounds_.data();
     view_.figure_count = static_cast<int>(step_figures(scenario_).size());
+    view_.charts = charts_of(scenario_);
     fill_world();
     fill_filter();
     fill_control();
@@ -224,6 +225,7 @@ void Problem::fill_control() {
     view_.control.fixed = fixed_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
+    view_.control.horizon = *scenario_.planner.horizon;
 }
 
 }  // namespace credence

@@ -72,7 +72,7 @@ Report make_report(const Study& study, double margin) {
     report.trials = study.trials;
     report.complete = study.complete;
     report.margin = margin;
-    report.pairs = planned_against_fixed(study);
+    report.pairs = planned_against_partners(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         for (const ArmResults& arm : results.arms)

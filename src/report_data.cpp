@@ -5,6 +5,7 @@
 #include <credence/text.hpp>
 
 #include "report_json.hpp"
+#include "report_sweep.hpp"
 
 #include <cmath>
 #include <limits>
@@ -45,6 +46,8 @@ Json findings_json(const std::vector<Finding>& findings) {
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
               {"diverged", arm.diverged}};
+    for (const Declaration& scenario : report.scenarios)
+        if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
     for (const FigureReport& figure : arm.figures) json[figure.name] = figure_json(figure);
     json["verdict"] = verdict_name(arm.consistency.verdict);
     json["margin"] = arm.consistency.margin;
@@ -62,26 +65,32 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     return json;
 }
 
-/// One row; cells that are NaN stay empty.
+/// One row, with `end` behind its figures; cells that are NaN stay empty.
 std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
-                    const std::optional<PublishedPlace>& published, const std::string& verdict) {
+                    const std::optional<PublishedPlace>& published, const std::string& end) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
     const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
     for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
                                s.standard_deviation, place.value, place.percentile})
         cells.push_back(std::isnan(value) ? "" : to_text(value));
-    cells.push_back(verdict);
+    cells.push_back(end);
     return joined(cells, ",") + "\n";
 }
 
 /// Rows of an arm's evidence. What a figure is of stands behind a colon, and the step behind a second one.
 class EvidenceRows {
 public:
-    explicit EvidenceRows(const ArmReport& arm) : arm_(arm) {}
+    EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
 
     std::string text() {
         for (const BlockEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const ChartEvidence& chart : arm_.evidence.charts) {
+            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
+            add_moments(name, chart.run);
+            for (std::size_t k = 0; k < chart.step.size(); ++k)
+                add_moments(name + ":" + std::to_string(k + 1), chart.step[k]);
+        }
         for (const NisEvidence& nis : arm_.evidence.nis) {
             add("nis_per_row:" + nis.part, nis.ratio, nan, nis.ratio95);
             add_steps("nis_per_row:" + nis.part, nis.nis.ratio, nis.nis.simultaneous_band);
@@ -104,8 +113,7 @@ private:
 
     void add(const std::string& figure, double mean, double se, const Interval& interval, double sd = nan) {
         text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), figure, "1"},
-                         {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt,
-                         verdict_name(arm_.consistency.verdict));
+                         {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt, end_);
     }
     void add_moments(const std::string& figure, const Moments& moments) {
         add(figure, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
@@ -126,6 +134,7 @@ private:
     }
 
     const ArmReport& arm_;
+    const std::string& end_;
     std::string text_;
 };
 
@@ -138,21 +147,22 @@ std::string report_json(const Report& report) {
 }
 
 std::string report_csv(const Report& report) {
+    const SweepColumns sweep(report);
     std::string text =
         "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
-        "published,percentile,verdict\n";
+        "published,percentile,verdict" + sweep.heads() + "\n";
     for (const ArmReport& arm : report.arms) {
+        const std::string end = verdict_name(arm.consistency.verdict) + sweep.cells(arm.scenario);
         for (const FigureReport& figure : arm.figures)
             text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure.name,
                              figure.unit},
-                            figure.summary, figure.bootstrap95, figure.published,
-                            verdict_name(arm.consistency.verdict));
-        text += EvidenceRows(arm).text();
+                            figure.summary, figure.bootstrap95, figure.published, end);
+        text += EvidenceRows(arm, end).text();
     }
     for (const Comparison& pair : report.pairs)
         for (const ComparedFigure& figure : pair.figures)
             text += csv_row({pair.scenario, pair.name(), std::to_string(figure.paired.pairs), "", figure.name, figure.unit},
-                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt, "");
+                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt, sweep.cells(pair.scenario));
     return text;
 }
 

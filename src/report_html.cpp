@@ -53,6 +53,7 @@ Html contents(const Report& report) {
     if (report.scenarios.size() < 2) return {};
     Html items;
     for (const Declaration& scenario : report.scenarios) {
+        if (!has_section(report, scenario.name)) continue;
         std::vector<Verdict> verdicts;  // each of them once
         for (const ArmReport* arm : part_of(report, scenario).arms)
             if (std::find(verdicts.begin(), verdicts.end(), arm->consistency.verdict) == verdicts.end())
@@ -62,6 +63,7 @@ Html contents(const Report& report) {
         items += element("li", "<a href=\"#"_html + section_id(scenario.name) + "\">"_html + escaped(scenario.name) +
                                    "</a>"_html + badges);
     }
+    if (items.empty()) return {};
     return "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n"_html + element("ol", items) +
            "\n</nav>\n"_html;
 }
@@ -92,8 +94,9 @@ std::string document(const std::string& title, const Html& header, const Html& m
 
 std::string report_html(const Report& report, const PageOrigin& origin) {
     using namespace page;
-    Html body = verdicts(report) + contents(report);
-    for (const Declaration& scenario : report.scenarios) body += scenario_section(part_of(report, scenario));
+    Html body = verdicts(report) + contents(report) + sweeps(report);
+    for (const Declaration& scenario : report.scenarios)
+        if (has_section(report, scenario.name)) body += scenario_section(part_of(report, scenario));
     body += provenance(report, origin) + reproduction(report, origin) + terms();
     return document("credence: " + origin.file, intro(report, origin), body);
 }

@@ -27,6 +27,10 @@ std::string_view style_sheet();
 /// A page of these parts.
 std::string document(const std::string& title, const Html& header, const Html& main);
 
+/// Whether a scenario has a section of its own: the points of grids only where there are few, or the page would be long
+/// and large.
+bool has_section(const Report& report, const std::string& scenario);
+
 /// The id of a scenario's section.
 inline Html section_id(const std::string& scenario) { return "scenario:"_html + escaped(scenario); }
 
@@ -38,6 +42,9 @@ std::string summary_of(const Report& report);
 
 /// A line for every arm: the verdict and the first reason for it.
 Html verdicts(const Report& report);
+
+/// Every grid: curves along a swept key, and tables by point; nothing without one.
+Html sweeps(const Report& report);
 
 /// What was found, where and when, of every arm.
 Html findings(const Part& part);
@@ -65,7 +72,8 @@ std::string figure_words(const std::string& name, const std::string& unit);
 Html chart(const std::string& caption, const Html& svg);
 /// Drawings side by side under a head, and what they show; nothing without drawings.
 Html chart_group(const std::string& head, const std::string& text, const Html& drawings);
-/// Names of the arms beside their marks.
+/// Names beside their marks; those of the arms.
+Html legend(const std::vector<std::string>& names);
 Html legend(const Part& part);
 
 Html equivalence_chart(const Part& part);

@@ -90,13 +90,19 @@ Html chart_group(const std::string& head, const std::string& text, const Html& d
            drawings + "</div>\n"_html;
 }
 
-Html legend(const Part& part) {
+Html legend(const std::vector<std::string>& names) {
     const char* const shapes[] = {"●", "◆", "■", "▲"};
     Html items;
-    for (std::size_t i = 0; i < part.arms.size(); ++i)
+    for (std::size_t i = 0; i < names.size(); ++i)
         items += " <span><span aria-hidden=\"true\" class=\"k"_html + escaped(std::to_string(i % 4)) + "\">"_html +
-                 escaped(shapes[i % 4]) + "</span> "_html + escaped(part.arms[i]->arm) + "</span>"_html;
+                 escaped(shapes[i % 4]) + "</span> "_html + escaped(names[i]) + "</span>"_html;
     return element("p", items, "class=\"legend\""_html) + "\n"_html;
+}
+
+Html legend(const Part& part) {
+    std::vector<std::string> names;
+    for (const ArmReport* arm : part.arms) names.push_back(arm->arm);
+    return legend(names);
 }
 
 Html equivalence_chart(const Part& part) {

@@ -63,6 +63,23 @@ Html omitted_blocks(const Part& part) {
            "\n"_html;
 }
 
+Html charts_table(const Part& part) {
+    const HtmlTable table(
+        part.scenario.name + ": NEES with the error in another chart and the same covariance; the verdict is without it",
+        {"block", "chart", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band"});
+    return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
+        for (const ChartEvidence& chart : evidence.charts) {
+            const Interval over_steps = t_interval(chart.run);
+            const int digits = decimals_for(half_of(over_steps));
+            rows.row(escaped(chart.block),
+                     {escaped(chart.chart), figure(chart.run.mean, digits), figure_interval(over_steps, digits),
+                      figure_within(chart.run.standard_error, chart.run.standard_error),
+                      escaped(of_steps(chart.anees.outside_simultaneous, chart.anees.observed)),
+                      escaped(of_steps(chart.anees.outside, chart.anees.observed))});
+        }
+    });
+}
+
 Html coverage_table(const Part& part) {
     std::vector<std::string> heads{"block"};
     for (const double level : coverage_levels) heads.push_back(to_text(100 * level) + " % covers");
@@ -132,7 +149,7 @@ Html shape_table(const Part& part) {
 }  // namespace
 
 Html evidence_tables(const Part& part) {
-    const Html html = blocks_table(part) + omitted_blocks(part) + coverage_table(part) + nis_table(part) +
+    const Html html = blocks_table(part) + omitted_blocks(part) + charts_table(part) + coverage_table(part) + nis_table(part) +
                       shape_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part));
     return html.empty() ? html : "<h3>Is the covariance right?</h3>\n"_html + html;
 }

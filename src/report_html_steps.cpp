@@ -62,6 +62,16 @@ Html block_table(const ArmReport& arm, const BlockEvidence& block) {
     });
 }
 
+Html chart_table(const ArmReport& arm, const ChartEvidence& chart) {
+    return by_step(name_of(arm) + ": NEES of " + chart.block + " in the " + chart.chart + " chart by step",
+                   arm.evidence.steps, {"NEES/dim", "standard error", "degrees", "band 95 %", "joint band 95 %"},
+                   [&](std::size_t k) -> std::vector<Html> {
+                       return {cell(chart.anees.ratio[k]), cell(chart.step[k].standard_error),
+                               cell(chart.anees.degrees[k]), cell(chart.anees.band[k]),
+                               cell(chart.anees.simultaneous_band[k])};
+                   });
+}
+
 Html nis_table(const ArmReport& arm, const NisEvidence& nis) {
     return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", arm.evidence.steps,
                    {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Html> {
@@ -103,6 +113,7 @@ Html step_tables(const Part& part) {
         if (arm->evidence.trials == 0) continue;
         Html tables;
         for (const BlockEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
+        for (const ChartEvidence& chart : arm->evidence.charts) tables += chart_table(*arm, chart);
         for (const NisEvidence& nis : arm->evidence.nis) tables += nis_table(*arm, nis);
         html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + shape_table(*arm));
     }

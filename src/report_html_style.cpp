@@ -86,6 +86,8 @@ svg { display: block; width: 100%; height: auto;
   .mark.s3, .bar.s3 { fill: var(--s3); }
 .mark.pair { fill: var(--ink); }
 .bar { fill-opacity: .8; } .bar:hover { fill-opacity: 1; } .pair { fill: var(--soft); }
+.spread { fill-opacity: .22; } .spread.s0 { fill: var(--s0); } .spread.s1 { fill: var(--s1); }
+  .spread.s2 { fill: var(--s2); } .spread.s3 { fill: var(--s3); }
 .median { stroke: var(--ink); stroke-width: 2; } .published { stroke: var(--ink); stroke-width: 1.5;
   stroke-dasharray: 4 2; }
 .k0 { color: var(--s0); } .k1 { color: var(--s1); } .k2 { color: var(--s2); } .k3 { color: var(--s3); }

@@ -120,15 +120,16 @@ std::string summary_of(const Report& report) {
 
 Html verdicts(const Report& report) {
     Html lines;
-    for (const ArmReport& arm : report.arms) lines += verdict_line(arm);
+    for (const ArmReport& arm : report.arms)
+        if (has_section(report, arm.scenario)) lines += verdict_line(arm);
     return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
            "NEES/dim 1 "
            "in every block of the state and at every step; the verdict holds all of them against 1 ± "_html +
            escaped(to_text(report.margin)) +
            ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
            "too "
-           "large). Intervals are two-sided 95 %.</p>\n<ul class=\"verdicts\">\n"_html +
-           lines + "</ul>\n</section>\n"_html;
+           "large). Intervals are two-sided 95 %.</p>\n"_html +
+           (lines.empty() ? Html() : "<ul class=\"verdicts\">\n"_html + lines + "</ul>\n"_html) + "</section>\n"_html;
 }
 
 Html findings(const Part& part) {

@@ -4,6 +4,7 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -46,17 +47,29 @@ Json accuracy_json(const Accuracy& accuracy) {
             {"rmse_by_step", accuracy.rmse},         {"predicted_by_step", accuracy.predicted}};
 }
 
+/// What a block's NEES is in any chart.
+template <class Ratios>
+Json ratios_json(const Ratios& of) {
+    return {{"block", of.block},
+            {"dimension", of.dimension},
+            {"nees_ratio", of.run.mean},
+            {"se", of.run.standard_error},
+            {"ci95", interval_json(t_interval(of.run))},
+            {"anees", banded_json(of.anees)},
+            {"anees_se", each_json(of.step, [](const Moments& step) { return step.standard_error; })}};
+}
+
 Json block_json(const BlockEvidence& block) {
-    Json json{{"block", block.block},
-              {"dimension", block.dimension},
-              {"nees_ratio", block.run.mean},
-              {"se", block.run.standard_error},
-              {"ci95", interval_json(over_steps95(block))},
-              {"anees", banded_json(block.anees)},
-              {"anees_se", each_json(block.step, [](const Moments& step) { return step.standard_error; })},
-              {"variance_ratio", block.variance_ratio}};
+    Json json = ratios_json(block);
+    json["variance_ratio"] = block.variance_ratio;
     json["coverage"] = each_json(block.coverage, coverage_json);
     json["accuracy"] = accuracy_json(block.accuracy);
+    return json;
+}
+
+Json chart_json(const ChartEvidence& chart) {
+    Json json = ratios_json(chart);
+    json["chart"] = chart.chart;
     return json;
 }
 
@@ -89,12 +102,24 @@ Json credibility_json(const CredibilityEvidence& evidence) {
 }  // namespace
 
 Json evidence_json(const Evidence& evidence) {
-    return {{"blocks", each_json(evidence.blocks, block_json)},
-            {"nis", each_json(evidence.nis, nis_json)},
-            {"whiteness", each_json(evidence.whiteness, whiteness_json)},
-            {"bias", each_json(evidence.bias, bias_json)},
-            {"shape", {{"exact", evidence.shape.exact}, {"distance", evidence.shape.distance}, {"p", evidence.shape.p}}},
-            {"credibility", credibility_json(evidence.credibility)}};
+    Json json{{"blocks", each_json(evidence.blocks, block_json)},
+              {"nis", each_json(evidence.nis, nis_json)},
+              {"whiteness", each_json(evidence.whiteness, whiteness_json)},
+              {"bias", each_json(evidence.bias, bias_json)},
+              {"shape",
+               {{"exact", evidence.shape.exact}, {"distance", evidence.shape.distance}, {"p", evidence.shape.p}}},
+              {"credibility", credibility_json(evidence.credibility)}};
+    if (!evidence.charts.empty()) json["other_charts"] = each_json(evidence.charts, chart_json);
+    return json;
+}
+
+Json sweep_json(const SweepPoint& sweep) {
+    Json at;
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::optional<double> number = to_number(one.value);
+        at[one.key] = number && std::isfinite(*number) ? Json(*number) : Json(one.value);
+    }
+    return {{"of", sweep.of}, {"at", at}};
 }
 
 Json comparison_json(const Comparison& comparison) {

@@ -4,10 +4,12 @@
 #include <credence/text.hpp>
 
 #include "report_format.hpp"
+#include "report_sweep.hpp"
 #include "report_text_detail.hpp"
 #include "report_words.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace credence {
 
@@ -22,20 +24,32 @@ std::string why(const ArmReport& arm) {
     return text;
 }
 
-std::string verdicts_part(const Report& report) {
-    int width = 16;
+/// Arms of scenarios that are in no grid: a grid has a table of its own.
+std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
+    std::set<std::string> swept;
+    for (const Declaration& scenario : report.scenarios)
+        if (SweptReport::swept(scenario)) swept.insert(scenario.name);
+    std::vector<const ArmReport*> arms;
     for (const ArmReport& arm : report.arms)
-        width = std::max(width, static_cast<int>(arm.scenario.size() + arm.arm.size()) + 3);
+        if (swept.count(arm.scenario) == 0) arms.push_back(&arm);
+    return arms;
+}
+
+std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
+    if (arms.empty()) return "";
+    int width = 16;
+    for (const ArmReport* arm : arms)
+        width = std::max(width, static_cast<int>(arm->scenario.size() + arm->arm.size()) + 3);
     std::string text = "  " + padded("", width, false) + padded("verdict", 12, false) + padded("NEES/n", 19) +
                        padded("NIS/m", 19) + padded("failed", 9) + "\n";
-    for (const ArmReport& arm : report.arms) {
-        text += "  " + padded(arm.scenario + "/" + arm.arm, width, false) +
-                padded(verdict_name(arm.consistency.verdict), 12, false);
+    for (const ArmReport* arm : arms) {
+        text += "  " + padded(arm->scenario + "/" + arm->arm, width, false) +
+                padded(verdict_name(arm->consistency.verdict), 12, false);
         for (const char* figure : {"nees_ratio", "nis_ratio"}) {
-            const Summary& summary = figure_named(arm.figures, figure).summary;
+            const Summary& summary = figure_named(arm->figures, figure).summary;
             text += padded(with_interval(summary.mean, summary.ci95), 19);
         }
-        text += padded(std::to_string(arm.failed), 9) + "\n" + why(arm);
+        text += padded(std::to_string(arm->failed), 9) + "\n" + why(*arm);
     }
     return text;
 }
@@ -50,9 +64,12 @@ std::string report_text(const Report& report) {
             (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "") +
             ".\nA consistent filter has NEES/dim 1 in every block of the state and at every step; the verdict holds all of "
             "them\nagainst 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
-    text += verdicts_part(report);
-    for (const Declaration& scenario : report.scenarios) text += scenario_detail(report, scenario);
-    return text;
+    const std::vector<const ArmReport*> arms = arms_by_themselves(report);
+    text += verdicts_part(arms);
+    for (const Declaration& scenario : report.scenarios)
+        if (!SweptReport::swept(scenario)) text += scenario_detail(report, scenario);
+    const std::string sweeps = sweep_text(report);
+    return text + (sweeps.empty() || arms.empty() ? "" : "\n") + sweeps;
 }
 
 }  // namespace credence

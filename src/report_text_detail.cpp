@@ -57,6 +57,15 @@ std::string block_row(const BlockEvidence& block) {
            padded(with_interval(block.accuracy.ratio, block.accuracy.ratio_ci95), 20) + "\n";
 }
 
+/// What NEES would be in other charts, behind the blocks' own.
+std::string charts_part(const Evidence& evidence) {
+    if (evidence.charts.empty()) return "";
+    std::vector<std::string> parts;
+    for (const ChartEvidence& chart : evidence.charts)
+        parts.push_back(chart.block + " " + with_interval(chart.run.mean, t_interval(chart.run)));
+    return "    " + wrapped_list("NEES/dim in the " + evidence.charts.front().chart + " chart, not judged:", parts, 4) + "\n";
+}
+
 std::string innovations_part(const Evidence& evidence) {
     std::vector<std::string> parts;
     for (const NisEvidence& nis : evidence.nis)
@@ -95,7 +104,7 @@ std::string consistency_part(const ArmReport& arm) {
     if (blocks.size() < arm.evidence.blocks.size())
         text += "    (" + std::to_string(arm.evidence.blocks.size() - blocks.size()) +
                 " more blocks are nearer to 1; JSON has all)\n";
-    return text + innovations_part(arm.evidence) + distribution_part(arm.evidence);
+    return text + charts_part(arm.evidence) + innovations_part(arm.evidence) + distribution_part(arm.evidence);
 }
 
 bool has_published(const Report& report, const std::string& scenario) {

@@ -85,11 +85,14 @@ std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const 
     return meant;
 }
 
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm) {
-    const std::size_t dot = arm.name.find('.');
-    if (dot == std::string::npos || arm.name.substr(0, dot) != "greedy") return nullptr;
-    for (const ArmResults& other : results.arms)
-        if (other.name == "fixed" + arm.name.substr(dot)) return &other;
+const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& arm) {
+    const std::string controller = controller_of(arm.name), rest = arm.name.substr(controller.size());
+    std::vector<std::string> simpler;
+    if (controller == "horizon") simpler = {"greedy", "fixed"};
+    if (controller == "greedy") simpler = {"fixed"};
+    for (const std::string& other : simpler)
+        for (const ArmResults& candidate : results.arms)
+            if (candidate.name == other + rest) return &candidate;
     return nullptr;
 }
 

@@ -22,6 +22,11 @@ std::vector<double> default_turns(const Scenario& scenario) {
     return turns;
 }
 
+bool plans_by_horizon(const Scenario& s) {
+    const std::vector<Controller>& controllers = s.arms.controllers;
+    return std::find(controllers.begin(), controllers.end(), Controller::horizon) != controllers.end();
+}
+
 void check_sensor(const SensorSettings& sensor) {
     if (!(sensor.range_min < sensor.range_max))
         throw invalid_value("sensor.range_max", to_text(sensor.range_max),
@@ -81,6 +86,22 @@ void check_edges(const Scenario& s) {
                                 "Name features 0 to " + std::to_string(features - 1));
 }
 
+void check_horizon(const Scenario& s) {
+    const Scenario filled = resolved(s);
+    const int steps = *filled.planner.horizon, candidates = candidate_count(filled);
+    if (steps > 1 && !plans_by_horizon(s))
+        throw invalid_value("planner.horizon", std::to_string(steps),
+                            "no arm plans ahead: arms.controllers=" +
+                                names_text(s.arms.controllers, controller_names()),
+                            "Add horizon to arms.controllers, or leave planner.horizon out");
+    const double sequences = std::pow(candidates, steps);
+    if (sequences > largest_sequence_count)
+        throw invalid_value("planner.horizon", std::to_string(steps),
+                            std::to_string(candidates) + " candidates make " + to_text(sequences) +
+                                " sequences, above " + to_text(largest_sequence_count),
+                            "Give fewer steps, planner.speeds or planner.turns");
+}
+
 void check_planner(const Scenario& s) {
     const bool heading = s.process == Process::heading;
     if (s.planner.turns && s.planner.turns->empty() && heading)
@@ -88,6 +109,7 @@ void check_planner(const Scenario& s) {
     if (s.planner.turns && !s.planner.turns->empty() && !heading)
         throw invalid_value("planner.turns", turns_text(s.planner.turns), "the translation model does not turn",
                             "Set it to none");
+    check_horizon(s);
 }
 
 void check_arms(const Scenario& s) {
@@ -120,6 +142,7 @@ Scenario resolved(Scenario scenario) {
     const bool heading = scenario.process == Process::heading;
     if (!scenario.planner.speeds) scenario.planner.speeds = heading ? 10 : 5;
     if (!scenario.planner.turns) scenario.planner.turns = default_turns(scenario);
+    if (!scenario.planner.horizon) scenario.planner.horizon = plans_by_horizon(scenario) ? 2 : 1;
     if (!scenario.arms.estimators)
         scenario.arms.estimators = std::vector{heading ? Estimator::ekf : Estimator::kf};
     return scenario;
@@ -160,6 +183,12 @@ std::vector<Edge> edge_list(const Scenario& scenario) {
             break;
     }
     return edges;
+}
+
+int candidate_count(const Scenario& scenario) {
+    const int speeds = 2 * *scenario.planner.speeds + 1;
+    if (scenario.process == Process::heading) return static_cast<int>(scenario.planner.turns->size()) * speeds;
+    return robot_path(scenario) == Path::straight ? speeds : speeds * speeds;
 }
 
 Path robot_path(const Scenario& scenario) {

@@ -116,9 +116,17 @@ void add_control_keys(Keys& keys) {
                     "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
                     [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
                     [](const Scenario& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
-    keys.push_back(integer_key("planner.horizon", "steps planned ahead: 1", 1, 1,
-                               [](auto& s) -> auto& { return s.planner.horizon; }));
-    keys.push_back({"arms.controllers", "fixed, greedy",
+    keys.push_back(
+        {"planner.horizon",
+         "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
+         [](Scenario& s, const std::string& v) {
+             s.planner.horizon.reset();
+             if (v != "default")
+                 s.planner.horizon = static_cast<int>(parse_integer("planner.horizon", v, 1, largest_horizon));
+         },
+         [](const Scenario& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
+         {"default"}});
+    keys.push_back({"arms.controllers", "any of " + joined(controller_names()),
                     [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
                     [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
                     controller_names()});

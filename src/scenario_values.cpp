@@ -169,7 +169,7 @@ std::string published_text(const std::vector<PublishedFigure>& figures) {
 }
 
 const std::vector<std::string>& controller_names() {
-    static const std::vector<std::string> names{"fixed", "greedy"};
+    static const std::vector<std::string> names{"fixed", "greedy", "horizon"};
     return names;
 }
 

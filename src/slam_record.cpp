@@ -1,5 +1,6 @@
 #include <credence/slam_record.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace credence {
@@ -55,6 +56,14 @@ std::string trace_unit(const Scenario& scenario) {
     return scenario.process == Process::heading ? area + " + rad^2" : area;
 }
 
+Charts charts_of(const Scenario& scenario) {
+    const std::vector<Estimator> estimators = *resolved(scenario).arms.estimators;
+    const bool others = std::any_of(estimators.begin(), estimators.end(), [](Estimator estimator) {
+        return estimator != Estimator::ekf && estimator != Estimator::kf;
+    });
+    return others ? Charts::euclidean_and_invariant : Charts::euclidean;
+}
+
 std::vector<Column> trial_columns(const Scenario& scenario) {
     std::vector<Column> columns{
             {"trace_P", "trace of the covariance after the last update", trace_unit(scenario), ColumnType::real, nan},
@@ -98,6 +107,11 @@ std::vector<Figure> step_figures(const Scenario& scenario) {
     for (const auto& [name, unit] : state_components(scenario))
         figures.push_back({"standardised_error_" + name, "error of " + name + " over its predicted standard deviation",
                            "1", FigureRole::standardised_error, 1, false, name, "", 0});
+    if (charts_of(scenario) == Charts::euclidean_and_invariant)
+        for (const StateBlock& block : {blocks[0], blocks[1]})  // the whole state, the pose
+            figures.push_back({of_block("nees_invariant", block),
+                               "NEES of " + described(block) + " with the error in the invariant chart", "1",
+                               FigureRole::nees_in_chart, block.count, false, block.name, "", 0});
     return figures;
 }
 

@@ -83,7 +83,10 @@ std::vector<Column> read_columns(const Handle& arm) {
 ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>& settings) {
     ScenarioResults results;
     Declaration& scenario = results.scenario;
-    scenario.settings = settings;
+    for (const Setting& setting : settings)
+        if (setting.key == "sweep.of") scenario.sweep.of = printable(setting.value);
+        else if (setting.key == "sweep.at") scenario.sweep.at = parse_coordinates(printable(setting.value, setting.value.size()));
+        else scenario.settings.push_back(setting);
     scenario.world = *value_of(settings, world_key);
     scenario.name = value_of(settings, "scenario.name").value_or("");
     scenario.title = hdf5::read_text(group, "title");

@@ -8,6 +8,7 @@
 #include "durable_file.hpp"
 #include "hdf5_driver.hpp"
 #include "hdf5_write.hpp"
+#include "store_sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,7 @@ inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Declarati
     hdf5::write_text(group, "length_unit", scenario.length_unit);
     hdf5::write_text(group, "scenario", scenario_text(scenario));
     hdf5::write_text(group, "blocks", blocks_text(scenario.blocks));
+    write_sweep(group, scenario.sweep);
     return group;
 }
 

@@ -121,6 +121,7 @@ ScenarioResults read_scenario_results(const std::string& name, const Source& sou
     agree("scenario", scenario.name, name);
     agree("title", hdf5::read_text(group, "title"), scenario.title);
     agree("length_unit", hdf5::read_text(group, "length_unit"), scenario.length_unit);
+    check_sweep(group, scenario.sweep);
     require_links(group, scenario.arms);
     for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
     return results;

@@ -62,6 +62,7 @@ std::string role_name(FigureRole role) {
         case FigureRole::rows: return "rows";
         case FigureRole::squared_error: return "squared_error";
         case FigureRole::variance: return "variance";
+        case FigureRole::nees_in_chart: return "nees_in_chart";
         case FigureRole::other: break;
     }
     return "other";

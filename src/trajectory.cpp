@@ -26,7 +26,8 @@ Eigen::Vector2d eigen(const Vector2<double>& v) { return {v.x, v.y}; }
 /// Collects what run_trial passes by.
 class Recorder {
 public:
-    Recorder(const ProblemView& problem, Trajectory& trajectory) : problem_(problem), trajectory_(trajectory) {
+    Recorder(const ProblemView& problem, Controller controller, Trajectory& trajectory)
+        : problem_(problem), controller_(controller), trajectory_(trajectory) {
         trajectory_.steps.resize(static_cast<std::size_t>(problem.poses));
     }
 
@@ -35,12 +36,13 @@ public:
         note_state(layout, truth, belief, trajectory_.steps.front());
     }
 
-    /// Every candidate's cost by the plain form: the trial's own planner prices few of them.
+    /// Every candidate's cost: the trial's own planner prices few of them.
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
-        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
-        plan_plainly(belief, problem_.control, problem_.filter, problem_.sensor, layout, k, *base, *next,
-                     [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
+        const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
+        const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
+        price_candidates(belief, problem_.control, problem_.filter, problem_.sensor, layout, k, problem_.steps_ahead(controller_, k),
+                         *ahead, *last_step, [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
     }
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement, class Linearisation>
@@ -145,6 +147,7 @@ private:
     }
 
     const ProblemView& problem_;
+    Controller controller_;
     Trajectory& trajectory_;
 };
 
@@ -157,9 +160,9 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
     trajectory.source = source;
     trajectory.arm = arm;
     trajectory.columns.resize(column_count);
-    if (arm.controller == Controller::greedy) trajectory.candidates = planner_candidates(scenario);
+    if (arm.controller != Controller::fixed) trajectory.candidates = planner_candidates(scenario);
     std::vector<double> figures(static_cast<std::size_t>(view.figure_count) * static_cast<std::size_t>(view.poses - 1));
-    Recorder recorder(view, trajectory);
+    Recorder recorder(view, arm.controller, trajectory);
     const auto run = [&](auto process, auto estimator) {
         using StateLayout = Layout<process(), any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;

@@ -64,7 +64,7 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
         }
     }
     for (std::size_t a = 0; a < results.arms.size(); ++a)
-        if (const ArmResults* fixed = fixed_partner(results, results.arms[a])) {
+        if (const ArmResults* fixed = partner_of(results, results.arms[a])) {
             const auto partner = static_cast<std::size_t>(fixed - results.arms.data());
             sums.arms[a].difference = RunningMoments::of(paired_differences(trace[a], trace[partner]));
         }

@@ -35,6 +35,19 @@ using Names = std::vector<std::string>;
 
 }  // namespace
 
+TEST_CASE("compare: without --arms, a horizon stands against greedy, or without that against fixed") {
+    const auto arms_of = [](std::vector<Controller> controllers) {
+        Scenario planned = scenario("h");
+        planned.arms.controllers = std::move(controllers);
+        planned.planner.horizon.reset();
+        return unrun("one.h5", {resolved(planned)});
+    };
+    CHECK(names({arms_of({Controller::fixed, Controller::greedy, Controller::horizon})}) ==
+          Names{"h: greedy.ekf - fixed.ekf", "h: horizon.ekf - greedy.ekf"});
+    CHECK(names({arms_of({Controller::horizon, Controller::greedy})}) == Names{"h: horizon.ekf - greedy.ekf"});
+    CHECK(names({arms_of({Controller::fixed, Controller::horizon})}) == Names{"h: horizon.ekf - fixed.ekf"});
+}
+
 TEST_CASE("compare: without --arms, planned against fixed; later files against the first") {
     const Scenario heading = scenario("h"), translation = scenario("t", "translation");
     const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("d/two.h5", {translation}),

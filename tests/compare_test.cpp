@@ -57,7 +57,7 @@ TEST_CASE("compare: every figure is that of the columns") {
         }
     }
     // The same to the last bit as what a report shows beside its arms.
-    const std::vector<Comparison> reported = planned_against_fixed(study);
+    const std::vector<Comparison> reported = planned_against_partners(study);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < 6; ++c) {
             CHECK(reported[s].figures[c].paired.bootstrap95.low ==

@@ -55,6 +55,8 @@ expect 'static straight' credence run --set features.path = s
 expect 'circle static straight' credence run --set features.path =
 expect '' credence run --set noise.heading = ''
 expect 'ekf' credence show --set arms.estimators = e
+expect 'noise.heading=' credence run --sweep noise.he
+expect 'circle' credence run --sweep features.path = c
 keys=$("$credence" show | sed -n 's/^\([a-z]*\.[a-zA-Z_]*\) = .*/\1=/p' | sort | tr '\n' ' ')
 expect "${keys% }" credence run --set ''
 [ "$(wc -w <<<"$keys")" -gt 30 ] || { echo "show has too few keys: $keys"; status=1; }

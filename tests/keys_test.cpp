@@ -24,9 +24,10 @@ struct Influence {
     std::vector<ColumnIndex> untouched;  ///< the same bits for every trial
 };
 
-constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy;
+constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy, horizon = Controller::horizon;
 const Settings circle{{"features.path", "circle"}}, ranged{{"sensor.noise", "ranged"}}, swaying{{"features.sway_amplitude", "0.8"}},
-    turning{{"noise.heading", "0.02"}}, flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}};
+    turning{{"noise.heading", "0.02"}}, flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}},
+    ahead{{"model.process", "translation"}, {"features.path", "circle"}, {"arms.controllers", "fixed, greedy, horizon"}};
 const std::vector<ColumnIndex> sight{column_unseen}, beliefs{column_unseen, column_trace_P},
     all{column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio},
     all_but_reported{column_unseen, column_pose_error, column_nis_ratio};
@@ -74,6 +75,7 @@ const std::vector<Influence>& influences() {
         {"planner.speeds", "1", {}, fixed, column_count, Way::up, all},
         {"planner.turns", "0", circle, greedy, column_trace_P, Way::up, {}},
         {"planner.turns", "0.1, 0.2", circle, fixed, column_count, Way::up, all},
+        {"planner.horizon", "1", ahead, horizon, column_trace_P, Way::up, {}},
         // What the filter believes steers the planner too.
         {"filter.measurement", "0.2", circle, greedy, column_nees_ratio, Way::up, {}},
         {"sensor.range_max", "0.7", circle, greedy, column_unseen, Way::up, {}},
@@ -82,7 +84,7 @@ const std::vector<Influence>& influences() {
 }
 
 /// Keys that change no figure: names, and what is only shown or chosen among arms (block_test.cpp).
-const std::set<std::string> silent_keys{"scenario.name",      "scenario.title",   "scenario.length_unit", "planner.horizon",
+const std::set<std::string> silent_keys{"scenario.name",      "scenario.title",   "scenario.length_unit",
                                         "arms.controllers",   "arms.estimators",  "published.trace_P",    "published.unseen",
                                         "published.pose_error"};
 

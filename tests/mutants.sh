@@ -29,6 +29,7 @@ run_make() {
 nearest() {
   local whole="filter_oracle_test keys_test"  # whole trials; they see the engine through support.cpp only
   case "$1" in
+    *sweep.cpp) echo sweep_test ;;
     *elementary.hpp | *real.hpp) echo elementary_test ;;
     *draws.hpp) echo draws_test draws_statistics_test ;;
     *world.hpp) echo world_test trial_test "$whole" ;;
@@ -39,6 +40,7 @@ nearest() {
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
     *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
+    *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)
       echo planner_test controller_test ;;
     *initialise.hpp | *landmark*) echo landmarks_test ;;

@@ -15,6 +15,7 @@
 #include <credence/stored_run.hpp>
 
 #include <cmath>
+#include <fstream>
 
 using namespace credence;
 using test::TemporaryFolder;
@@ -219,4 +220,20 @@ TEST_CASE("own world: its keys are read, refused and shown like any other") {
     refused("[scenario]\nworld = tracker\n[sensor]\ndetections = 1\n",
             "file.ini:4: unknown key sensor.detections. Did you mean sensor.detection?");
     refused("[scenario]\nworld = tracker\n[noise]\nheading = 1\n", "file.ini:4: unknown key noise.heading");
+}
+
+TEST_CASE("own world: its keys are swept like those of any other") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "mine.ini") << "[scenario]\nworld = tracker\nposes = 30\n";
+    const std::vector<Declaration> grid = read_grid(folder / "mine.ini", {}, parse_grid({"sensor.sigma=0.5,1"}));
+    REQUIRE(grid.size() == 2);
+    CHECK(grid[1].name == "mine_sigma-1");
+    CHECK(grid[1].sweep == SweepPoint{"mine", {{"sensor.sigma", "1"}}});
+    const std::string text = scenario_text(grid[0]);
+    CHECK(scenario_text(read_declaration_text(text, "test", "x")) == text);
+    CHECK(same_results(run(grid[0], 20), run(tracker({{"sensor.sigma", "0.5"}}), 20)));
+    CHECK_THROWS_WITH(read_grid(folder / "mine.ini", {}, parse_grid({"target.period=0"})),
+                      Catch::Contains("--sweep target.period: invalid target.period=0"));
+    CHECK_THROWS_WITH(read_declaration_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
+                      Catch::Contains("the scenario has sensor.sigma=0.5"));
 }

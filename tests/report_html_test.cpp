@@ -34,6 +34,16 @@ const Report& small_report() {
     return report;
 }
 
+/// Two estimators, so that there is a second chart of the error.
+Report charts_report() {
+    Scenario scenario = small_scenarios().front();
+    scenario.arms.controllers = {Controller::fixed};
+    scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
+    Study study = new_study({scenario}, 1);
+    run_study(study, {300, 1, {}});
+    return make_report(study, 0.05);
+}
+
 std::string page_of(const Report& report) {
     return report_html(report,
                        {"study.h5", {{"command_line", "credence run a.ini & <b>"}, {"threads", "2"}}, "credence test"});
@@ -76,13 +86,16 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("page: every figure of the JSON is on it") {
+    const Report with_charts = charts_report();
+    for (const Report* report : {&with_charts, &small_report()}) {
+        std::vector<std::string> missing;
+        missing_numbers(Json::parse(report_json(*report)), "", numbers_of(page_of(*report)), missing);
+        CAPTURE(joined(missing));
+        CHECK(missing.empty());
+    }
     const Json arms = Json::parse(report_json(small_report()));
     const std::set<std::string> shown = numbers_of(page_of(small_report()));
     std::vector<std::string> missing;
-    missing_numbers(arms, "", shown, missing);
-    CAPTURE(joined(missing));
-    CHECK(missing.empty());
-
     Json changed = arms.front();  // the test itself: a figure that is not there is missed
     changed["blocks"][0]["anees"]["ratio"][2] = 0.123456789;
     missing_numbers(changed, "", shown, missing);

@@ -41,7 +41,7 @@ inline std::string documented_shape(const std::vector<std::string>& header, cons
 
 /// What a row of a table says.
 inline void add_row(const std::vector<std::string>& header, const std::vector<std::string>& cells, Facts& facts) {
-    const std::vector<std::string> names = matches(cells[0], R"(`([A-Za-z_]\w*)`)");
+    const std::vector<std::string> names = matches(cells[0], R"(`([A-Za-z_][\w.]*)`)");
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (header[0] == "figure F") {
             facts.insert("figure " + names[i] + ": " + cells[1]);
@@ -116,8 +116,9 @@ inline void add_attributes(const hdf5::Handle& object, const std::string& kind, 
         const hdf5::Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, name, "");
         const hdf5::Handle type(H5Aget_type(attribute.id()), H5Tclose, name, "");
         const std::string found = type_name(type.id(), name);
+        const std::string said = name.starts_with("sweep.") ? "sweep.KEY" : name;
         const bool fill = name == "_FillValue" && found == own_type;
-        facts.insert((of_figures.count(name) > 0 ? "figure attribute " : kind + " attribute ") + name + ": " +
+        facts.insert((of_figures.count(name) > 0 ? "figure attribute " : kind + " attribute ") + said + ": " +
                      (fill ? "as the variable" : found));
     }
 }

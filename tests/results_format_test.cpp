@@ -40,7 +40,15 @@ TEST_CASE("results format: the documentation and the files say the same of every
     wide.features.positions.assign(23, {0.5, 0.5});
     write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0),
                                              replay_trial(Problem(wide), {Controller::fixed}, 1, 0)}, {});
-    const Facts results = found_in(folder / "study.h5"), trajectories = found_in(folder / "trace.h5");
+    Declaration point = declaration_of(scenario("swept_sigma-0p05_noise-constant"));
+    point.sweep = {"swept", {{"sensor.sigma", "0.05"}, {"sensor.noise", "constant"}}};
+    write_results(folder / "swept.h5", new_study(std::vector{point}, 1), {});
+    Scenario charts = scenario("charts");
+    charts.arms.estimators = {Estimator::ekf, Estimator::riekf};
+    write_results(folder / "charts.h5", made_up_study({charts}), {});
+    const Facts results = together(together(found_in(folder / "study.h5"), found_in(folder / "swept.h5")),
+                                   found_in(folder / "charts.h5")),
+                trajectories = found_in(folder / "trace.h5");
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
     const Facts common = documented(part_of_page(page, "# The files", "## What a reader")),
                 of_results = documented(part_of_page(page, "## Results", "## `/run`")),

@@ -56,8 +56,8 @@ inline ExactSum awkward_sum(std::size_t i) {
 }
 
 /// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 diverged.
-inline Study made_up_study() {
-    Study study = new_study({scenario("first"), scenario("second", "translation")}, 18446744073709551615u);
+inline Study made_up_study(const std::vector<Scenario>& scenarios = {scenario("first"), scenario("second", "translation")}) {
+    Study study = new_study(scenarios, 18446744073709551615u);
     study.trials = 5;
     study.complete = true;
     for (ScenarioResults& results : study.scenarios) {

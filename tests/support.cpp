@@ -89,7 +89,8 @@ Eigen::VectorXd true_state(const Layout& layout, const Truth& truth) {
 /// Writes down what run_trial passes by.
 class Scribe {
 public:
-    Scribe(Run& run, const ProblemView& view) : run_(run), view_(view), edges_(view.filter.edge_count) {}
+    Scribe(Run& run, const ProblemView& view, Controller controller)
+        : run_(run), view_(view), controller_(controller), edges_(view.filter.edge_count) {}
 
     template <class Layout, class Truth, class Belief>
     void started(const Layout& layout, const Truth& truth, const Belief& belief) {
@@ -101,9 +102,10 @@ public:
 
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
-        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
-        plan_plainly(belief, view_.control, view_.filter, view_.sensor, layout, k, *base, *next,
-                     [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
+        const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
+        const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
+        price_candidates(belief, view_.control, view_.filter, view_.sensor, layout, k, view_.steps_ahead(controller_, k),
+                         *ahead, *last_step, [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
     }
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement>
@@ -136,6 +138,7 @@ private:
 
     Run& run_;
     const ProblemView& view_;
+    Controller controller_;
     int edges_;
 };
 
@@ -168,7 +171,7 @@ Run run_arm(const Scenario& scenario, const Arm& arm, const AnyNoise& noise, For
     run.steps.resize(static_cast<std::size_t>(view.poses));
     for (const Figure& figure : step_figures(scenario)) run.names.push_back(figure.name);
     Eigen::MatrixXd by_step(view.poses - 1, view.figure_count);  // Eigen's columns are the engine's rows
-    Scribe scribe(run, view);
+    Scribe scribe(run, view, arm.controller);
     if (view.process == Process::heading)
         run_process<Process::heading>(view, arm, noise, form, scribe, run.columns.data(), by_step.data());
     else

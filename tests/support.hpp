@@ -63,7 +63,7 @@ struct RunStep {
     std::vector<bool> seen;
     Eigen::VectorXd sigma;                         ///< [M] true sigma of each sighting
     Eigen::MatrixXd sighting, edge;                ///< [M, 2] body frame, [edges, 2] world frame
-    std::vector<double> candidate_cost;            ///< greedy only
+    std::vector<double> candidate_cost;            ///< planned only
 };
 
 /// One trial of one arm by the production code.

@@ -41,6 +41,8 @@ TEST_CASE("scenario: keys that contradict each other are refused, naming one of 
         {{{"edges.graph", "1-2"}, {"features.positions", "1 1, 2 2"}}, "edges.graph"},
         {{{"planner.turns", "none"}}, "planner.turns"},
         {{{"model.process", "translation"}, {"planner.turns", "0"}}, "planner.turns"},
+        {{{"planner.horizon", "2"}}, "planner.horizon"},
+        {{{"arms.controllers", "horizon"}, {"features.path", "circle"}, {"planner.horizon", "4"}}, "planner.horizon"},
         {{{"arms.estimators", "kf"}}, "arms.estimators"},
         {{{"arms.estimators", "ekf, kf"}}, "arms.estimators"},
         {{{"model.process", "translation"}, {"arms.estimators", "ekf"}}, "arms.estimators"},

@@ -34,4 +34,5 @@ table() {
 }
 
 table "NEES/dim of the whole state; of the pose ($trials trials each, 95 %)" nees_per_dimension:all nees_per_dimension:pose
+table "The same with the error in the invariant chart" nees_per_dimension_invariant:all nees_per_dimension_invariant:pose
 table "Pose: squared error summed over all poses" pose_error

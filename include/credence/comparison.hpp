@@ -58,7 +58,7 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
 /// Fills in holm_p over all figures of all comparisons.
 void correct_together(std::vector<Comparison>& comparisons);
 
-/// greedy - fixed of the same estimator, for every scenario that has both.
-std::vector<Comparison> planned_against_fixed(const Study& study);
+/// Every planned arm against its partner: greedy - fixed of the same estimator, horizon - greedy.
+std::vector<Comparison> planned_against_partners(const Study& study);
 
 }  // namespace credence

@@ -1,6 +1,6 @@
 #pragma once
 // Room 7: who steers. The fixed path is a table; the greedy planner takes, of its candidates, the one whose next
-// trace(P) is least [model.md, Controllers].
+// trace(P) is least [model.md, Controllers]; horizon.hpp looks further ahead.
 
 #include <credence/update.hpp>
 
@@ -12,6 +12,7 @@ struct ControlParameters {
     const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
     const Control* candidates = nullptr;  ///< in the order in which ties are decided
     int candidate_count = 0;
+    int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
 };
 
 inline namespace CREDENCE_UNIT {
@@ -57,12 +58,20 @@ CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Comm
     return trace(next.covariance, n);
 }
 
+/// The smaller one; b where a is no number.
+template <class Real>
+Real smaller(Real a, Real b) { return select(a < b, a, b); }
+
+/// More than any cost.
+template <class Real>
+Real without_limit() { return Real(std::numeric_limits<double>::infinity()); }
+
 /// Keeps the running minimum and the choice: a candidate replaces it when its cost <= best (1 + 1e-12), so that the
 /// later of equals wins.
 template <class Real>
 struct Choice {
     Command<Real> command;
-    Real best = Real(std::numeric_limits<double>::infinity());
+    Real best = without_limit<Real>();
 
     void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
 

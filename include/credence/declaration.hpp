@@ -3,6 +3,7 @@
 // settings as text. What the settings mean, its world knows [worlds.hpp].
 
 #include <credence/record.hpp>
+#include <credence/sweep.hpp>
 
 #include <string>
 #include <vector>
@@ -31,13 +32,18 @@ struct Declaration {
     std::vector<Component> components;   ///< of the state, [n]
     std::vector<StateBlock> blocks;      ///< that are judged by themselves, the whole state (`all`) first
     std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
+    SweepPoint sweep{};                  ///< its place in a grid; empty: in none
 };
 
-/// A scenario as an INI text that names every key. Reading it back gives the same scenario.
+/// A scenario as an INI text that names every key, and its place in a grid where it has one. Reading it back gives the
+/// same scenario.
 std::string scenario_text(const Declaration& scenario);
 
 /// The controller in an arm's name.
 std::string controller_of(const std::string& arm);
+
+/// A key's value; empty where the scenario has no such key.
+std::string value_of(const Declaration& scenario, const std::string& key);
 
 /// A key in which two scenarios differ, with both values; empty where one of them has no such key.
 struct KeyDifference {

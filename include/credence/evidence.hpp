@@ -50,6 +50,16 @@ struct BlockEvidence {
     Accuracy accuracy;
 };
 
+/// NEES of a block with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown beside the
+/// block's own, never judged.
+struct ChartEvidence {
+    std::string chart, block;                  ///< invariant; all, pose
+    int dimension = 0;
+    Moments run;                               ///< of NEES/dim, averaged over each trial's steps
+    std::vector<Moments> step;                 ///< of NEES/dim
+    BandedRatio anees;
+};
+
 /// The innovations of a group of rows: all, features or edges.
 struct NisEvidence {
     std::string part;
@@ -90,6 +100,7 @@ struct Evidence {
     std::int64_t trials = 0;                   ///< that did not fail
     int steps = 0;
     std::vector<BlockEvidence> blocks;         ///< the whole state first
+    std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
     std::vector<NisEvidence> nis;              ///< all rows first; groups without rows are left out
     std::vector<Whiteness> whiteness;
     std::vector<BiasEvidence> bias;

@@ -27,6 +27,11 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
                                   const Overrides& overrides = {});
 Declaration read_declaration(const std::string& path, const Overrides& overrides = {});
 
+/// The scenarios of a file's grid, in the grid's order: each with overrides, then its values of the axes, and named
+/// after its place [point_name]. Without axes: the file's own scenario. Throws InputError, naming the point.
+std::vector<Declaration> read_grid(const std::string& path, const Overrides& overrides,
+                                   const std::vector<SweepAxis>& axes);
+
 /// The keys and values of a text as they stand there, whatever they mean. Throws InputError for broken lines and
 /// repeated keys.
 std::vector<Setting> read_settings(const std::string& text, const std::string& origin);

@@ -3,6 +3,7 @@
 //
 //   e  error x^ - x [n], P  covariance [n, n]; NEES e' P^-1 e of the whole state and of each block, with its own P
 
+#include <credence/invariant_chart.hpp>
 #include <credence/problem.hpp>
 
 namespace credence {
@@ -188,6 +189,12 @@ CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
     add_by_block(layout, square, write);
     const Real inverse_root = Real(1 / __builtin_sqrt(reported));
     each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
+    if constexpr (Layout::has_heading)
+        if (problem.charts == Charts::euclidean_and_invariant) {
+            const InvariantNees<Real> nees = nees_in_invariant_chart(belief, layout, error, work);
+            write(nees.all * Real(1 / reported));
+            write(nees.pose * Real(1 / reported));
+        }
 
     sums.nees = sums.nees + whole;
     sums.nis = sums.nis + update.nis;

@@ -28,11 +28,14 @@ void prepare_still(const Belief<Real, capacity>& belief, const FilterParameters&
     });
 }
 
-/// Greedy control by screening, then deciding in the space of the measurements.
+// Each form chooses from `work.still`. Whoever knows of something that costs `limit` gives it: a choice is exact where
+// it costs no more than that, or as good as no more; where it costs more, it costs more than that in any case.
+
+/// By screening, then deciding in the space of the measurements.
 template <bool ranged, class Layout, class Real>
-Command<Real> plan_by_screening(const ControlParameters& control, const FilterParameters& filter,
-                                const SensorParameters& sensor, const Layout& layout,
-                                PlannerWorkspace<Layout, Real>& work) {
+Choice<Real> choose_by_screening(const ControlParameters& control, const FilterParameters& filter,
+                                 const SensorParameters& sensor, const Layout& layout, Real limit,
+                                 PlannerWorkspace<Layout, Real>& work) {
     auto& still = work.still;
     auto& screening = work.screening;
     auto& space = work.space;
@@ -52,8 +55,7 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
         Command<Real> command = fetch_each(control, reference);
         const TurnedTrace<Real> rest = tangent(still, space.position + world_move<Layout>(heading, command.move),
                                                filter, sensor, layout, parameters.kappa, screening);
-        const Real known = cost(command);
-        const Real threshold = select(known < choice.best, known, choice.best) * Real(1 + 1e-9);
+        const Real threshold = smaller(cost(command), smaller(choice.best, limit)) * Real(1 + 1e-9);
         screen(rest, threshold, heading, control, layout, first, count, screening);
         for (int turn = 0;; ++turn) {
             const Mask<Real> offered = fetch_queued(control, screening, turn, command);
@@ -61,18 +63,31 @@ Command<Real> plan_by_screening(const ControlParameters& control, const FilterPa
             choice.offer(command, cost(command), offered);
         }
     }
-    return choice.command;
+    return choice;
 }
 
-/// Greedy control of the translation model with constant noise and few features.
+/// For the translation model with constant noise and few features.
 template <class Layout, class Real>
-Command<Real> plan_by_visible_sets(const ControlParameters& control, const FilterParameters& filter,
-                                   const SensorParameters& sensor, const Layout& layout,
-                                   PlannerWorkspace<Layout, Real>& work) {
+Choice<Real> choose_by_visible_sets(const ControlParameters& control, const FilterParameters& filter,
+                                    const SensorParameters& sensor, const Layout& layout,
+                                    PlannerWorkspace<Layout, Real>& work) {
+    const int set_count = 1 << layout.features();
     enter_measurement_space(work.still, filter, layout, work.space);
     gather_sets(work.still, control, sensor, layout, work.sets);
     price_sets(work.space, filter, sensor, layout, work.elimination, work.sets);
-    return fetch_each(control, last_of_best(1 << layout.features(), work.sets));
+    const Real best = least_cost(set_count, work.sets);
+    return {fetch_each(control, last_of_best(set_count, best, work.sets)), best};
+}
+
+template <class Layout, class Real>
+Choice<Real> choose(const ControlParameters& control, const FilterParameters& filter, const SensorParameters& sensor,
+                    const Layout& layout, Real limit, PlannerWorkspace<Layout, Real>& work) {
+    if constexpr (!Layout::has_heading)
+        if (sensor.noise == RangeNoise::constant && layout.features() <= largest_tabled_count)
+            return choose_by_visible_sets(control, filter, sensor, layout, work);
+    if (sensor.noise == RangeNoise::ranged)
+        return choose_by_screening<true>(control, filter, sensor, layout, limit, work);
+    return choose_by_screening<false>(control, filter, sensor, layout, limit, work);
 }
 
 /// Greedy control from pose k - 1 to k, given the belief at pose k - 1.
@@ -81,11 +96,7 @@ Command<Real> plan(const Belief<Real, capacity>& belief, const ControlParameters
                    const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
                    PlannerWorkspace<Layout, Real>& work) {
     prepare_still(belief, filter, layout, k, work.still);
-    if constexpr (!Layout::has_heading)
-        if (sensor.noise == RangeNoise::constant && layout.features() <= largest_tabled_count)
-            return plan_by_visible_sets(control, filter, sensor, layout, work);
-    if (sensor.noise == RangeNoise::ranged) return plan_by_screening<true>(control, filter, sensor, layout, work);
-    return plan_by_screening<false>(control, filter, sensor, layout, work);
+    return choose(control, filter, sensor, layout, without_limit<Real>(), work).command;
 }
 
 }  // namespace CREDENCE_UNIT

@@ -1,7 +1,7 @@
 #pragma once
 // Room 8: a scenario made ready: the tables that its equations read, computed once.
 
-#include <credence/planner.hpp>
+#include <credence/horizon.hpp>
 #include <credence/slam_record.hpp>
 
 namespace credence {
@@ -22,7 +22,14 @@ struct CommonView {
     FilterParameters filter;
     int block_count = 0;
     int figure_count = 0;
+    Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+
+    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    int steps_ahead(Controller controller, int k) const {
+        if (controller != Controller::horizon) return 1;
+        return control.horizon < poses - k ? control.horizon : poses - k;
+    }
 };
 
 /// What a trial in the deforming world reads beside that.
@@ -65,7 +72,7 @@ std::vector<Point> feature_translations(const Scenario& scenario);
 std::vector<Point> sway_offsets(const Scenario& scenario);
 /// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
 std::vector<Control> fixed_controls(const Scenario& scenario);
-/// The greedy planner's candidates in the order that decides ties [model.md, Controllers].
+/// The planners' candidates in the order that decides ties [model.md, Controllers].
 std::vector<Control> planner_candidates(const Scenario& scenario);
 
 }  // namespace credence

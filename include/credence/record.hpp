@@ -39,6 +39,7 @@ enum class FigureRole {
     rows,                ///< number of measurement rows
     squared_error,       ///< |e|^2 of one block of the state
     variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
+    nees_in_chart,       ///< NEES of a block with its error in another chart: shown beside `nees`, never judged
     other,
 };
 

@@ -48,7 +48,7 @@ struct Report {
     std::vector<Declaration> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that are in no figure, the first ones
-    std::vector<Comparison> pairs;          ///< planned against fixed: greedy - fixed of the same estimator, by trial
+    std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 
 /// Figures of failed trials are left out (they are NaN); their number is given beside.

@@ -90,8 +90,9 @@ std::vector<double> figure_values(const ScenarioResults& results, const ArmResul
 /// The arms that a name means: the one that has it, or all of that controller.
 std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name);
 
-/// `fixed.X` beside `greedy.X`; nullptr where there is none, or where the arm is no greedy one.
-const ArmResults* fixed_partner(const ScenarioResults& results, const ArmResults& arm);
+/// The arm that a planned one is compared with: `fixed.X` beside `greedy.X`; beside `horizon.X` the greedy one, or the fixed
+/// one. nullptr where there is none.
+const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& arm);
 
 /// Trials in block `blocks[place]`.
 std::int64_t block_rows(const ScenarioResults& results, std::size_t place);

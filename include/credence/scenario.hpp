@@ -46,7 +46,8 @@ enum class RangeNoise { constant, ranged };
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };
-enum class Controller { fixed, greedy };
+/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over some steps is.
+enum class Controller { fixed, greedy, horizon };
 /// How the state is estimated, in the order of estimator_list.hpp.
 enum class Estimator {
 #define CREDENCE_ESTIMATOR(name, process, Type) name,
@@ -100,7 +101,7 @@ struct FilterSettings {
 struct PlannerSettings {
     std::optional<int> speeds;                    ///< half-width of the grid in steps of d/5; none: the process's own
     std::optional<std::vector<double>> turns;     ///< rad; none: the path's own
-    int horizon = 1;
+    std::optional<int> horizon;                   ///< steps; none: 2 where an arm plans by a horizon, else 1
 };
 
 struct ArmSettings {
@@ -146,6 +147,9 @@ struct Arm {
 
 inline constexpr int largest_feature_count = 64;
 inline constexpr int largest_pose_count = 100000;
+inline constexpr int largest_horizon = 8;
+/// Sequences of candidates that a horizon may have, at most: each step of each trial goes through all of them.
+inline constexpr double largest_sequence_count = 1e7;
 
 /// The scenario with every default that depends on another key filled in: the planner's grid, the estimators, the
 /// edge list. What is shown, hashed and stored is always resolved.
@@ -163,6 +167,9 @@ std::string arm_name(const Arm& arm);
 
 /// The edge list of a scenario in graph order: for `all`, a outer and b inner, a < b.
 std::vector<Edge> edge_list(const Scenario& scenario);
+
+/// The planners' candidates at each pose, of a resolved scenario [model.md, Controllers].
+int candidate_count(const Scenario& scenario);
 
 /// Path that the robot is steered by: control.path, or the features' own.
 Path robot_path(const Scenario& scenario);

@@ -15,6 +15,11 @@ std::vector<Component> state_components(const Scenario& scenario);
 /// Unit of trace(P): length^2, and in the heading model + rad^2.
 std::string trace_unit(const Scenario& scenario);
 
+/// In which charts of the error NEES are reported. Where all estimators are the process model's own, in its own alone.
+enum class Charts { euclidean, euclidean_and_invariant };
+
+Charts charts_of(const Scenario& scenario);
+
 /// Positions in the list of `trial_columns`.
 enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
                    column_mean_trace_P, column_status, column_status_pose, column_count };

@@ -31,7 +31,7 @@ struct TrajectoryStep {
     Eigen::MatrixXd innovation_covariance;  ///< [m, m], NaN where not observed
     double nees = 0, nis = 0, trace_P = 0;
     int rows = 0;
-    std::vector<double> candidate_cost;     ///< [C] trace(P) each candidate promised; greedy only
+    std::vector<double> candidate_cost;     ///< [C] trace(P) each candidate promised; planned only
 };
 
 struct Trajectory {
@@ -40,7 +40,7 @@ struct Trajectory {
     std::string source;                     ///< where its noise came from: `root seed 1, trial 17`, `noise record`
     std::vector<double> columns;            ///< [column_count], as in the results file
     std::vector<TrajectoryStep> steps;      ///< [K]
-    std::vector<Control> candidates;        ///< [C]; greedy only
+    std::vector<Control> candidates;        ///< [C]; planned only
 
     /// Innovations are kept up to this many rows; beyond, a single trial would take gigabytes.
     static constexpr int largest_innovation = 512;

@@ -16,6 +16,7 @@ inline namespace CREDENCE_UNIT {
 template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
 struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
     PlannerWorkspace<Layout, Real> planner;
+    HorizonWorkspace<Layout, Real> horizon;
 };
 
 /// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
@@ -45,8 +46,9 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     for (int k = 1; k < problem.poses; ++k) {
         // Choose where to go, from what is believed.
         Command<Real> command = command_from<Real>(problem.control.fixed[k - 1]);
-        if (controller == Controller::greedy) {
-            command = plan(belief, problem.control, problem.filter, problem.sensor, layout, k, work.planner);
+        if (controller != Controller::fixed) {
+            command = plan_ahead(belief, problem.control, problem.filter, problem.sensor, layout, k,
+                                 problem.steps_ahead(controller, k), work.horizon, work.planner);
             observer.planned(k, layout, belief);
         }
 

@@ -54,17 +54,27 @@ CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const
     }
 }
 
+/// Where some candidate sees the set.
+template <class Real>
+Mask<Real> offered(int set, const VisibleSets<Real>& sets) { return load<Real>(sets.last[set]) >= Real(0); }
+
+/// The least cost of the sets that some candidate sees; infinity where there is none.
+template <class Real>
+Real least_cost(int set_count, const VisibleSets<Real>& sets) {
+    Real least = without_limit<Real>();
+    for (int set = 0; set < set_count; ++set)
+        least = select(both(offered(set, sets), sets.cost[set] < least), sets.cost[set], least);
+    return least;
+}
+
 /// The number of the candidate that wins in each lane, -1 for none: of the sets that some candidate sees, those within
 /// 1e-12 of the least cost; of those, the last candidate.
 template <class Real>
-Real last_of_best(int set_count, const VisibleSets<Real>& sets) {
-    Real best = Real(std::numeric_limits<double>::infinity()), winner = Real(-1);
-    const auto offered = [&](int set) { return load<Real>(sets.last[set]) >= Real(0); };
-    for (int set = 0; set < set_count; ++set)
-        best = select(both(offered(set), sets.cost[set] < best), sets.cost[set], best);
+Real last_of_best(int set_count, Real best, const VisibleSets<Real>& sets) {
+    Real winner = Real(-1);
     for (int set = 0; set < set_count; ++set) {
         const Real last = load<Real>(sets.last[set]);
-        const Mask<Real> good = both(offered(set), sets.cost[set] <= best * Real(1 + 1e-12));
+        const Mask<Real> good = both(offered(set, sets), sets.cost[set] <= best * Real(1 + 1e-12));
         winner = select(both(good, last > winner), last, winner);
     }
     return winner;

@@ -103,6 +103,11 @@ Overrides Parsed::overrides() const {
     return overrides;
 }
 
+std::vector<SweepAxis> Parsed::sweep() const {
+    const auto found = values.find("sweep");
+    return found == values.end() ? std::vector<SweepAxis>{} : parse_grid(found->second);
+}
+
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments) {
     const po::options_description description = described(command);
     Parsed parsed;
@@ -151,6 +156,12 @@ void write_output(const Parsed& parsed, const std::string& text) {
 
 Option set_option() {
     return {"set", "section.key=value", "override a key of every scenario; repeatable, the last wins", true};
+}
+
+Option sweep_option() {
+    return {"sweep", "section.key=VALUES",
+            "run every scenario at each of these values: a,b,c, or a range first:last:count, or first:last:count:log; "
+            "a|b where values hold commas; repeatable: a grid, the first key slowest; after --set", true};
 }
 
 Option margin_option() {

@@ -48,6 +48,8 @@ public:
     std::string choice(const std::string& option) const;
     /// `--set section.key=value`, in order.
     Overrides overrides() const;
+    /// The axes of `--sweep section.key=VALUES`, in order; throws InputError.
+    std::vector<SweepAxis> sweep() const;
 };
 
 /// Reads the arguments after the subcommand; throws InputError for an unknown, repeated or incomplete option, with the
@@ -65,6 +67,7 @@ void write_output(const Parsed& parsed, const std::string& text);
 
 // Options that several commands share.
 Option set_option();
+Option sweep_option();
 Option margin_option();
 Option output_option(const std::string& help, const std::string& value = "FILE");
 /// --format: the first of `formats` by default.

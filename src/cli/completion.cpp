@@ -53,7 +53,7 @@ std::string arguments_reply(const Command& command) {
 
 /// What completes the value of an option; empty where nothing does.
 std::string value_reply(const Option& option) {
-    if (option.name == "set") return "_credence_keys";
+    if (option.value.starts_with("section.key=")) return "_credence_keys";
     if (!option.choices.empty()) return "_credence_words " + joined(option.choices, " ");
     const std::string extension = extension_of(option.value);
     return extension.empty() ? ":" : "_credence_files " + extension;

@@ -16,14 +16,16 @@ std::string threads_text(const RunRequest& request) {
 
 namespace {
 
-/// Seconds that one trial of a scenario takes on one thread: tried with more and more of them, for a fifth of a second.
+/// Seconds that one trial of a scenario takes on one thread: tried with more and more of them, for a fifth of a second,
+/// or less where there are many scenarios.
 double seconds_of_a_trial(const Declaration& scenario, const RunRequest& request) {
+    const double enough = std::min(0.1, 5 / static_cast<double>(request.scenarios.size()));
     const BlockRunner runner(scenario);
     for (int trials = 1;; trials *= 2) {
         const auto start = std::chrono::steady_clock::now();
         runner.run(request.root_seed, 0, trials);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (seconds > 0.1 || trials == block_size || trials >= request.options.trials) return seconds / trials;
+        if (seconds > enough || trials == block_size || trials >= request.options.trials) return seconds / trials;
     }
 }
 

@@ -37,6 +37,20 @@ Start start_of(const Parsed& parsed) {
     return parsed.has("resume") ? Start::resume : parsed.has("overwrite") ? Start::overwrite : Start::fresh;
 }
 
+/// Those of the files, each at every point of the grid.
+std::vector<Declaration> scenarios_of(const Parsed& parsed) {
+    const std::vector<SweepAxis> axes = parsed.sweep();
+    const std::size_t count = parsed.arguments.size() * point_count(axes);
+    if (!axes.empty() && count > most_swept_scenarios)
+        throw invalid_value("--sweep", joined(parsed.values.at("sweep")),
+                            "so many points of so many files are " + std::to_string(count) + " scenarios",
+                            "Give at most " + std::to_string(most_swept_scenarios) + " in one study");
+    std::vector<Declaration> scenarios;
+    for (const std::string& path : parsed.arguments)
+        for (Declaration& one : read_grid(path, parsed.overrides(), axes)) scenarios.push_back(std::move(one));
+    return scenarios;
+}
+
 }  // namespace
 
 RunRequest read_request(const Parsed& parsed) {
@@ -59,8 +73,7 @@ RunRequest read_request(const Parsed& parsed) {
     if (request.options.shard.count > 1 && !request.goals.empty())
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
                          "one of them.");
-    for (const std::string& path : parsed.arguments)
-        request.scenarios.push_back(read_declaration(path, parsed.overrides()));
+    request.scenarios = scenarios_of(parsed);
     return request;
 }
 

@@ -8,19 +8,36 @@
 namespace credence::cli {
 
 const Command& show_command() {
-    static const Command command{"show", "[SCENARIO.ini] [--set section.key=value]...",
+    static const Command command{"show", "[SCENARIO.ini] [--set section.key=value]... [--sweep section.key=VALUES]...",
                                  "print a scenario as resolved, every default visible",
-                                 "\nWithout a file: the defaults, with what each key means.\n",
-                                 {set_option()}};
+                                 "\nWithout a file: the defaults, with what each key means. With --sweep: every point of the\n"
+                                 "grid.\n",
+                                 {set_option(), sweep_option()}};
     return command;
 }
 
+namespace {
+
+/// One is a file that can be run; of several, each is one.
+void show_scenarios(const std::vector<Declaration>& scenarios) {
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+        if (scenarios.size() > 1)
+            std::cout << (i > 0 ? "\n" : "") << "# " << i + 1 << " of " << scenarios.size() << ": "
+                      << scenarios[i].name << "\n";
+        std::cout << scenario_text(scenarios[i]);
+    }
+}
+
+}  // namespace
+
 int show(const Parsed& parsed) {
     if (parsed.arguments.size() > 1) throw InputError("show takes one scenario. Give one file.");
+    const std::vector<SweepAxis> axes = parsed.sweep();
     if (!parsed.arguments.empty()) {
-        std::cout << scenario_text(read_declaration(parsed.arguments.front(), parsed.overrides()));
+        show_scenarios(read_grid(parsed.arguments.front(), parsed.overrides(), axes));
         return 0;
     }
+    if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
     const Declaration scenario = read_declaration_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
     for (const Setting& setting : scenario.settings)

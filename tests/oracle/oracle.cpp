@@ -2,11 +2,10 @@
 
 #include "oracle.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 namespace credence::oracle {
 
@@ -27,7 +26,8 @@ double condition(const Eigen::MatrixXd& symmetric) {
     return solver.eigenvalues().maxCoeff() / solver.eigenvalues().minCoeff();
 }
 
-/// Control from pose k-1 to k, with the candidates' costs when greedy [model.md, Controllers].
+/// Control from pose k-1 to k, with the candidates' costs when planned [model.md, Controllers]. A horizon ends at the
+/// last pose.
 void choose_control(const Scenario& scenario, Controller controller, const Belief& belief, int k, Step& step) {
     if (controller == Controller::fixed) {
         step.control = fixed_control(scenario, k - 1);
@@ -35,8 +35,9 @@ void choose_control(const Scenario& scenario, Controller controller, const Belie
     }
     const std::vector<Control> list = candidates(scenario);
     step.candidate_cost.resize(static_cast<Eigen::Index>(list.size()));
+    const int steps = controller == Controller::greedy ? 1 : std::min(*scenario.planner.horizon, scenario.poses - k);
     for (std::size_t i = 0; i < list.size(); ++i)
-        step.candidate_cost[static_cast<Eigen::Index>(i)] = candidate_cost(scenario, belief, list[i], k);
+        step.candidate_cost[static_cast<Eigen::Index>(i)] = cost_ahead(scenario, belief, list[i], k, steps);
     step.control = list[static_cast<std::size_t>(greedy_choice(step.candidate_cost))];
 }
 
@@ -110,9 +111,6 @@ void sum_up(const Scenario& scenario, Trial& trial) {
 }  // namespace
 
 Trial run(const Scenario& scenario, Controller controller, const Noise& noise) {
-    if (scenario.planner.horizon != 1)
-        throw std::invalid_argument("invalid planner.horizon=" + std::to_string(scenario.planner.horizon) +
-                                    " (the oracle plans one step ahead). Set it to 1");
     Trial trial;
     World world = first_world(scenario, noise);
     Belief belief = first_belief(scenario, world, noise);

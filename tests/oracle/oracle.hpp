@@ -45,7 +45,7 @@ struct Step {
     double nis = 0;                                       ///< 0 if there are no rows
     double trace_P = 0;                                   ///< of the reported covariance; adds rad^2 to length^2
     int rows = 0;                                         ///< m
-    Eigen::VectorXd candidate_cost;                       ///< per candidate, unreported trace(P); greedy only
+    Eigen::VectorXd candidate_cost;                       ///< per candidate, unreported trace(P), summed over the horizon
     double condition_of_S = 1;                            ///< 2-norm; 1 if there are no rows
 };
 
@@ -60,7 +60,7 @@ struct Trial {
 };
 
 /// Runs one trial from pose 0 to K-1. Makes no check of the scenario and knows no status: a trial that breaks down
-/// goes on with what arithmetic gives. Throws std::invalid_argument for a planner's horizon other than 1.
+/// goes on with what arithmetic gives.
 Trial run(const Scenario& scenario, Controller controller, const Noise& noise);
 
 // Sizes and places in the state ---------------------------------------------------------------------------------------
@@ -131,6 +131,7 @@ Path path_of_robot(const Scenario& scenario);                      ///< control.
 Control fixed_control(const Scenario& scenario, int k);            ///< from pose k to k+1
 std::vector<Control> candidates(const Scenario& scenario);         ///< in the order of model.md
 double candidate_cost(const Scenario& scenario, const Belief& belief, const Control& control, int k);
+double cost_ahead(const Scenario& scenario, const Belief& belief, const Control& control, int k, int steps);
 int greedy_choice(const Eigen::VectorXd& cost);                    ///< index of the chosen candidate
 
 }  // namespace credence::oracle

@@ -1,4 +1,4 @@
-// Controllers of the oracle: the fixed path, and the greedy planner by brute force. Nomenclature: oracle.hpp.
+// Controllers of the oracle: the fixed path, and the planners by brute force. Nomenclature: oracle.hpp.
 
 #include "oracle.hpp"
 
@@ -86,10 +86,10 @@ std::vector<Control> candidates(const Scenario& scenario) {
     return scenario.process == Process::heading ? candidates_of_heading(scenario) : candidates_of_translation(scenario);
 }
 
-/// Cost of a control from the belief at pose k-1 to pose k: predict, gate and take sigma at the predicted mean, update
-/// the covariance, trace(P). What is in range is assumed to be detected; filter.covariance has no part in it
-/// [model.md, Controllers, greedy].
-double candidate_cost(const Scenario& scenario, const Belief& belief, const Control& control, int k) {
+/// The belief that a control is expected to lead to from pose k-1 to pose k: predict, gate and take sigma at the predicted
+/// mean, update the covariance; the mean stays the predicted one. What is in range is assumed to be detected;
+/// filter.covariance has no part in it [model.md, Controllers, greedy].
+Belief expected(const Scenario& scenario, const Belief& belief, const Control& control, int k) {
     const Belief prior = predict(scenario, belief, control, k);
     std::vector<bool> seen;
     Eigen::VectorXd sigma(feature_count(scenario));
@@ -101,8 +101,24 @@ double candidate_cost(const Scenario& scenario, const Belief& belief, const Cont
         sigma[j] = scenario.filter.measurement * measurement_sigma(scenario, q);
     }
     const Prediction prediction = predicted_measurements(scenario, prior.x, seen, sigma);
-    if (prediction.N.size() == 0) return prior.P.trace();
-    return correct(prior.P, prediction).P.trace();
+    if (prediction.N.size() == 0) return prior;
+    return {prior.x, correct(prior.P, prediction).P};
+}
+
+/// Cost of a control from the belief at pose k-1 to pose k: trace(P) there [model.md, Controllers, greedy].
+double candidate_cost(const Scenario& scenario, const Belief& belief, const Control& control, int k) {
+    return expected(scenario, belief, control, k).P.trace();
+}
+
+/// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any sequence
+/// of them has.
+double cost_ahead(const Scenario& scenario, const Belief& belief, const Control& control, int k, int steps) {
+    const Belief next = expected(scenario, belief, control, k);
+    if (steps == 1) return next.P.trace();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Control& following : candidates(scenario))
+        least = std::min(least, cost_ahead(scenario, next, following, k + 1, steps - 1));
+    return next.P.trace() + least;
 }
 
 /// Index of the choice among the costs: going through them in order, one replaces the choice when its cost is

@@ -165,4 +165,5 @@ def main(credence, study_file, report_file, trace_file, folder, *octave):
           f"{', and what Octave says' if octave else ''}")
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

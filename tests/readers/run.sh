@@ -19,6 +19,8 @@ for arm in fixed.kf greedy.kf; do
   "$credence" replay "$work/study.h5" --scenario kf-circle-constant --arm $arm --trial 0 \
     -o "$work/pictures/kf-circle-constant-$arm.h5" >/dev/null
 done
+"$credence" run experiments/seed/ekf-circle-ranged.ini --set scenario.name=base --sweep noise.heading=0.01,0.1 \
+  --sweep sensor.noise=constant,ranged --trials 60 --quiet -o "$work/swept.h5"
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
@@ -40,6 +42,8 @@ if /usr/bin/python3 -c 'import h5py, scipy, matplotlib' 2>/dev/null; then
   [ ! -f "$work/octave.tsv" ] || said=("$work/octave.tsv" "$work/octave.svg")
   /usr/bin/python3 $readers/analysis_test.py "$credence" "$work/study.h5" "$work/report.json" "$work/trace.h5" \
     "$work/pictures" "${said[@]}" | tail -n 1
+  /usr/bin/python3 $readers/sweep_test.py "$credence" "$work/swept.h5" "$work/pictures" >"$work/sweep.log" || { cat "$work/sweep.log"; exit 1; }
+  grep SKIPPED "$work/sweep.log" || true
 else
   echo "SKIPPED: python3-matplotlib is not installed"
 fi
