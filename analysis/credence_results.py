@@ -11,6 +11,7 @@
 Needs h5py, NumPy and SciPy. The variables stay what they are: `group["trace_P"]` is the plain h5py dataset.
 """
 import configparser
+import fractions
 import pathlib
 from typing import NamedTuple
 
@@ -123,13 +124,10 @@ def over_grid(file, grid, figure):
     return np.reshape(np.array(points, dtype=float), grid.names.shape + shape)
 
 
-def mean_with_interval(values, level=0.95):
-    """[mean, low, high] of values, one a trial, with Student's interval; NaNs are left out."""
-    values = values[~np.isnan(values)]
-    if values.size < 2:
-        return np.array([values.mean() if values.size else np.nan, np.nan, np.nan])
-    half = stats.t.ppf(0.5 + level / 2, values.size - 1) * values.std(ddof=1) / np.sqrt(values.size)
-    return values.mean() + np.array([0, -half, half])
+def mean_with_interval(arm, name, minus=None):
+    """[mean, low, high] of a figure of a trial, with Student's interval, or of its differences to another arm."""
+    means = trial_means(arm, name, minus)
+    return np.array([means.mean, means.low, means.high])
 
 
 def as_dataset(file, grid, columns=("trace_P", "pose_error", "nees_ratio", "nis_ratio")):
@@ -140,7 +138,7 @@ def as_dataset(file, grid, columns=("trace_P", "pose_error", "nees_ratio", "nis_
     variables = {}
     for name in columns:
         values = over_grid(file, grid, lambda group, name=name: np.array(
-            [mean_with_interval(column(group[arm], name)) if arm in group else np.full(3, np.nan) for arm in arm_names]))
+            [mean_with_interval(group[arm], name) if arm in group else np.full(3, np.nan) for arm in arm_names]))
         for number, suffix in enumerate(("", "_low", "_high")):
             variables[name + suffix] = ([*grid.coordinates, "arm"], values[..., number])
     return xarray.Dataset(variables, coords={**grid.coordinates, "arm": arm_names}, attrs={"sweep_of": grid.of})
@@ -162,8 +160,22 @@ def published(scenario_group, column_name):
     return {arm: float(value) for arm, value in pairs}
 
 
+def keeps_trials(thing):
+    """Whether the file of a group has a number for each trial: not that of a study run with --keep aggregates."""
+    return "keep" not in thing.file.attrs
+
+
+def trials(arm):
+    """Trials that are there, failed ones too."""
+    return arm["trial"].size if keeps_trials(arm) else int(arm["status_count"][:].sum())
+
+
 def column(arm, name):
-    """A number for each trial as double; NaN where the variable has its fill value, as for failed trials."""
+    """A number for each trial as double; NaN where the variable has its fill value, as for failed trials. Raises
+    ValueError where the file keeps no trials."""
+    if not keeps_trials(arm):
+        raise ValueError(f"{arm.file.filename} keeps aggregates: it has no {name} of single trials. Take trial_means, or "
+                         "run the study with --keep trials.")
     values = arm[name][:].astype(float)
     if "_FillValue" in arm[name].attrs:
         values[values == arm[name].attrs["_FillValue"][0]] = np.nan
@@ -171,7 +183,9 @@ def column(arm, name):
 
 
 def units(arm, name):
-    """The units of a variable; `1` without a dimension."""
+    """The units of a variable, or of a figure of a trial; `1` without a dimension."""
+    if name not in arm and not keeps_trials(arm):
+        return text(arm["column"], "column_units").split(", ")[_place(arm["column"], "column_names", name)]
     return text(arm[name], "units")
 
 
@@ -198,6 +212,47 @@ def _means(totals, square_totals, trials, dimension, level):
     error = np.sqrt(spread / (trials - 1)) if trials > 1 else np.full_like(mean, np.nan)
     half = stats.t.ppf(0.5 + level / 2, max(trials - 1, 1)) * error
     return Means(mean, error, mean - half, mean + half, dimension)
+
+
+def _place(variable, attribute, name):
+    names = text(variable, attribute).split()
+    if name not in names:
+        raise ValueError(f"there is no {name}. There are {', '.join(names)}.")
+    return names.index(name)
+
+
+def _moments(count, sums, squares, level):
+    """Of exact totals: n Q - S^2 has hardly a digit left in doubles where values vary little."""
+    exact = [sum(map(fractions.Fraction, parts)) if np.isfinite(parts).all() else None for parts in (sums, squares)]
+    if count < 2 or None in exact:
+        mean = float(exact[0] / count) if count and exact[0] is not None else np.nan
+        return Means(mean, np.nan, np.nan, np.nan, 1)
+    mean, error = float(exact[0] / count), float((count * exact[1] - exact[0]**2) / count**2 / (count - 1)) ** 0.5
+    half = stats.t.ppf(0.5 + level / 2, count - 1) * error
+    return Means(mean, error, mean - half, mean + half, 1)
+
+
+def trial_means(arm, name, minus=None, level=0.95):
+    """The mean of a figure of a trial, such as `trace_P`, or of its differences to another arm of the scenario, `minus`,
+    by trial; with Student's interval. Of files that keep trials and of those that keep aggregates."""
+    if keeps_trials(arm):
+        values = column(arm, name) - (column(minus, name) if minus else 0)
+        values = values[~np.isnan(values)]
+        error = values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
+        mean, half = values.mean() if values.size else np.nan, stats.t.ppf(0.5 + level / 2, max(values.size - 1, 1)) * error
+        return Means(mean, error, mean - half, mean + half, 1)
+    place = _place(arm["column"], "column_names", name)
+    if minus is None:
+        return _moments(int(arm["column_count"][place]), arm["column_total"][place], arm["column_square_total"][place], level)
+    own, other = (group.name.rsplit("/", 1)[1] for group in (arm, minus))
+    if "subtracted_arm" not in arm or other not in text(arm["subtracted_arm"], "arm_names").split():
+        if own == other:
+            raise ValueError("an arm less itself is 0. Name two arms.")
+        mean, error, low, high, _ = trial_means(minus, name, arm, level)
+        return Means(-mean, error, -high, -low, 1)
+    row = _place(arm["subtracted_arm"], "arm_names", other), place
+    return _moments(int(arm["difference_count"][row]), arm["difference_total"][row], arm["difference_square_total"][row],
+                    level)
 
 
 def per_step(arm, figure, level=0.95):

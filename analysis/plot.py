@@ -20,6 +20,7 @@ except ImportError as missing:
 
 STUDY_PICTURES = {"consistency": study.consistency, "distributions": study.distributions, "paired": study.paired,
                   "coverage": study.coverage}
+NEED_TRIALS = ("distributions", "paired")
 
 
 def parse_arguments(arguments):
@@ -65,6 +66,8 @@ def study_figures(scenario, report, width):
             print(f"no pictures of {scenario.name[1:]}: every trial of {name} failed.", file=sys.stderr)
             return
     for name, draw in STUDY_PICTURES.items():
+        if name in NEED_TRIALS and not results.keeps_trials(scenario):
+            continue
         if (figure := draw(scenario, width)) is not None:
             yield f"{scenario.name[1:]}-{name}", figure
     if report:
@@ -98,8 +101,11 @@ def main(arguments):
         with results.open_file(options.file) as file:
             scenarios = chosen_scenarios(file, options.scenario)
             is_study = results.kind(file) == results.STUDY
-            if is_study and not any(group["trial"].size for scenario in scenarios for group in scenario.values()):
+            if is_study and not any(results.trials(group) for scenario in scenarios for group in scenario.values()):
                 raise ValueError(f"{options.file} has no trials (an empty part of a study). Merge the parts first.")
+            if is_study and not results.keeps_trials(file):
+                print(f"no pictures of {' and '.join(NEED_TRIALS)} differences: {options.file} keeps aggregates. They need "
+                      "the trials (credence run --keep trials).", file=sys.stderr)
             if is_study and not options.scenario:  # a grid has curves; of its points those that are named
                 save_all(grid_figures(file, options.width), options)
                 scenarios = [scenario for scenario in scenarios if results.place(scenario) is None]

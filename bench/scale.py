@@ -5,6 +5,7 @@ usage: scale.py [--credence build/credence] [--repeats 5] PART...
   cost    processor time of a million trials on one core, for each of the seed's scenarios, both arms
   sizes   bytes of journal and file of a million trials
   merge   time and memory of merging 1,000 shards, and of 100 shards of the same study
+  aggregates  time, memory, journal and file of 10^6 trials that are kept, and of 10^6 and 10^7 of which totals are
   ranks   a study on one rank and on two of mpirun, one thread each, beside one process of one and of two threads
 Medians of the repeats; the spread is (largest - smallest) / median.
 """
@@ -54,21 +55,43 @@ def cost(credence, repeats, folder):
         print(f"  {name:22s} {seconds * 1e6 / trials:7.1f} s   spread {100 * spread:.0f} %", flush=True)
 
 
+def watched(command, output):
+    """What `measured` says of a run, and the largest size that its journal was seen to have."""
+    start, journal = time.monotonic(), 0
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    while True:
+        done, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if done:
+            break
+        try:
+            journal = max(journal, os.stat(output + ".journal").st_size)
+        except FileNotFoundError:
+            pass
+        time.sleep(0.005)
+    if status != 0:
+        sys.exit(f"{' '.join(command)} ended with {os.waitstatus_to_exitcode(status)}")
+    return time.monotonic() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1000, journal
+
+
 def sizes(credence, repeats, folder):
-    """The journal's size is that at its end, which is seen in a run that is killed when it would write its file."""
     trials = 1_000_000
     print("bytes of 10^6 trials, both arms:")
     for name in ("ekf-straight-constant", "kf-straight-constant"):
         output = f"{folder}/{name}.h5"
-        process = subprocess.Popen(run(credence, [name], trials, output), stdout=subprocess.DEVNULL)
-        journal = 0
-        while process.poll() is None:
-            try:
-                journal = max(journal, os.stat(output + ".journal").st_size)
-            except FileNotFoundError:
-                pass
-            time.sleep(0.005)
+        journal = watched(run(credence, [name], trials, output), output)[-1]
         print(f"  {name:22s} journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB", flush=True)
+        os.remove(output)
+
+
+def aggregates(credence, repeats, folder):
+    name, output = "kf-straight-constant", f"{folder}/x.h5"
+    print(f"{name}, both arms, on all processors:")
+    for trials, keep in ((1_000_000, "trials"), (1_000_000, "aggregates"), (10_000_000, "aggregates")):
+        wall, processor, memory, journal = watched(run(credence, [name], trials, output, "--keep", keep), output)
+        report = measured([credence, "report", output, "--format", "json"])
+        print(f"  {trials:9d} trials, keep {keep:10s}: {wall:.1f} s, processor {processor:.1f} s, {memory:.0f} MB of memory; "
+              f"journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB; report: {report[1]:.1f} s of "
+              f"processor, {report[2]:.0f} MB", flush=True)
         os.remove(output)
 
 
@@ -111,7 +134,7 @@ def ranks(credence, repeats, folder):
               f"processor {processor:.2f} s")
 
 
-PARTS = {"cost": cost, "sizes": sizes, "merge": merge, "ranks": ranks}
+PARTS = {"cost": cost, "sizes": sizes, "aggregates": aggregates, "merge": merge, "ranks": ranks}
 
 
 def main():

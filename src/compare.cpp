@@ -21,6 +21,21 @@ ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const s
     return side;
 }
 
+/// Where no trial is kept; all of them are compared.
+ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& file, const Comparison& comparison) {
+    const ArmAggregates& aggregates = compared.arm.aggregates;
+    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials,
+                      aggregates.trials() - aggregates.counted(),
+                      aggregates.statuses[static_cast<std::size_t>(Status::diverged)], {}};
+    std::size_t f = 0;
+    for (std::size_t c = 0; c < compared.results.columns.size(); ++c) {
+        if (!is_figure(compared.results.columns[c])) continue;
+        const bool all_paired = aggregates.columns[c].count == comparison.figures[f++].paired.pairs;
+        side.mean.push_back(all_paired ? moments_of(aggregates.columns[c]).mean : std::nan(""));
+    }
+    return side;
+}
+
 /// The arms' own means of every figure, over the pairs that its difference is of.
 void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials& common) {
     const std::vector<Column>& columns = chosen.a.results.columns;
@@ -43,7 +58,21 @@ void require_common_trials(const ChosenPair& chosen, const CommonTrials& common)
                      " in common. Merge the shards of each study, or compare the same shard of both.");
 }
 
+/// Two arms of one file that keeps no trials.
+ComparedPair compared_aggregates(const ChosenPair& chosen, std::uint64_t root_seed) {
+    ComparedPair pair;
+    pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
+    pair.title = chosen.a.results.scenario.title;
+    pair.trials = chosen.a.results.trials;
+    pair.a = side_of_aggregates(chosen.a, chosen.file_a, pair.comparison);
+    pair.b = side_of_aggregates(chosen.b, chosen.file_b, pair.comparison);
+    pair.complete = chosen.file_a.study.complete;
+    pair.keep = Keep::aggregates;
+    return pair;
+}
+
 ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
+    if (chosen.a.results.keep == Keep::aggregates) return compared_aggregates(chosen, root_seed);
     const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
     const CommonTrials common(a, b);
     require_common_trials(chosen, common);
@@ -59,15 +88,17 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     return pair;
 }
 
-/// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 %.
-Conclusion concluded(const PairedComparison& paired, std::size_t comparisons) {
+/// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 % where there is one.
+Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
+    const PairedComparison& paired = pair.comparison.figures.front().paired;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
     if (paired.pairs < 2) return Conclusion::not_shown;
     const Summary& difference = paired.difference;
     const double half = t_quantile(0.05 / static_cast<double>(comparisons), static_cast<double>(paired.pairs - 1)) *
                         difference.standard_error;
-    if (difference.mean + half < 0 && paired.bootstrap95.high < 0) return Conclusion::lower;
-    if (difference.mean - half > 0 && paired.bootstrap95.low > 0) return Conclusion::higher;
+    const bool resampled = pair.keep == Keep::trials;
+    if (difference.mean + half < 0 && (!resampled || paired.bootstrap95.high < 0)) return Conclusion::lower;
+    if (difference.mean - half > 0 && (!resampled || paired.bootstrap95.low > 0)) return Conclusion::higher;
     return Conclusion::not_shown;
 }
 
@@ -93,7 +124,7 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
         report.pairs.push_back(compared(chosen, report.root_seed));
     correct_together(report.pairs);
     for (ComparedPair& pair : report.pairs)
-        pair.conclusion = concluded(pair.comparison.figures.front().paired, report.pairs.size());
+        pair.conclusion = concluded(pair, report.pairs.size());
     return report;
 }
 

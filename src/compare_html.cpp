@@ -55,7 +55,7 @@ Html pair_section(const ComparedPair& pair, std::size_t number) {
                        "Trial by trial, with the same draws. Left of 0, A is lower. The mark is the mean with its 95 % "
                        "interval.",
                        difference_charts(comparison, number)) +
-           "</section>\n"_html;
+           no_distributions(pair.keep) + "</section>\n"_html;
 }
 
 Html origin_part(const CompareReport& report, const std::string& made_by) {

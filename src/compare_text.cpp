@@ -85,15 +85,18 @@ std::string tests(const ComparedPair& pair) {
 }  // namespace
 
 std::string compare_head(const CompareReport& report) {
-    const Comparison& first = report.pairs.front().comparison;
+    const ComparedPair& first_pair = report.pairs.front();
+    const Comparison& first = first_pair.comparison;
     const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
                                  [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
     std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
     if (report.pairs.size() > 1) text += " in each of " + std::to_string(report.pairs.size()) + " comparisons";
     text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
+    const bool trials = first_pair.keep == Keep::trials;
     return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
-           "). Intervals are two-sided 95 %; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures "
-           "below" +
+           "). Intervals are two-sided 95 %" +
+           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures below"
+                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: credence run --keep trials") +
            (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
 }
 

@@ -1,6 +1,7 @@
 #include <credence/comparison.hpp>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace credence {
 
@@ -28,7 +29,24 @@ std::vector<double> CommonTrials::selected(const std::vector<double>& values, st
     return chosen;
 }
 
+namespace {
+
+Comparison compare_aggregates(const ComparedArm& a, const ComparedArm& b) {
+    if (&a.results != &b.results) throw std::logic_error("totals of different files have no pairs");
+    Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
+    for (std::size_t c = 0; c < a.results.columns.size(); ++c)
+        if (const Column& column = a.results.columns[c]; is_figure(column))
+            comparison.figures.push_back({column.name, column.unit,
+                                          compare_totals(aggregate_differences(a.results, a.arm, b.arm, c),
+                                                         a.arm.aggregates.columns[c], b.arm.aggregates.columns[c]),
+                                          0});
+    return comparison;
+}
+
+}  // namespace
+
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed) {
+    if (a.results.keep == Keep::aggregates || b.results.keep == Keep::aggregates) return compare_aggregates(a, b);
     Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
     const CommonTrials common(a.results, b.results);
     for (std::size_t c = 0; c < a.results.columns.size(); ++c) {

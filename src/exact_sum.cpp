@@ -28,6 +28,13 @@ void ExactSum::add(const ExactSum& other) {
     for (const double part : parts) add(part);
 }
 
+void ExactSum::subtract(const ExactSum& other) {
+    finite_ = finite_ && other.finite_;
+    if (!finite_) return;
+    const std::vector<double> parts = other.expansion_;  // a copy: other may be this
+    for (const double part : parts) add(-part);
+}
+
 double ExactSum::rounded() const {
     if (!finite_) return std::numeric_limits<double>::quiet_NaN();
     if (expansion_.empty()) return 0;

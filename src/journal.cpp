@@ -28,52 +28,59 @@ void Journal::begin(const JournalHeader& header, Study& study) {
 }
 
 void Journal::take_back(std::size_t scenario, std::int64_t block) {
-    const auto found = kept_[scenario].places.find(block);
-    kept_[scenario].counted -= found->second.trials;
-    kept_[scenario].places.erase(found);
+    PlacedBlocks& placed = kept_[scenario].placed;
+    kept_[scenario].counted -= placed.trials_of(block);
+    placed.remove(block);
 }
 
 void Journal::take(std::size_t scenario, const Block& block) {
     Kept& kept = kept_[scenario];
     const std::size_t before = kept.pending_values.size();
-    kept.pending.push_back({block.index, block.trials});
+    kept.pending.push_back(block.index);
     put_block(kept.pending_values, kept.types, block);
     pending_size_ += kept.pending_values.size() - before;
     ++pending_blocks_;
 }
 
-void Journal::take(std::size_t scenario, const std::vector<std::int64_t>& blocks, std::int64_t trials,
-                   const std::string& values) {
+void Journal::take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) {
     Kept& kept = kept_[scenario];
-    for (const std::int64_t block : blocks) kept.pending.push_back({block, trials_in_block(trials, block)});
+    kept.pending.insert(kept.pending.end(), blocks.begin(), blocks.end());
     kept.pending_values.put_raw(values.data(), values.size());
     pending_size_ += values.size();
     pending_blocks_ += blocks.size();
 }
 
 bool Journal::due() const {
-    constexpr std::chrono::duration<double> least(0.5), most(10.0);
+    using Seconds = std::chrono::duration<double>;
+    constexpr Seconds least(0.5), most(10.0);
     constexpr std::size_t too_much = std::size_t{64} << 20;
     if (committing_) return false;
     if (commit_every_ > 0) return pending_blocks_ >= static_cast<std::size_t>(commit_every_);
-    // Totals are as large after one block as after a thousand: they are not to make up most of the journal.
-    const auto waited = std::chrono::steady_clock::now() - last_commit_;
-    return pending_size_ > too_much || (waited > least && (pending_size_ > totals_size_ / 4 || waited > most));
+    // Totals are as large after one block as after a thousand: they are not to make up most of the journal. Where they
+    // make up all of it, a hundredth of the time that the run took so far is at stake at most, and their number hardly
+    // grows with that time.
+    const Seconds waited = std::chrono::steady_clock::now() - last_commit_,
+                  longest = keeps_trials() ? most : std::max(most, Seconds(last_commit_ - begun_) / 100);
+    return pending_size_ > too_much || (waited > least && (pending_size_ > totals_size_ / 4 || waited > longest));
 }
 
 void Journal::put_record(std::size_t scenario, const Study& study) {
     Kept& kept = kept_[scenario];
     ByteWriter totals;
     put_totals(totals, study.scenarios[scenario]);
-    const std::size_t before = record_head_size + record_start_size + kept.pending.size() * journal_block_size;
+    const Keep keep = kept.layout.keep();
+    RecordStart start = record_of(kept.pending, study.trials, kept.layout);
+    const std::size_t before = record_head_size + record_start_size + block_list_size(start, keep);
     std::int64_t position = file_.size() + static_cast<std::int64_t>(batch_.size() + before);
-    for (const JournalBlock& block : kept.pending) {
-        kept.places[block.index] = {block.trials, position, false};
-        kept.counted += block.trials;
+    for (const JournalBlock& block : start.blocks) {
+        kept.placed.put(block.index, {block.trials, position, false});
         position += kept.layout.size(block);
     }
-    const RecordStart start{study.trials, kept.counted, std::move(kept.pending), shard_};
-    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, kept.pending_values.bytes(), totals.bytes());
+    for (const BlockRange& range : start.ranges) kept.placed.put(range, study.trials, kept.layout);
+    for (const std::int64_t block : kept.pending) kept.counted += trials_in_block(study.trials, block);
+    start.counted = kept.counted;
+    start.shard = shard_;
+    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, keep, kept.pending_values.bytes(), totals.bytes());
     batch_.append(record_tail_size, '\0');
     ends_.push_back(batch_.size());
     totals_size_ += totals.size();
@@ -107,9 +114,10 @@ void Journal::commit() {
 }
 
 void Journal::finished(const Study& study) {
+    if (!keeps_trials()) return;
     for (std::size_t s = 0; s < kept_.size(); ++s) {
         kept_[s].rows.clear();
-        for (const std::int64_t block : study.scenarios[s].blocks) kept_[s].rows.push_back(kept_[s].places.at(block));
+        for (const std::int64_t block : study.scenarios[s].blocks) kept_[s].rows.push_back(kept_[s].placed.places.at(block));
     }
 }
 

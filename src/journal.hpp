@@ -20,9 +20,29 @@ struct BlockPlace {
     bool in_file = false;
 };
 
+/// Which blocks are there. Where no trial is kept, those alone have a place that have details, or are partial: what the
+/// others take does not grow with their number.
+struct PlacedBlocks {
+    BlockRanges blocks;
+    std::map<std::int64_t, BlockPlace> places;
+
+    void put(std::int64_t block, const BlockPlace& place);
+    /// Of a study of `trials` trials: blocks of which no trial is kept. Those of them that have details have a place already.
+    void put(const BlockRange& range, std::int64_t trials, const BlockLayout& layout);
+    /// The others' place is the one to believe.
+    void put(const PlacedBlocks& others);
+    void remove(std::int64_t block);
+    std::int64_t trials_of(std::int64_t block) const;
+    std::int64_t trials() const;
+    /// The study that has just these blocks.
+    std::int64_t trials_up_to() const { return blocks.empty() ? 0 : blocks.back() * block_size + trials_of(blocks.back()); }
+    /// Whether it has these with as many trials.
+    bool has(const PlacedBlocks& others) const;
+};
+
 /// What a journal says of one scenario.
 struct JournalScenario {
-    std::map<std::int64_t, BlockPlace> places;
+    PlacedBlocks placed;
     std::int64_t asked = 0;           ///< trials that the study was asked for at the last totals
     std::int64_t counted = 0;         ///< trials in the last totals
     std::optional<std::string> totals;  ///< their bytes; none: no record is of this scenario
@@ -53,8 +73,7 @@ public:
 
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
-    void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, std::int64_t trials,
-              const std::string& values) override;
+    void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) override;
     bool due() const override;
     void prepare(const Study& study) override;
     void commit() override;
@@ -70,14 +89,15 @@ private:
         BlockLayout layout;
         std::vector<ColumnType> types;
         std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that is grown
-        std::map<std::int64_t, BlockPlace> places;
+        PlacedBlocks placed;
         std::int64_t counted = 0;                                 ///< trials in them
-        std::vector<BlockPlace> rows;                             ///< those that are there, in order
-        std::vector<JournalBlock> pending;
+        std::vector<BlockPlace> rows;                             ///< of those that are there, in order; if trials are kept
+        std::vector<std::int64_t> pending;                        ///< blocks
         ByteWriter pending_values;
     };
 
     void keep_columns_of(Study& study);
+    bool keeps_trials() const { return kept_.empty() || kept_.front().layout.keep() == Keep::trials; }
     std::vector<JournalScenario> scan(const Study& study);
     void put_record(std::size_t scenario, const Study& study);
     void read_details(std::size_t scenario, ScenarioResults& results) const;
@@ -95,7 +115,8 @@ private:
     std::atomic<bool> committing_ = false;
     std::size_t totals_size_ = 0;    ///< of the last commit
     std::size_t pending_size_ = 0, pending_blocks_ = 0;
-    std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
+    const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_commit_ = begun_;
 };
 
 }  // namespace credence

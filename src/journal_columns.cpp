@@ -26,16 +26,20 @@ private:
 
 }  // namespace
 
-/// From here on the study's columns are read from where the journal has them.
+/// From here on the study's columns, where they are kept, are read from where the journal has them.
 void Journal::keep_columns_of(Study& study) {
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         ScenarioResults& results = study.scenarios[s];
-        Kept kept{BlockLayout(results), {}, {}, {}, results.trials, {}, {}, {}};
-        for (const Column& column : results.columns) kept.types.push_back(column.type);
-        for (std::size_t place = 0; place < results.blocks.size(); ++place)
-            kept.places[results.blocks[place]] = {block_rows(results, place),
-                                                  block_size * static_cast<std::int64_t>(place), true};
-        for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        Kept kept{BlockLayout(results), kept_types(results), {}, {}, results.trials, {}, {}, {}};
+        kept.placed.blocks = results.blocks;
+        for (std::size_t place = 0; place < results.blocks.size(); ++place) {
+            const std::int64_t block = results.blocks[place], rows = block_rows(results, place);
+            if (results.keep == Keep::trials || kept.layout.detailed(block) || rows < block_size)
+                kept.placed.places[block] = {rows, block_size * static_cast<std::int64_t>(place), true};
+            else
+                place = std::max(place, results.blocks.size() - 2);  // of the others only the last may be partial
+        }
+        for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {
             kept.in_file.push_back(results.arms[a].kept);
             results.arms[a].kept = std::make_shared<ColumnsOfRun>(*this, s, a);
         }

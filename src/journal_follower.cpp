@@ -31,7 +31,7 @@ std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const Watch
 
 JournalFollower::JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results)
     : header_(std::move(found.header)),
-      study_(new_study(header_.study.scenarios, header_.study.root_seed)),
+      study_(new_study(header_.study.scenarios, header_.study.root_seed, header_.study.keep)),
       followed_(study_.scenarios.size()),
       start_(journal.read(0, found.size)),
       position_(found.size),
@@ -48,7 +48,11 @@ void JournalFollower::read_file(const std::string& path) {
     if (!difference.empty())
         throw InputError(path + ": is not the file that its journal goes on with (" + difference +
                          "). Put that back, or remove the journal.");
-    for (std::size_t s = 0; s < followed_.size(); ++s) followed_[s].in_file = blocks_of(stored.scenarios[s]);
+    for (std::size_t s = 0; s < followed_.size(); ++s) {
+        followed_[s].in_file = blocks_of(stored.scenarios[s]);
+        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has others
+            study_.scenarios[s].arms[a].aggregates = stored.scenarios[s].arms[a].aggregates;
+    }
 }
 
 std::string JournalFollower::seal_of(const JournalBytes& journal) const {
@@ -66,7 +70,8 @@ void JournalFollower::take(const JournalBytes& journal, const FoundRecord& recor
     Followed& followed = followed_[record.scenario];
     const ScenarioResults& results = study_.scenarios[record.scenario];
     const BlockLayout& layout = layouts_[record.scenario];
-    for (std::size_t b = 0; b < record.places.size(); ++b) {
+    for (const BlockRange& range : record.start.ranges) followed.in_journal.add(range, record.start.trials);
+    for (std::size_t b = 0; b < record.places.size() && layout.keep() == Keep::trials; ++b) {
         const JournalBlock& block = record.start.blocks[b];
         const std::string bytes = journal.read(record.places[b], layout.details_offset(0, block.trials));
         followed.in_journal.add(block.index, sums_of(results, block.trials, [&](std::size_t arm, std::size_t column) {
@@ -85,10 +90,12 @@ void JournalFollower::take(const JournalBytes& journal, const FoundRecord& recor
     shard_ = record.start.shard;
 }
 
-WatchedSums JournalFollower::Followed::sums() const {
+WatchedSums JournalFollower::sums(std::size_t scenario) const {
+    if (header_.study.keep == Keep::aggregates) return sums_of_aggregates(study_.scenarios[scenario]);
+    const Followed& followed = followed_[scenario];
     WatchedSums sums;
-    in_file.add_to(sums);
-    if (!already_in_file()) in_journal.add_to(sums);
+    followed.in_file.add_to(sums);
+    if (!followed.already_in_file()) followed.in_journal.add_to(sums);
     return sums;
 }
 
@@ -102,9 +109,9 @@ void JournalFollower::check(std::size_t scenario) {
     followed.totals.reset();
     if (followed.already_in_file()) return;
     if (followed.trials() != followed.counted) throw BadBytes("totals and blocks do not agree");
-    const WatchedSums sums = followed.sums();
-    for (std::size_t a = 0; a < sums.arms.size(); ++a)
-        if (results.arms[a].counted != followed.counted - sums.arms[a].failed)
+    const WatchedSums of_trials = sums(scenario);
+    for (std::size_t a = 0; a < of_trials.arms.size(); ++a)
+        if (results.arms[a].counted != followed.counted - of_trials.arms[a].failed)
             throw BadBytes("totals of an impossible number of trials");
 }
 
@@ -132,7 +139,7 @@ void JournalFollower::tell(WatchLook& look) const {
                                 over_both([&](const WatchedBlocks& part) { return part.trials_of(shard_); });
         scenario.blocks_asked = scenario.blocks + blocks_of_shard(shard_, asked_) -
                                 over_both([&](const WatchedBlocks& part) { return part.blocks_of(shard_); });
-        scenario.arms = watched_arms(study_.scenarios[s], followed.sums());
+        scenario.arms = watched_arms(study_.scenarios[s], sums(s));
         look.scenarios.push_back(std::move(scenario));
     }
 }

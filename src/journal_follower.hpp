@@ -36,12 +36,12 @@ private:
         /// The run had ended, and only the journal had still to go.
         bool already_in_file() const { return in_file.contains(in_journal); }
         std::int64_t trials() const { return in_file.trials() + (already_in_file() ? 0 : in_journal.trials()); }
-        WatchedSums sums() const;
     };
 
     void read_file(const std::string& path);
     void take(const JournalBytes& journal, const FoundRecord& record);
     void check(std::size_t scenario);
+    WatchedSums sums(std::size_t scenario) const;
     /// The checksum of what was read last.
     std::string seal_of(const JournalBytes& journal) const;
 

@@ -28,12 +28,13 @@ Shard get_shard(ByteReader& from) {
 }
 
 BlockLayout::BlockLayout(const ScenarioResults& results)
-    : column_at_{0},
+    : keep_(results.keep),
+      column_at_{0},
       arms_(static_cast<std::int64_t>(results.arms.size())),
       detailed_blocks_(detailed_trials(results.steps(), results.state_size()) / block_size),
       errors_(std::int64_t{results.steps()} * results.state_size()),
       nees_(results.steps()) {
-    for (const Column& column : results.columns) column_at_.push_back(column_at_.back() + value_size(column.type));
+    for (const ColumnType type : kept_types(results)) column_at_.push_back(column_at_.back() + value_size(type));
 }
 
 std::int64_t BlockLayout::column_offset(std::size_t arm, std::size_t column, std::int64_t trials) const {
@@ -75,6 +76,13 @@ void get_values(ByteReader& from, ColumnType type, double* values, std::size_t c
     }
 }
 
+std::vector<ColumnType> kept_types(const ScenarioResults& results) {
+    std::vector<ColumnType> types;
+    if (results.keep == Keep::aggregates) return types;
+    for (const Column& column : results.columns) types.push_back(column.type);
+    return types;
+}
+
 void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block& block) {
     const auto trials = static_cast<std::size_t>(block.trials);
     for (const ArmBlock& arm : block.arms)
@@ -110,10 +118,18 @@ RecordHead get_record_head(ByteReader& from) {
     return head;
 }
 
-void put_record_start(ByteWriter& to, const RecordStart& start) {
+void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep) {
     to.put(start.trials);
     to.put(start.counted);
     put_shard(to, start.shard);
+    if (keep == Keep::aggregates) {
+        to.put(static_cast<std::uint32_t>(start.ranges.size()));
+        for (const BlockRange& range : start.ranges) {
+            to.put(range.first);
+            to.put(range.last);
+        }
+        return;
+    }
     to.put(static_cast<std::uint32_t>(start.blocks.size()));
     for (const JournalBlock& block : start.blocks) {
         to.put(block.index);
@@ -121,14 +137,57 @@ void put_record_start(ByteWriter& to, const RecordStart& start) {
     }
 }
 
-RecordStart get_record_start(ByteReader& from) {
+std::size_t block_list_size(const RecordStart& start, Keep keep) {
+    return keep == Keep::aggregates ? start.ranges.size() * journal_range_size
+                                    : start.blocks.size() * journal_block_size;
+}
+
+RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout) {
+    RecordStart start{trials, 0, {}};
+    BlockRanges without_values;
+    for (const std::int64_t block : blocks) {
+        if (layout.keep() == Keep::aggregates && !layout.detailed(block)) {
+            without_values.add(block);
+            continue;
+        }
+        start.blocks.push_back({block, trials_in_block(trials, block)});
+        if (layout.keep() == Keep::aggregates) start.ranges.push_back({block, block});
+    }
+    const std::vector<BlockRange> others = without_values.ranges();
+    start.ranges.insert(start.ranges.end(), others.begin(), others.end());
+    return start;
+}
+
+namespace {
+
+/// Ranges of a study's blocks, and in `start.blocks` those that have values.
+void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, RecordStart& start) {
+    for (; count > 0; --count) {
+        const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};
+        if (range.first < 0 || range.last < range.first || range.last >= block_count(start.trials))
+            throw BadBytes("a block that the study does not have");
+        start.ranges.push_back(range);
+        for (std::int64_t block = range.first; block <= range.last && layout.detailed(block); ++block)
+            start.blocks.push_back({block, trials_in_block(start.trials, block)});
+        if (std::ssize(start.blocks) > layout.detailed_blocks()) throw BadBytes("a block is there twice");
+    }
+}
+
+}  // namespace
+
+RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
     RecordStart start;
     start.trials = from.get<std::int64_t>();
     start.counted = from.get<std::int64_t>();
     if (start.trials < 0 || start.trials > most_trials || start.counted < 0 || start.counted > start.trials)
         throw BadBytes("an impossible number of trials");
     start.shard = get_shard(from);
-    for (auto left = from.get<std::uint32_t>(); left > 0; --left) {
+    const auto count = from.get<std::uint32_t>();
+    if (layout.keep() == Keep::aggregates) {
+        get_ranges(from, count, layout, start);
+        return start;
+    }
+    for (auto left = count; left > 0; --left) {
         JournalBlock block{from.get<std::int64_t>(), from.get<std::int32_t>()};
         if (block.index < 0 || block.index >= block_count(start.trials) ||
             block.trials != trials_in_block(start.trials, block.index))
@@ -138,13 +197,12 @@ RecordStart get_record_start(ByteReader& from) {
     return start;
 }
 
-std::string record_bytes(std::uint32_t scenario, const RecordStart& start, const std::string& values,
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
                          const std::string& totals) {
     ByteWriter record;
-    const std::size_t payload =
-        record_start_size + start.blocks.size() * journal_block_size + values.size() + totals.size();
+    const std::size_t payload = record_start_size + block_list_size(start, keep) + values.size() + totals.size();
     put_record_head(record, {scenario, static_cast<std::int64_t>(payload)});
-    put_record_start(record, start);
+    put_record_start(record, start, keep);
     record.put_raw(values.data(), values.size());
     record.put_raw(totals.data(), totals.size());
     return record.take();

@@ -40,7 +40,8 @@ struct JournalBlock {
     std::int32_t trials = 0;
 };
 
-/// Where the values of a block lie, from the block's first byte on: columns by arm, then the details by arm.
+/// Where the values of a block lie, from the block's first byte on: columns by arm, where they are kept, then the details
+/// by arm.
 class BlockLayout {
 public:
     explicit BlockLayout(const ScenarioResults& results);
@@ -50,12 +51,15 @@ public:
     std::int64_t column_offset(std::size_t arm, std::size_t column, std::int64_t trials) const;
     std::int64_t details_offset(std::size_t arm, std::int64_t trials) const;
     bool detailed(std::int64_t index) const { return index < detailed_blocks_; }
+    std::int64_t detailed_blocks() const { return detailed_blocks_; }
+    Keep keep() const { return keep_; }
     /// Floats of details that a trial has: its errors, then its NEES.
     std::int64_t errors() const { return errors_; }
     std::int64_t nees() const { return nees_; }
 
 private:
-    std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column
+    Keep keep_;
+    std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column; {0}: none is kept
     std::int64_t arms_, detailed_blocks_, errors_, nees_;
 };
 
@@ -65,7 +69,10 @@ void put_values(ByteWriter& to, ColumnType type, const double* values, std::size
 /// Throws BadBytes for a status that is none.
 void get_values(ByteReader& from, ColumnType type, double* values, std::size_t count);
 
-/// The values of a block as BlockLayout has them, `types` being those of its columns.
+/// Types of the columns that are kept.
+std::vector<ColumnType> kept_types(const ScenarioResults& results);
+
+/// The values of a block as BlockLayout has them, `types` being those of the columns that are kept.
 void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block& block);
 /// The details of a block's `trials` trials under one arm, which are all that is read, into rows from `row` on.
 void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to);
@@ -83,20 +90,26 @@ RecordHead get_record_head(ByteReader& from);
 struct RecordStart {
     std::int64_t trials = 0;           ///< that the study was asked for then
     std::int64_t counted = 0;          ///< trials of the scenario that the totals hold
-    std::vector<JournalBlock> blocks;
+    std::vector<JournalBlock> blocks;  ///< that have values, in their order: all of them, where the trials are kept
     Shard shard{};                     ///< that the run works on
+    std::vector<BlockRange> ranges{};  ///< where no trial is kept: all blocks, those that have values in their order
 };
-void put_record_start(ByteWriter& to, const RecordStart& start);
-/// Throws BadBytes where the blocks cannot be.
-RecordStart get_record_start(ByteReader& from);
-inline constexpr std::size_t record_start_size = 36, journal_block_size = 12;
+void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep = Keep::trials);
+/// Throws BadBytes where the blocks cannot be. With ranges, `layout` says which of their blocks have values.
+RecordStart get_record_start(ByteReader& from, const BlockLayout& layout);
+inline constexpr std::size_t record_start_size = 36, journal_block_size = 12, journal_range_size = 16;
+/// Of the part that lists the blocks.
+std::size_t block_list_size(const RecordStart& start, Keep keep);
+
+/// The start of a record of these blocks, whose values stand in this order.
+RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout);
 
 /// Throws BadBytes for a shard that is none.
 void put_shard(ByteWriter& to, const Shard& shard);
 Shard get_shard(ByteReader& from);
 
 /// A record but for its checksum.
-std::string record_bytes(std::uint32_t scenario, const RecordStart& start, const std::string& values,
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
                          const std::string& totals);
 
 /// CRC-32 of zlib, going on from `crc`.

@@ -46,14 +46,16 @@ std::optional<FoundRecord> find_record(const JournalBytes& file, std::int64_t po
     if (!checksum_is_right(file, position, end)) return std::nullopt;
     std::uint32_t count = 0;
     file.read(payload + static_cast<std::int64_t>(record_start_size - sizeof count), &count, sizeof count);
-    const auto start_size = static_cast<std::int64_t>(record_start_size + count * journal_block_size);
+    if (head->scenario >= layouts.size()) throw BadBytes("a record is of a scenario that the study does not have");
+    const BlockLayout& layout = layouts[head->scenario];
+    const std::size_t listed = layout.keep() == Keep::aggregates ? journal_range_size : journal_block_size;
+    const auto start_size = static_cast<std::int64_t>(record_start_size + count * listed);
     if (start_size > head->payload) throw BadBytes("a record has more blocks than bytes");
     const std::string start = file.read(payload, start_size);
     ByteReader from(start.data(), start.size());
-    FoundRecord record{head->scenario, get_record_start(from), {}, payload + start_size, end};
-    if (record.scenario >= layouts.size()) throw BadBytes("a record is of a scenario that the study does not have");
+    FoundRecord record{head->scenario, get_record_start(from, layout), {}, payload + start_size, end};
     for (const JournalBlock& block : record.start.blocks) {
-        const std::int64_t size = layouts[record.scenario].size(block);
+        const std::int64_t size = layout.size(block);
         if (size > end - record.totals) throw BadBytes("a record has fewer values than its blocks");
         record.places.push_back(record.totals);
         record.totals += size;

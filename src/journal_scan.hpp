@@ -26,7 +26,7 @@ std::optional<FoundHeader> find_header(const JournalBytes& file);
 struct FoundRecord {
     std::uint32_t scenario = 0;
     RecordStart start;
-    std::vector<std::int64_t> places;  ///< where the values of each block begin in the file
+    std::vector<std::int64_t> places;  ///< where the values of each of start.blocks begin in the file
     std::int64_t totals = 0;           ///< where the totals begin
     std::int64_t end = 0;              ///< of the totals
 };

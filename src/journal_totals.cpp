@@ -29,6 +29,12 @@ void get_sums(ByteReader& from, std::vector<ExactSum>& sums) {
     for (ExactSum& sum : sums) sum = get_sum(from);
 }
 
+std::int64_t get_number(ByteReader& from) {
+    const std::uint64_t value = from.get_count();
+    if (value > most_counted) throw BadBytes("a count is too large");
+    return static_cast<std::int64_t>(value);
+}
+
 /// Counts of which long runs are 0, as those of cells are at first: each 0 is followed by the number of further ones.
 void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
     for (auto count = counts.begin(); count != counts.end();) {
@@ -42,15 +48,48 @@ void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
 
 void get_counts(ByteReader& from, std::vector<std::int64_t>& counts) {
     for (auto count = counts.begin(); count != counts.end();) {
-        const std::uint64_t value = from.get_count();
-        if (value > most_counted) throw BadBytes("a count is too large");
-        *count++ = static_cast<std::int64_t>(value);
-        if (value != 0) continue;
+        *count++ = get_number(from);
+        if (count[-1] != 0) continue;
         const std::uint64_t more = from.get_count();
         if (more > static_cast<std::uint64_t>(counts.end() - count)) throw BadBytes("has too many counts");
         std::fill_n(count, more, 0);
         count += static_cast<std::ptrdiff_t>(more);
     }
+}
+
+void put_moments(ByteWriter& to, const ExactMoments& moments) {
+    to.put_count(static_cast<std::uint64_t>(moments.count));
+    put_sum(to, moments.sum);
+    put_sum(to, moments.square_sum);
+}
+
+void get_moments(ByteReader& from, ExactMoments& moments) {
+    moments.count = get_number(from);
+    moments.sum = get_sum(from);
+    moments.square_sum = get_sum(from);
+}
+
+void put_aggregates(ByteWriter& to, const ArmAggregates& aggregates) {
+    for (const std::int64_t trials : aggregates.statuses) to.put_count(static_cast<std::uint64_t>(trials));
+    for (const ExactMoments& column : aggregates.columns) put_moments(to, column);
+    for (const std::vector<DifferenceTotals>& columns : aggregates.differences)
+        for (const DifferenceTotals& totals : columns) {
+            put_moments(to, totals.difference);
+            to.put_count(static_cast<std::uint64_t>(totals.below));
+            to.put_count(static_cast<std::uint64_t>(totals.above));
+        }
+}
+
+void get_aggregates(ByteReader& from, ArmAggregates& aggregates) {
+    for (std::int64_t& trials : aggregates.statuses) trials = get_number(from);
+    for (ExactMoments& column : aggregates.columns) get_moments(from, column);
+    for (std::vector<DifferenceTotals>& columns : aggregates.differences)
+        for (DifferenceTotals& totals : columns) {
+            get_moments(from, totals.difference);
+            totals.below = get_number(from);
+            totals.above = get_number(from);
+        }
+    if (const char* problem = problem_of(aggregates)) throw BadBytes(problem);
 }
 
 void put_arm(ByteWriter& to, const ArmResults& arm) {
@@ -65,6 +104,7 @@ void put_arm(ByteWriter& to, const ArmResults& arm) {
     put_sums(to, arm.products.sum);
     put_sums(to, arm.products.square_sum);
     put_counts(to, arm.products.count);
+    put_aggregates(to, arm.aggregates);
 }
 
 void get_arm(ByteReader& from, ArmResults& arm) {
@@ -79,6 +119,9 @@ void get_arm(ByteReader& from, ArmResults& arm) {
     get_sums(from, arm.products.sum);
     get_sums(from, arm.products.square_sum);
     get_counts(from, arm.products.count);
+    if (arm.aggregates.statuses.empty()) return;  // the trials are kept
+    get_aggregates(from, arm.aggregates);
+    if (arm.aggregates.counted() != arm.counted) throw BadBytes("totals of an impossible number of trials");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <bit>
 #include <map>
 #include <memory>
-#include <numeric>
 
 namespace credence {
 
@@ -62,7 +61,8 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 /// One scenario of the study, as the files bring it.
 class ScenarioMerger {
 public:
-    explicit ScenarioMerger(const ScenarioResults& like) : results_(empty_results(like.scenario)) {
+    explicit ScenarioMerger(const ScenarioResults& like) : results_(empty_results(like.scenario, like.keep)) {
+        if (like.keep == Keep::aggregates) return;
         for (ArmResults& arm : results_.arms) arm.kept = std::make_shared<GatheredColumns>();
     }
 
@@ -71,21 +71,26 @@ public:
              std::uint64_t root_seed) {
         columns_.emplace_back();
         for (const ArmResults& arm : from.arms) columns_.back().push_back(arm.kept);
-        std::vector<std::int64_t> fresh, again;
-        for (const std::int64_t block : from.blocks) (places_.count(block) ? again : fresh).push_back(block);
-        for (const std::int64_t block : again) check_same(from, block, file, paths);
+        const BlockRanges fresh = from.blocks.without(results_.blocks), again = from.blocks.without(fresh);
+        if (results_.keep == Keep::trials)
+            for (const std::int64_t block : again) check_same(from, block, file, paths);
         if (fresh.empty()) return;
         for (std::size_t a = 0; a < from.arms.size(); ++a) add_totals(results_.arms[a], from.arms[a]);
         if (!again.empty()) take_out(again, trials, root_seed);
-        for (const std::int64_t block : fresh)
-            places_[block] = {file, first_row(from, block).value(), trials_in_block(trials, block)};
-        std::vector<std::int64_t> blocks;
-        for (const auto& [block, place] : places_) blocks.push_back(block);
+        if (results_.keep == Keep::trials)
+            for (const std::int64_t block : fresh)
+                places_[block] = {file, first_row(from, block).value(), trials_in_block(trials, block)};
+        BlockRanges blocks = results_.blocks;
+        blocks.add(fresh);
         set_blocks(results_, std::move(blocks), trials);
-        for (const std::int64_t block : fresh) copy_details(results_, from, block);
+        for (const std::int64_t block : fresh) {
+            if (first_row(results_, block).value() >= results_.detailed()) break;
+            copy_details(results_, from, block);
+        }
     }
 
     ScenarioResults merged() {
+        if (results_.keep == Keep::aggregates) return std::move(results_);
         for (std::size_t a = 0; a < results_.arms.size(); ++a) {
             const auto gathered = std::make_shared<GatheredColumns>();
             for (const auto& [block, place] : places_) gathered->add(columns_[place.file][a], place.row, place.trials);
@@ -111,14 +116,14 @@ private:
     }
 
     /// The totals of a file are of all its blocks: those that were there already are computed and taken out.
-    void take_out(const std::vector<std::int64_t>& blocks, std::int64_t trials, std::uint64_t root_seed) {
+    void take_out(const BlockRanges& blocks, std::int64_t trials, std::uint64_t root_seed) {
         const BlockRunner runner(results_.scenario);
         for (const std::int64_t block : blocks)
             remove_totals(results_, runner.run(root_seed, block, trials_in_block(trials, block)));
     }
 
     ScenarioResults results_;
-    std::map<std::int64_t, Place> places_;
+    std::map<std::int64_t, Place> places_;                                  ///< of the trials that are kept
     std::vector<std::vector<std::shared_ptr<const KeptColumns>>> columns_;  ///< by file and arm
 };
 
@@ -135,20 +140,17 @@ void check_same_study(const Study& first, const Study& other, const std::vector<
 }
 
 /// `3, 7 to 9`; long lists are cut.
-std::string ranges_text(const std::vector<std::int64_t>& numbers) {
+std::string ranges_text(const BlockRanges& blocks) {
     constexpr std::size_t most = 12;
-    std::vector<std::string> ranges;
-    for (std::size_t i = 0; i < numbers.size();) {
-        std::size_t end = i + 1;
-        while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
-        ranges.push_back(std::to_string(numbers[i]) +
-                         (end - i > 1 ? (end - i > 2 ? " to " : ", ") + std::to_string(numbers[end - 1]) : ""));
-        i = end;
+    const std::vector<BlockRange> ranges = blocks.ranges();
+    std::vector<std::string> texts;
+    for (const BlockRange& range : ranges) {
+        if (texts.size() == most) break;
+        texts.push_back(std::to_string(range.first) +
+                        (range.count() > 1 ? (range.count() > 2 ? " to " : ", ") + std::to_string(range.last) : ""));
     }
-    if (ranges.size() <= most) return joined(ranges, ", ");
-    const std::size_t more = ranges.size() - most;
-    ranges.resize(most);
-    return joined(ranges, ", ") + " and " + std::to_string(more) + " more places";
+    const std::size_t more = ranges.size() - texts.size();
+    return joined(texts, ", ") + (more > 0 ? " and " + std::to_string(more) + " more places" : "");
 }
 
 }  // namespace
@@ -174,7 +176,7 @@ Study merge_results(const std::vector<std::string>& paths) {
 std::string missing_text(const Study& study) {
     std::vector<std::string> lacking;
     for (const ScenarioResults& results : study.scenarios) {
-        const std::vector<std::int64_t> missing = missing_blocks(results, study.trials);
+        const BlockRanges missing = missing_blocks(results, study.trials);
         if (!missing.empty())
             lacking.push_back("scenario " + results.scenario.name + " lacks blocks " + ranges_text(missing) + " of " +
                               std::to_string(block_count(study.trials)));

@@ -87,6 +87,24 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     return comparison;
 }
 
+PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMoments& a, const ExactMoments& b) {
+    PairedComparison comparison;
+    const std::int64_t pairs = comparison.pairs = totals.difference.count;
+    comparison.difference = summary_of(moments_of(totals.difference));
+    comparison.bootstrap95 = {nan, nan};
+    comparison.wilcoxon_z = comparison.wilcoxon_p = comparison.variance_reduction = nan;
+    comparison.wins_a = static_cast<double>(totals.below) / static_cast<double>(pairs);
+    comparison.wins_b = static_cast<double>(totals.above) / static_cast<double>(pairs);
+    comparison.ties = static_cast<double>(pairs - totals.below - totals.above) / static_cast<double>(pairs);
+    const double deviation = comparison.difference.standard_deviation, deviation_a = moments_of(a).standard_deviation,
+                 deviation_b = moments_of(b).standard_deviation;
+    comparison.effect_size = comparison.difference.mean / deviation;
+    if (a.count == pairs && b.count == pairs)
+        comparison.variance_reduction =
+            (deviation_a * deviation_a + deviation_b * deviation_b) / (deviation * deviation);
+    return comparison;
+}
+
 std::vector<double> holm(std::vector<double> p) {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < p.size(); ++i)

@@ -55,7 +55,8 @@ void RankLeader::tell_all(Word word, const std::string& bytes) {
 }
 
 void RankLeader::begin(const StudyDefinition& definition, int threads, Sending sending) {
-    for (const Declaration& scenario : definition.scenarios) empty_.push_back(without_columns(scenario));
+    for (const Declaration& scenario : definition.scenarios)
+        empty_.push_back(without_columns(scenario, definition.keep));
     const double seconds = sending == Sending::at_once ? 0 : seconds_between_records(post_.size());
     tell_all(Word::study, order_bytes({definition, threads, seconds}));
 }

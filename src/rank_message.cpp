@@ -2,7 +2,6 @@
 
 #include "journal_totals.hpp"
 
-#include <algorithm>
 
 namespace credence {
 
@@ -45,48 +44,55 @@ RankTasks read_tasks(const std::string& bytes) {
     return tasks;
 }
 
-ScenarioResults without_columns(const Declaration& scenario) {
-    ScenarioResults results = empty_results(scenario);
+ScenarioResults without_columns(const Declaration& scenario, Keep keep) {
+    ScenarioResults results = empty_results(scenario, keep);
     for (ArmResults& arm : results.arms) arm.columns.clear();
     return results;
 }
 
-RankRecord::RankRecord(const ScenarioResults& empty) : results_(empty) {
-    for (const Column& column : empty.columns) types_.push_back(column.type);
+namespace {
+
+/// All of a record's blocks, those that have values in their order.
+std::vector<std::int64_t> blocks_of(const RecordStart& start) {
+    std::vector<std::int64_t> blocks;
+    for (const JournalBlock& block : start.blocks)
+        if (start.ranges.empty()) blocks.push_back(block.index);
+    for (const BlockRange& range : start.ranges)
+        for (std::int64_t block = range.first; block <= range.last; ++block) blocks.push_back(block);
+    return blocks;
 }
 
-void RankRecord::take(const Block& block) {
-    blocks_.push_back({block.index, block.trials});
+}  // namespace
+
+RankRecord::RankRecord(const ScenarioResults& empty) : layout_(empty), types_(kept_types(empty)), results_(empty) {}
+
+void RankRecord::take(const Block& block, const std::vector<ArmAggregates>& aggregates) {
+    blocks_.push_back(block.index);
     put_block(values_, types_, block);
-    add_totals(results_, block);
+    add_totals(results_, block, aggregates);
 }
 
 std::string RankRecord::bytes(std::size_t scenario, std::int64_t trials) const {
-    std::int64_t counted = 0;
-    for (const JournalBlock& block : blocks_) counted += block.trials;
+    RecordStart start = record_of(blocks_, trials, layout_);
+    for (const std::int64_t block : blocks_) start.counted += trials_in_block(trials, block);
     ByteWriter totals;
     put_totals(totals, results_);
-    return record_bytes(static_cast<std::uint32_t>(scenario), {trials, counted, blocks_}, values_.bytes(),
-                        totals.bytes());
+    return record_bytes(static_cast<std::uint32_t>(scenario), start, layout_.keep(), values_.bytes(), totals.bytes());
 }
 
 ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty) {
     ByteReader from(bytes.data(), bytes.size());
     const RecordHead head = get_record_head(from);
     if (head.scenario >= empty.size()) throw BadBytes("a record of a scenario that the study does not have");
-    const RecordStart start = get_record_start(from);
     ComputedBlocks computed{head.scenario, {}, {}, empty[head.scenario]};
     ScenarioResults& results = computed.results;
     const BlockLayout layout(results);
+    const RecordStart start = get_record_start(from, layout);
     std::int64_t size = 0;
-    for (const JournalBlock& block : start.blocks) {
-        computed.blocks.push_back(block.index);
-        size += layout.size(block);
-    }
+    for (const JournalBlock& block : start.blocks) size += layout.size(block);
+    computed.blocks = blocks_of(start);
     computed.values.assign(from.raw(static_cast<std::uint64_t>(size)), static_cast<std::size_t>(size));
-    std::vector<std::int64_t> sorted = computed.blocks;
-    std::sort(sorted.begin(), sorted.end());
-    set_blocks(results, std::move(sorted), start.trials);
+    set_blocks(results, computed.blocks, start.trials);
     get_totals(from, results);
     std::int64_t position = 0;
     for (const JournalBlock& block : start.blocks) {

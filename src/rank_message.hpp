@@ -32,15 +32,16 @@ class RankRecord {
 public:
     explicit RankRecord(const ScenarioResults& empty);
 
-    void take(const Block& block);
+    void take(const Block& block, const std::vector<ArmAggregates>& aggregates = {});
     bool empty() const { return blocks_.empty(); }
-    std::size_t size() const { return values_.size(); }  ///< bytes
+    std::size_t size() const { return values_.size(); }  ///< bytes of values
     /// A record of the journal but for its checksum: the totals are those of its blocks alone.
     std::string bytes(std::size_t scenario, std::int64_t trials) const;
 
 private:
+    BlockLayout layout_;
     std::vector<ColumnType> types_;
-    std::vector<JournalBlock> blocks_;
+    std::vector<std::int64_t> blocks_;
     ByteWriter values_;
     ScenarioResults results_;
 };
@@ -49,6 +50,6 @@ private:
 ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty);
 
 /// Empty results that hold no columns.
-ScenarioResults without_columns(const Declaration& scenario);
+ScenarioResults without_columns(const Declaration& scenario, Keep keep = Keep::trials);
 
 }  // namespace credence

@@ -63,7 +63,7 @@ private:
             order_ = read_order(message->bytes);
             for (const Declaration& scenario : order_.study.scenarios) {
                 runners_.emplace_back(scenario);
-                empty_.push_back(without_columns(scenario));
+                empty_.push_back(without_columns(scenario, order_.study.keep));
                 records_.emplace_back(empty_.back());
             }
             return true;
@@ -100,15 +100,16 @@ private:
             lock.unlock();
             const Clock::time_point start = Clock::now();
             const Block block = runners_[task.scenario].run(order_.study.root_seed, task.block, trials);
+            const std::vector<ArmAggregates> aggregates = block_aggregates(empty_[task.scenario], block);
             lock.lock();
-            take(task, block, seconds_since(start));
+            take(task, block, aggregates, seconds_since(start));
         }
     }
 
-    void take(const Task& task, const Block& block, double seconds) {
+    void take(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates, double seconds) {
         RankRecord& record = records_[task.scenario];
         const std::size_t before = record.size();
-        record.take(block);
+        record.take(block, aggregates);
         pending_ += record.size() - before;
         --under_way_;
         block_seconds_ = block_seconds_ > 0 ? 0.8 * block_seconds_ + 0.2 * seconds : seconds;

@@ -23,6 +23,7 @@ std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scen
     return std::nullopt;
 }
 
+/// `values` may be none: then nothing is known of its place.
 std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedFigure>>& published,
                                        const std::string& arm, const std::vector<double>& values) {
     if (!published) return std::nullopt;
@@ -34,9 +35,21 @@ std::optional<PublishedPlace> place_of(const std::optional<std::vector<Published
 /// NEES and NIS ratios are judged by tests of their own.
 bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
+/// Of totals: mean and spread are known, and nothing of the distribution.
+FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const Column& column = results.columns[c];
+    FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
+                        std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
+                        place_of(published_of(results.scenario, column.name), arm.name, {}), std::nullopt};
+    if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
+    return report;
+}
+
 FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
+    if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
     std::vector<double> values = figure_values(results, arm, c);
     const auto published = published_of(results.scenario, column.name);
     FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
@@ -56,10 +69,10 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, margin);
-    for (const double status : column_values(results, arm, status_column(results.columns))) {
-        report.failed += failed(static_cast<Status>(static_cast<int>(status)));
-        report.diverged += static_cast<int>(status) == static_cast<int>(Status::diverged);
-    }
+    const std::vector<std::int64_t> statuses = status_counts(results, arm);
+    for (std::size_t status = 0; status < statuses.size(); ++status)
+        if (failed(static_cast<Status>(status))) report.failed += statuses[status];
+    report.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
     return report;
@@ -71,6 +84,7 @@ Report make_report(const Study& study, double margin) {
     report.root_seed = study.root_seed;
     report.trials = study.trials;
     report.complete = study.complete;
+    report.keep = keep_of(study);
     report.margin = margin;
     report.pairs = planned_against_partners(study);
     for (const ScenarioResults& results : study.scenarios) {

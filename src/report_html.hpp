@@ -72,6 +72,8 @@ std::string figure_words(const std::string& name, const std::string& unit);
 Html chart(const std::string& caption, const Html& svg);
 /// Drawings side by side under a head, and what they show; nothing without drawings.
 Html chart_group(const std::string& head, const std::string& text, const Html& drawings);
+/// What stands in the place of charts of distributions, where no trial is kept.
+Html no_distributions(Keep keep);
 /// Names beside their marks; those of the arms.
 Html legend(const std::vector<std::string>& names);
 Html legend(const Part& part);

@@ -34,7 +34,7 @@ std::string run_again(const Report& report) {
     std::string line = "credence run";
     for (const Declaration& scenario : report.scenarios) line += " " + scenario.name + ".ini";
     return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
-           " -o again.h5";
+           (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
 }
 
 constexpr char terms_text[] = R"(<section aria-labelledby="terms">

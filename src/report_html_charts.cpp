@@ -90,6 +90,11 @@ Html chart_group(const std::string& head, const std::string& text, const Html& d
            drawings + "</div>\n"_html;
 }
 
+Html no_distributions(Keep keep) {
+    if (keep == Keep::trials) return {};
+    return element("p", escaped(std::string("No chart of how trials and pairs are spread: ") + no_trials_note)) + "\n"_html;
+}
+
 Html legend(const std::vector<std::string>& names) {
     const char* const shapes[] = {"●", "◆", "■", "▲"};
     Html items;
@@ -193,7 +198,8 @@ Html charts(const Part& part) {
                       chart_group("Differences of pairs",
                                   "Trial by trial, with the same draws. Left of 0 the first arm is lower. The mark is "
                                   "the mean with its 95 % interval.",
-                                  differences);
+                                  differences) +
+                      no_distributions(part.report.keep);
     return html.empty() ? html
                         : element("h3", "Charts"_html, "id=\""_html + escaped(part.id("charts")) + "\""_html) +
                               "\n<p>Values show where the pointer rests on a mark.</p>\n"_html + legend(part) + html;

@@ -7,6 +7,7 @@
 #include "report_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence::page {
 
@@ -29,8 +30,9 @@ std::vector<std::string> names_of(const Part& part) {
 
 Html published(const FigureReport& figure_report) {
     if (!figure_report.published) return {};
-    return figure_as(figure_report.published->value, to_text(figure_report.published->value)) + " ("_html +
-           figure(figure_report.published->percentile, 1) + " %)"_html;
+    const Html value = figure_as(figure_report.published->value, to_text(figure_report.published->value));
+    if (std::isnan(figure_report.published->percentile)) return value;
+    return value + " ("_html + figure(figure_report.published->percentile, 1) + " %)"_html;
 }
 
 /// Rows for every arm under a head for every figure.

@@ -12,6 +12,7 @@ namespace credence {
 namespace {
 
 std::string published_text(const PublishedPlace& published) {
+    if (std::isnan(published.percentile)) return to_text(published.value);
     return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
 }
 

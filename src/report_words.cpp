@@ -101,6 +101,7 @@ std::vector<std::string> warnings_of(const Report& report) {
     if (!report.complete)
         lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
                         " trials of each arm.");
+    if (report.keep == Keep::aggregates) lines.push_back(std::string("note: ") + no_trials_note);
     return lines;
 }
 

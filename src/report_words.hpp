@@ -17,7 +17,12 @@ struct Reason {
 /// Why an arm has its verdict: the worst of what was found, notes, and what would decide.
 std::vector<Reason> reasons_of(const ArmReport& arm);
 
-/// What is said before anything else: failed and diverged trials, troubles of a record, a study that is not complete.
+/// What is missing where no trial is kept.
+inline const char* const no_trials_note =
+    "only totals are kept: medians and distributions need the trials (credence run --keep trials).";
+
+/// What is said before anything else: failed and diverged trials, troubles of a record, a study that is not complete or
+/// keeps no trials.
 std::vector<std::string> warnings_of(const Report& report);
 
 /// The figure of that name; the first one where there is none.

@@ -54,15 +54,17 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
 
 }  // namespace
 
-ScenarioResults empty_results(const Declaration& scenario) {
+std::string keep_name(Keep keep) { return keep == Keep::trials ? "trials" : "aggregates"; }
+
+ScenarioResults empty_results(const Declaration& scenario, Keep keep) {
     const World& world = world_of(scenario);
-    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}};
+    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
     const std::size_t steps = static_cast<std::size_t>(results.steps());
     const std::size_t lags = static_cast<std::size_t>(lag_count(scenario.poses));
     for (const std::string& name : scenario.arms) {
         ArmResults one;
         one.name = name;
-        one.columns.resize(results.columns.size());
+        if (keep == Keep::trials) one.columns.resize(results.columns.size());
         for (const Figure& figure : results.figures)
             one.totals.push_back(
                 {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
@@ -71,6 +73,9 @@ ScenarioResults empty_results(const Declaration& scenario) {
         one.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
         results.arms.push_back(std::move(one));
     }
+    if (keep == Keep::trials) return results;
+    std::vector<ArmAggregates> aggregates = empty_aggregates(results.columns, results.arms.size());
+    for (std::size_t a = 0; a < results.arms.size(); ++a) results.arms[a].aggregates = std::move(aggregates[a]);
     return results;
 }
 
@@ -96,7 +101,29 @@ const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& a
     return nullptr;
 }
 
-void add_totals(ScenarioResults& results, const Block& block) { add_scaled_totals(results, block, 1); }
+Moments aggregate_moments(const ArmResults& arm, std::size_t column) {
+    return moments_of(arm.aggregates.columns[column]);
+}
+
+DifferenceTotals aggregate_differences(const ScenarioResults& results, const ArmResults& a, const ArmResults& b,
+                                       std::size_t column) {
+    const auto place = [&](const ArmResults& arm) { return static_cast<std::size_t>(&arm - results.arms.data()); };
+    return place(a) > place(b) ? a.aggregates.differences[place(b)][column]
+                               : b.aggregates.differences[place(a)][column].reversed();
+}
+
+std::vector<ArmAggregates> block_aggregates(const ScenarioResults& results, const Block& block) {
+    return results.keep == Keep::trials ? std::vector<ArmAggregates>{} : aggregates_of(results.columns, block);
+}
+
+void add_totals(ScenarioResults& results, const Block& block, const std::vector<ArmAggregates>& aggregates) {
+    add_scaled_totals(results, block, 1);
+    for (std::size_t a = 0; a < aggregates.size(); ++a) results.arms[a].aggregates.add(aggregates[a]);
+}
+
+void add_totals(ScenarioResults& results, const Block& block) {
+    add_totals(results, block, block_aggregates(results, block));
+}
 
 void add_totals(ArmResults& to, const ArmResults& from) {
     const auto add_sums = [](std::vector<ExactSum>& sums, const std::vector<ExactSum>& others) {
@@ -106,6 +133,7 @@ void add_totals(ArmResults& to, const ArmResults& from) {
         std::transform(counts.begin(), counts.end(), others.begin(), counts.begin(), std::plus<>());
     };
     to.counted += from.counted;
+    to.aggregates.add(from.aggregates);
     for (std::size_t f = 0; f < to.totals.size(); ++f) {
         add_sums(to.totals[f].sum, from.totals[f].sum);
         add_sums(to.totals[f].square_sum, from.totals[f].square_sum);
@@ -118,6 +146,10 @@ void add_totals(ArmResults& to, const ArmResults& from) {
     add_counts(to.products.count, from.products.count);
 }
 
-void remove_totals(ScenarioResults& results, const Block& block) { add_scaled_totals(results, block, -1); }
+void remove_totals(ScenarioResults& results, const Block& block) {
+    add_scaled_totals(results, block, -1);
+    const std::vector<ArmAggregates> aggregates = block_aggregates(results, block);
+    for (std::size_t a = 0; a < aggregates.size(); ++a) results.arms[a].aggregates.subtract(aggregates[a]);
+}
 
 }  // namespace credence

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace credence {
 
@@ -48,6 +47,13 @@ std::vector<double> column_values(const ScenarioResults& results, const ArmResul
     return column_values(arm, column, 0, results.trials);
 }
 
+std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm) {
+    if (results.keep == Keep::aggregates) return arm.aggregates.statuses;
+    std::vector<std::int64_t> counts(status_names().size());
+    for (const double status : column_values(results, arm, status_column(results.columns))) ++counts[static_cast<std::size_t>(status)];
+    return counts;
+}
+
 std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
     std::vector<double> values = column_values(results, arm, column);
     const std::vector<double> status = column_values(results, arm, status_column(results.columns));
@@ -60,12 +66,16 @@ std::vector<double> figure_values(const ScenarioResults& results, const ArmResul
 std::int64_t ScenarioResults::detailed() const {
     const std::int64_t most = detailed_trials(steps(), state_size());
     if (blocks.empty()) return std::min(trials, most);
-    const auto end = std::lower_bound(blocks.begin(), blocks.end(), most / block_size);
-    return std::min(trials, block_size * (end - blocks.begin()));
+    return std::min(trials, block_size * blocks.count_below(most / block_size));
 }
 
 std::int64_t block_rows(const ScenarioResults& results, std::size_t place) {
     return std::min<std::int64_t>(block_size, results.trials - block_size * static_cast<std::int64_t>(place));
+}
+
+std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials) {
+    if (blocks.empty()) return 0;
+    return block_size * (blocks.count() - 1) + trials_in_block(trials, blocks.back());
 }
 
 std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
@@ -77,16 +87,18 @@ std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int
 }
 
 std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64_t block) {
-    const auto found = std::lower_bound(results.blocks.begin(), results.blocks.end(), block);
-    if (found == results.blocks.end() || *found != block) return std::nullopt;
-    return block_size * (found - results.blocks.begin());
+    const std::optional<std::int64_t> place = results.blocks.place_of(block);
+    return place ? std::optional(block_size * *place) : std::nullopt;
 }
 
-void set_blocks(ScenarioResults& results, std::vector<std::int64_t> blocks, std::int64_t trials) {
+void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials) {
     std::vector<Move> moves, detailed_moves;
     const std::int64_t most = detailed_trials(results.steps(), results.state_size()) / block_size;
+    const bool in_memory = std::any_of(results.arms.begin(), results.arms.end(),
+                                       [](const ArmResults& arm) { return !arm.kept && !arm.columns.empty(); });
     std::int64_t rows = 0;
     for (const std::int64_t block : blocks) {
+        if (!in_memory && block >= most) break;  // nothing of it has a row
         const std::int64_t size = trials_in_block(trials, block);
         if (const std::optional<std::int64_t> row = first_row(results, block)) {
             const auto place = static_cast<std::size_t>(*row / block_size);
@@ -95,21 +107,19 @@ void set_blocks(ScenarioResults& results, std::vector<std::int64_t> blocks, std:
         }
         rows += size;
     }
+    results.trials = trials_in(blocks, trials);
     results.blocks = std::move(blocks);
-    results.trials = rows;
     const std::int64_t steps = results.steps(), detailed = results.detailed();
     for (ArmResults& arm : results.arms) {
         if (!arm.kept)
-            for (std::vector<double>& column : arm.columns) move_rows(column, moves, rows, 1);
+            for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
         move_rows(arm.nees, detailed_moves, detailed, steps);
         move_rows(arm.errors, detailed_moves, detailed, steps * results.state_size());
     }
 }
 
 void extend(ScenarioResults& results, std::int64_t trials) {
-    std::vector<std::int64_t> blocks(static_cast<std::size_t>(block_count(trials)));
-    std::iota(blocks.begin(), blocks.end(), 0);
-    set_blocks(results, std::move(blocks), trials);
+    set_blocks(results, BlockRanges::below(block_count(trials)), trials);
 }
 
 void store_columns(ScenarioResults& results, const Block& block) {
@@ -118,7 +128,7 @@ void store_columns(ScenarioResults& results, const Block& block) {
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmResults& arm = results.arms[a];
         if (!block.arms[a].nees.empty()) store_details(block.arms[a], row, trials, arm);
-        if (arm.kept) continue;
+        if (arm.kept || arm.columns.empty()) continue;
         for (std::size_t c = 0; c < results.columns.size(); ++c)
             std::copy_n(block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c * trials), trials,
                         arm.columns[c].begin() + row);

@@ -99,6 +99,11 @@ Moments moments_from_sums(std::int64_t count, double sum, double square_sum) {
     return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
 }
 
+Summary summary_of(const Moments& moments) {
+    return {static_cast<std::int64_t>(moments.count), moments.mean, moments.standard_error, t_interval(moments), nan,
+            moments.standard_deviation};
+}
+
 Interval t_interval(const Moments& moments, double alpha) {
     const double half = t_quantile(alpha, moments.count - 1) * moments.standard_error;
     return {moments.mean - half, moments.mean + half};

@@ -24,6 +24,13 @@ std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trial
     return paired_differences(first_values(*subject.arm), first_values(*subject.subtracted));
 }
 
+/// The same of totals, which are of all trials.
+Moments aggregates_of(const StoppingSubject& subject) {
+    if (subject.subtracted == nullptr) return aggregate_moments(*subject.arm, subject.column);
+    return moments_of(
+        aggregate_differences(*subject.results, *subject.arm, *subject.subtracted, subject.column).difference);
+}
+
 std::string name_of(const StoppingSubject& subject) {
     const std::string pair = subject.subtracted == nullptr ? "" : " - " + subject.subtracted->name;
     return subject.results->columns[subject.column].name + " of " + subject.results->scenario.name + "/" +
@@ -70,30 +77,40 @@ std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first) 
     return looks;
 }
 
-GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
-    // In two passes in trial order, without the copy and the median of a summary: looks may take 1e7 values each.
+GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number) {
     GoalState state;
-    double sum = 0, squares = 0;
-    for (const double value : values)
-        if (!std::isnan(value)) sum += value, ++state.count;
-    const auto count = static_cast<double>(state.count);
-    state.mean = sum / count;
-    for (const double value : values)
-        if (!std::isnan(value)) squares += (value - state.mean) * (value - state.mean);
-    state.standard_deviation =
-        state.count > 1 ? std::sqrt(squares / (count - 1)) : std::numeric_limits<double>::quiet_NaN();
-    state.half_width = half_width_of(state.standard_deviation, count, number);
+    state.count = static_cast<std::int64_t>(moments.count);
+    state.mean = moments.mean;
+    state.standard_deviation = moments.standard_deviation;
+    state.half_width = half_width_of(state.standard_deviation, moments.count, number);
     state.allowed = goal.half_width * (goal.kind == WidthKind::relative ? std::abs(state.mean) : 1);
     return state;
 }
 
+GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
+    // In two passes in trial order, without the copy and the median of a summary: looks may take 1e7 values each.
+    Moments moments;
+    double squares = 0;
+    for (const double value : values)
+        if (!std::isnan(value)) moments.mean += value, ++moments.count;
+    moments.mean /= moments.count;
+    for (const double value : values)
+        if (!std::isnan(value)) squares += (value - moments.mean) * (value - moments.mean);
+    moments.standard_deviation =
+        moments.count > 1 ? std::sqrt(squares / (moments.count - 1)) : std::numeric_limits<double>::quiet_NaN();
+    return decide_from(moments, goal, number);
+}
+
 Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
     for (const ScenarioResults& results : study.scenarios)
-        if (results.trials < trials) throw std::logic_error("a look at trials that are not there");
+        if (results.trials < trials || (results.keep == Keep::aggregates && results.trials > trials))
+            throw std::logic_error("a look at trials that are not there, or not by themselves");
     Look look{trials, number, look_alpha(number), {}, true};
     for (const StoppingGoal& goal : goals)
         for (const StoppingSubject& subject : subjects_of(goal, study)) {
-            look.states.push_back(decide(values_of(subject, trials), goal, number));
+            look.states.push_back(subject.results->keep == Keep::trials
+                                      ? decide(values_of(subject, trials), goal, number)
+                                      : decide_from(aggregates_of(subject), goal, number));
             look.states.back().name = name_of(subject);
             look.met = look.met && look.states.back().met();
         }
@@ -142,9 +159,12 @@ Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
     return run_looks(rule, [&](std::int64_t trials, int number) {
         // All scenarios of a study get as many trials: those of the one that has most, where that is more.
         options.trials = std::max(trials, least_trials(study));
+        const bool aggregates = keep_of(study) == Keep::aggregates;
+        if (aggregates && options.trials > trials && trials < rule.ceiling)
+            return Look{trials, number, look_alpha(number), {}, false};
         run_study(study, options);
         if (!study.complete) return interrupted_look(trials, number);
-        Look look = look_at(study, rule.goals, trials, number);
+        Look look = look_at(study, rule.goals, aggregates ? options.trials : trials, number);
         if (after_look) after_look(look);
         return look;
     });

@@ -75,11 +75,11 @@ std::optional<std::int64_t> check_column(const Handle& group, const Column& colu
     return counted;
 }
 
-std::vector<std::int64_t> read_blocks(const Handle& group, std::int64_t asked) {
+BlockRanges read_blocks(const Handle& group, std::int64_t asked) {
     const Dataset dataset(group, "trial");
     if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
     const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
-    std::vector<std::int64_t> blocks;
+    BlockRanges blocks;
     std::int64_t next = 0, end = 0;  // the trial that must come, and the first beyond its block
     for (std::int64_t first = 0; first < rows; first += rows_at_once) {
         const auto count = static_cast<hsize_t>(std::min(rows_at_once, rows - first));
@@ -87,7 +87,7 @@ std::vector<std::int64_t> read_blocks(const Handle& group, std::int64_t asked) {
             if (next == end) {
                 if (trial < next || trial >= asked || trial % block_size != 0)
                     throw Error(dataset.place(), "does not go on with a block of trials");
-                blocks.push_back(trial / block_size);
+                blocks.add(trial / block_size);
                 next = trial;
                 end = trial + trials_in_block(asked, blocks.back());
             }

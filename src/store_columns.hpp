@@ -25,6 +25,6 @@ std::optional<std::int64_t> check_column(const hdf5::Handle& group, const Column
 
 /// The blocks that the trials in an arm's group make, of a study that was asked for `asked`. Throws where a block is not
 /// whole, but for the study's last.
-std::vector<std::int64_t> read_blocks(const hdf5::Handle& group, std::int64_t asked);
+BlockRanges read_blocks(const hdf5::Handle& group, std::int64_t asked);
 
 }  // namespace credence

@@ -79,9 +79,26 @@ std::vector<Column> read_columns(const Handle& arm) {
     return columns;
 }
 
+/// The figures of trials that an arm has totals of, as columns; nothing but their names and units is told of them.
+std::vector<Column> read_aggregated_columns(const Handle& arm) {
+    const hdf5::Dataset scale(arm, "column");
+    const std::vector<std::string> names = words(hdf5::read_text(scale.object(), "column_names")),
+                                   units = split_list(hdf5::read_text(scale.object(), "column_units"));
+    if (names.empty() || names.size() != units.size() || names.size() > most_columns ||
+        !std::all_of(names.begin(), names.end(), is_name))
+        throw Error(scale.place(), "does not name the figures of trials and their units");
+    std::vector<Column> columns;
+    for (std::size_t c = 0; c < names.size(); ++c)
+        columns.push_back({names[c], names[c], printable(units[c]), ColumnType::real,
+                           std::numeric_limits<double>::quiet_NaN()});
+    for (Column& column : status_columns()) columns.push_back(std::move(column));
+    return columns;
+}
+
 /// What the file of a program with another world says of a scenario.
-ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>& settings) {
+ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>& settings, Keep keep) {
     ScenarioResults results;
+    results.keep = keep;
     Declaration& scenario = results.scenario;
     for (const Setting& setting : settings)
         if (setting.key == "sweep.of") scenario.sweep.of = printable(setting.value);
@@ -102,7 +119,7 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
     scenario.components = read_components(arm);
     scenario.blocks = parse_blocks(hdf5::read_text(group, "blocks"), static_cast<int>(scenario.components.size()),
                                    hdf5::attribute_place(group, "blocks"));
-    results.columns = read_columns(arm);
+    results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
     results.figures = StateFigures(scenario.components, scenario.blocks,
                                    hdf5::has_link(arm, "nis_total") ? Innovations::given : Innovations::none)
                           .list;
@@ -111,15 +128,15 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
 
 }  // namespace
 
-ScenarioResults read_declared(const Handle& group, const std::string& file) {
+ScenarioResults read_declared(const Handle& group, const std::string& file, Keep keep) {
     const std::string text = hdf5::read_text(group, "scenario");
     const std::string origin = file + ": " + hdf5::attribute_place(group, "scenario");
     const std::vector<Setting> settings = read_settings(text, origin);
     const std::optional<std::string> named = value_of(settings, world_key);
-    if (named && find_world(*named) == nullptr) return declared_by_file(group, settings);
+    if (named && find_world(*named) == nullptr) return declared_by_file(group, settings, keep);
     const Declaration scenario = read_declaration_text(text, origin, "scenario");
     const World& world = world_of(scenario);
-    return {scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}};
+    return {scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
 }
 
 }  // namespace credence

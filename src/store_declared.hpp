@@ -12,6 +12,6 @@ namespace credence {
 
 /// Scenario, columns and figures of a scenario's group, without arms. `file` names it in messages. Throws hdf5::Error,
 /// and InputError for a broken scenario.
-ScenarioResults read_declared(const hdf5::Handle& group, const std::string& file);
+ScenarioResults read_declared(const hdf5::Handle& group, const std::string& file, Keep keep);
 
 }  // namespace credence

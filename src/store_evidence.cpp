@@ -114,13 +114,6 @@ void read_products(const Handle& group, const ScenarioResults& results, hsize_t 
         if (products < 0) throw Error(hdf5::place_of(group, "whiteness_count"), "is negative");
 }
 
-/// Throws unless a coordinate counts on from `first`.
-template <class T>
-void check_numbered(const Handle& group, const std::string& name, T first, hsize_t count) {
-    for (const T value : read_as<T>(group, name, {count}))
-        if (value != first++) throw Error(hdf5::place_of(group, name), "does not count on by one");
-}
-
 }  // namespace
 
 std::vector<std::string> evidence_links(const ScenarioResults& results) {

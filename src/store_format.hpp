@@ -69,6 +69,14 @@ hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T f
     return hdf5::new_dimension(group, name, values, {long_name, "1"});
 }
 
+/// What the codes of a variable mean that are statuses.
+inline void write_status_flags(const hdf5::Handle& variable) {
+    std::vector<std::int8_t> codes;
+    for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
+    hdf5::write_numbers(variable, "flag_values", codes);
+    hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
+}
+
 /// What `units` says of a state, whose components differ in units where one is a heading.
 inline std::string state_units(const std::vector<Component>& components) {
     const std::string& first = components.front().unit;

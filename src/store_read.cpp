@@ -3,6 +3,7 @@
 #include <credence/text.hpp>
 
 #include "hdf5_read.hpp"
+#include "store_aggregates.hpp"
 #include "store_columns.hpp"
 #include "store_declared.hpp"
 #include "store_evidence.hpp"
@@ -45,10 +46,16 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
-/// Names of the datasets that an arm's group holds.
+/// Names of the datasets that the group of the next arm holds.
 std::vector<std::string> arm_links(const ScenarioResults& results) {
-    std::vector<std::string> names{"trial", "step", "part"};
-    for (const Column& column : results.columns) names.push_back(column.name);
+    std::vector<std::string> names{"step", "part"};
+    if (results.keep == Keep::trials) {
+        names.push_back("trial");
+        for (const Column& column : results.columns) names.push_back(column.name);
+    } else {
+        const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
+        names.insert(names.end(), aggregates.begin(), aggregates.end());
+    }
     for (const Figure& figure : results.figures) {
         names.push_back(figure.name + "_total");
         if (!figure.integer) names.push_back(figure.name + "_square_total");
@@ -59,14 +66,18 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
     return names;
 }
 
+/// Throws where the totals are of another number of trials than those that did not fail.
+void check_counted(const Handle& group, const ArmResults& arm, std::int64_t counted) {
+    if (counted != arm.counted)
+        throw Error(hdf5::attribute_place(group, "counted_trials"),
+                    "is " + std::to_string(arm.counted) + ", but " + std::to_string(counted) + " trials did not fail");
+}
+
 /// Throws where the arm's columns are not those of its scenario, or hold another number of trials than the totals.
 void check_columns(const Handle& group, const ScenarioResults& results, const ArmResults& arm) {
     for (const Column& column : results.columns) {
         const std::optional<std::int64_t> counted = check_column(group, column, results.trials);
-        if (counted && *counted != arm.counted)
-            throw Error(hdf5::attribute_place(group, "counted_trials"),
-                        "is " + std::to_string(arm.counted) + ", but " + std::to_string(*counted) +
-                            " trials did not fail");
+        if (counted) check_counted(group, arm, *counted);
     }
 }
 
@@ -75,6 +86,7 @@ struct Source {
     std::shared_ptr<const Handle> file;
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
+    Keep keep = Keep::trials;
 };
 
 FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t steps, hsize_t parts) {
@@ -91,9 +103,11 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
                     const Source& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
     require_links(group, arm_links(results));
-    const std::vector<std::int64_t> blocks = read_blocks(group, source.asked);
+    const bool trials = results.keep == Keep::trials;
+    const BlockRanges blocks = trials ? read_blocks(group, source.asked) : read_block_ranges(group, source.asked);
     if (results.arms.empty()) set_blocks(results, blocks, source.asked);
-    if (blocks != results.blocks) throw Error(hdf5::place_of(group, "trial"), "is not the same in every arm");
+    if (blocks != results.blocks)
+        throw Error(hdf5::place_of(group, trials ? "trial" : "first_block"), "is not the same in every arm");
     const hsize_t steps = read_numbered<std::int32_t>(group, "step", 1);
     const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
     Dataset(group, "step").require_extents({static_cast<hsize_t>(results.steps())});
@@ -102,9 +116,14 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     ArmResults arm;
     arm.name = name;
     arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
-    check_columns(group, results, arm);
-    const std::string place = results.scenario.name + "/" + name;
-    arm.kept = columns_of_file(source.file, source.path, place, results.columns);
+    if (trials) {
+        check_columns(group, results, arm);
+        const std::string place = results.scenario.name + "/" + name;
+        arm.kept = columns_of_file(source.file, source.path, place, results.columns);
+    } else {
+        arm.aggregates = read_aggregates(group, results, parts);
+        check_counted(group, arm, arm.aggregates.counted());
+    }
     for (const Figure& figure : results.figures) arm.totals.push_back(read_figure(group, figure, steps, parts));
     read_evidence(group, results, parts, arm);
     return arm;
@@ -112,7 +131,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
 
 ScenarioResults read_scenario_results(const std::string& name, const Source& source) {
     const Handle group = hdf5::open_group(*source.file, name);
-    ScenarioResults results = read_declared(group, source.path);
+    ScenarioResults results = read_declared(group, source.path, source.keep);
     const Declaration& scenario = results.scenario;
     const auto agree = [&](const std::string& attribute, const std::string& found, const std::string& expected) {
         if (found != expected)
@@ -167,10 +186,15 @@ StoredStudy read_study(const Source& source) {
 }
 
 Source open_results(const std::string& path) {
-    Source source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0};
+    Source source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials};
     check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
+    // Only a file that keeps no trials says what it keeps.
+    if (!hdf5::has_attribute(*source.file, "keep")) return source;
+    if (hdf5::read_text(*source.file, "keep") != keep_name(Keep::aggregates))
+        throw Error("/@keep", "is not aggregates");
+    source.keep = Keep::aggregates;
     return source;
 }
 

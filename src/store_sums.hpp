@@ -27,4 +27,11 @@ std::vector<T> read_as(const hdf5::Handle& group, const std::string& name, const
     return dataset.read<T>();
 }
 
+/// Throws unless a coordinate counts on from `first`.
+template <class T>
+void check_numbered(const hdf5::Handle& group, const std::string& name, T first, hsize_t count) {
+    for (const T value : read_as<T>(group, name, {count}))
+        if (value != first++) throw hdf5::Error(hdf5::place_of(group, name), "does not count on by one");
+}
+
 }  // namespace credence

@@ -2,12 +2,14 @@
 
 #include <credence/text.hpp>
 
+#include "store_aggregates.hpp"
 #include "store_evidence.hpp"
 #include "store_format.hpp"
 #include "store_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace credence {
 
@@ -48,10 +50,7 @@ void write_column(const Handle& group, const Dimension& trial, const ScenarioRes
     }
     const Handle variable = write_values<std::int8_t>(group, column, results, arm, c);
     hdf5::attach(variable, {&trial});
-    std::vector<std::int8_t> codes;
-    for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
-    hdf5::write_numbers(variable, "flag_values", codes);
-    hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
+    write_status_flags(variable);
 }
 
 std::string role_name(FigureRole role) {
@@ -82,7 +81,7 @@ void write_role(const Handle& variable, const Figure& figure) {
 }
 
 std::size_t largest_part_count(const ArmResults& arm) {
-    std::size_t largest = 1;
+    std::size_t largest = largest_part_count(arm.aggregates);
     const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
     for (const FigureTotals& totals : arm.totals) {
         std::for_each(totals.sum.begin(), totals.sum.end(), note);
@@ -115,20 +114,30 @@ void write_figure(const Handle& group, const Dimension& step, const Dimension& p
                 {total + " of the square of its sum over a trial's steps", square});
 }
 
-void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
-    const Handle group = hdf5::new_group(scenario_group, arm.name);
-    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
-    const Dimension trial = hdf5::as_dimension(
+Dimension new_trial_dimension(const Handle& group, const ScenarioResults& results) {
+    return hdf5::as_dimension(
         hdf5::new_long_dataset<std::int64_t>(
             group, "trial", results.trials, {"trial, counted over the whole study", "1"},
             [&](std::int64_t first, std::int64_t count) { return trial_numbers(results, first, count); }),
         "trial", static_cast<hsize_t>(results.trials));
+}
+
+void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
+    const Handle group = hdf5::new_group(scenario_group, arm.name);
+    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
+    std::optional<Dimension> trial;  // the first link, where the trials are kept
+    if (results.keep == Keep::trials)
+        trial.emplace(new_trial_dimension(group, results));
+    else
+        write_block_ranges(group, results.blocks);
     const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
                                                   "pose that the step leads to");
     const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
                                                   "part of an exact total: 0 the total, the others what rounding left");
-    for (std::size_t c = 0; c < results.columns.size(); ++c)
-        write_column(group, trial, results, arm, c);
+    if (trial)
+        for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
+    else
+        write_aggregates(group, part, results, arm);
     for (std::size_t f = 0; f < results.figures.size(); ++f)
         write_figure(group, step, part, results.figures[f], arm.totals[f]);
     write_evidence(group, {step, part}, results, arm);
@@ -141,6 +150,7 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
     hdf5::write_text(root, "root_seed_text", std::to_string(study.root_seed));
     hdf5::write_number<std::int64_t>(root, "trials", study.trials);
     hdf5::write_number<std::int8_t>(root, "complete", study.complete ? 1 : 0);
+    if (keep_of(study) != Keep::trials) hdf5::write_text(root, "keep", keep_name(keep_of(study)));
     for (const ScenarioResults& results : study.scenarios) {
         const Handle group = new_scenario_group(root, results.scenario);
         for (const ArmResults& arm : results.arms) write_arm(group, results, arm);

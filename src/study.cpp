@@ -7,14 +7,14 @@
 
 namespace credence {
 
-Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed) {
+Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep) {
     Study study{root_seed, {}, 0, false};
     std::set<std::string> names;
     for (const Declaration& scenario : scenarios) {
         if (!names.insert(scenario.name).second)
             throw invalid_value("scenario.name", scenario.name, "two scenarios of the run have it",
                                 "Give each its own name");
-        study.scenarios.push_back(empty_results(scenario));
+        study.scenarios.push_back(empty_results(scenario, keep));
     }
     return study;
 }
@@ -24,15 +24,16 @@ bool last_would_grow(const ScenarioResults& results, std::int64_t trials) {
            block_rows(results, results.blocks.size() - 1) < trials_in_block(trials, results.blocks.back());
 }
 
-std::vector<std::int64_t> missing_blocks(const ScenarioResults& results, std::int64_t trials, const Shard& shard) {
-    std::vector<std::int64_t> missing;
-    auto there = results.blocks.begin();
-    for (std::int64_t block = shard.index; block < block_count(trials); block += shard.count) {
-        there = std::lower_bound(there, results.blocks.end(), block);
-        if (there == results.blocks.end() || *there != block) missing.push_back(block);
-    }
-    if (last_would_grow(results, trials))
-        missing.insert(std::lower_bound(missing.begin(), missing.end(), results.blocks.back()), results.blocks.back());
+Keep keep_of(const Study& study) { return study.scenarios.empty() ? Keep::trials : study.scenarios.front().keep; }
+
+BlockRanges missing_blocks(const ScenarioResults& results, std::int64_t trials, const Shard& shard) {
+    BlockRanges asked;
+    if (shard.count == 1)
+        asked = BlockRanges::below(block_count(trials));
+    else
+        for (std::int64_t block = shard.index; block < block_count(trials); block += shard.count) asked.add(block);
+    BlockRanges missing = asked.without(results.blocks);
+    if (last_would_grow(results, trials)) missing.add(results.blocks.back());
     return missing;
 }
 

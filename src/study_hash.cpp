@@ -6,14 +6,14 @@
 namespace credence {
 
 StudyDefinition definition_of(const Study& study) {
-    StudyDefinition definition{study.root_seed, {}};
+    StudyDefinition definition{study.root_seed, {}, keep_of(study)};
     for (const ScenarioResults& results : study.scenarios) definition.scenarios.push_back(results.scenario);
     return definition;
 }
 
 std::string study_hash(const StudyDefinition& definition) {
     std::string text = "schema " + std::to_string(schema_version) + "\nroot_seed " +
-                       std::to_string(definition.root_seed) + "\nkeep trials\n";
+                       std::to_string(definition.root_seed) + "\nkeep " + keep_name(definition.keep) + "\n";
     for (const Declaration& scenario : definition.scenarios) text += "\n" + scenario_text(scenario);
     const boost::uuids::name_generator_sha1 generate(boost::uuids::ns::oid());
     return boost::uuids::to_string(generate(text));
@@ -25,6 +25,7 @@ std::string difference_of(const StudyDefinition& there, const StudyDefinition& h
     if (study_hash(there) == study_hash(here)) return "";
     if (there.root_seed != here.root_seed)
         return "its root seed is " + std::to_string(there.root_seed) + ", not " + std::to_string(here.root_seed);
+    if (there.keep != here.keep) return "it keeps " + keep_name(there.keep) + ", not " + keep_name(here.keep);
     if (there.scenarios.size() != here.scenarios.size())
         return "it has " + std::to_string(there.scenarios.size()) + " scenarios, not " +
                std::to_string(here.scenarios.size());

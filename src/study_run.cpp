@@ -10,7 +10,6 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <iterator>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -42,26 +41,24 @@ private:
     /// Takes back a partial last block that will be larger, makes room, and lists the blocks that are missing.
     void prepare(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
-        const std::vector<std::int64_t> missing = missing_blocks(results, options_.trials, options_.shard);
+        BlockRanges missing = missing_blocks(results, options_.trials, options_.shard), planned = missing;
         if (last_would_grow(results, options_.trials)) take_back_last(s);
-        for (const std::int64_t block : missing) {
-            tasks_.push_back({s, block});
-            progress_.total += trials_in_block(options_.trials, block);
-        }
+        progress_.total += trials_in(missing, options_.trials);
+        task_count_ += missing.size();
+        missing_.push_back(std::move(missing));
         done_[s] = results.blocks;
-        std::vector<std::int64_t> planned;
-        std::set_union(done_[s].begin(), done_[s].end(), missing.begin(), missing.end(), std::back_inserter(planned));
+        planned.add(done_[s]);
         set_blocks(results, std::move(planned), options_.trials);
     }
 
     void take_back_last(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
-        const std::size_t last = results.blocks.size() - 1;
-        const auto size = static_cast<int>(block_rows(results, last));
-        remove_totals(results, runners_[s].run(study_.root_seed, results.blocks[last], size));
-        if (options_.keeper != nullptr) options_.keeper->take_back(s, results.blocks[last]);
-        taken_back_.push_back({s, results.blocks[last]});
-        set_blocks(results, {results.blocks.begin(), results.blocks.end() - 1}, options_.trials);
+        const std::int64_t last = results.blocks.back();
+        const auto size = static_cast<int>(block_rows(results, results.blocks.size() - 1));
+        remove_totals(results, runners_[s].run(study_.root_seed, last, size));
+        if (options_.keeper != nullptr) options_.keeper->take_back(s, last);
+        taken_back_.push_back({s, last});
+        set_blocks(results, results.blocks.without({last}), options_.trials);
     }
 
     void run_tasks() {
@@ -77,7 +74,7 @@ private:
             while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
         if (trouble_) std::rethrow_exception(trouble_);
         for (const Task& task : taken_back_)  // what was there is not lost to a stop
-            if (std::count(done_[task.scenario].begin(), done_[task.scenario].end(), task.block) == 0) run_task(task);
+            if (!done_[task.scenario].contains(task.block)) run_task(task);
         if (options_.keeper == nullptr) return;
         options_.keeper->prepare(study_);
         options_.keeper->commit();
@@ -96,23 +93,25 @@ private:
     }
 
     std::optional<Task> next_task() {
-        if (next_ >= tasks_.size() || stopped()) return std::nullopt;
-        const std::size_t next = next_++;
-        if (next >= tasks_.size()) return std::nullopt;
-        return tasks_[next];
+        if (next_ >= task_count_ || stopped()) return std::nullopt;
+        std::size_t place = next_++;
+        for (std::size_t s = 0; s < missing_.size(); place -= missing_[s++].size())
+            if (place < missing_[s].size()) return Task{s, missing_[s][place]};
+        return std::nullopt;
     }
 
     void run_task(const Task& task) {
         const int trials = trials_in_block(options_.trials, task.block);
         const Block block = runners_[task.scenario].run(study_.root_seed, task.block, trials);
-        store_columns(study_.scenarios[task.scenario], block);
-        if (finish_task(task, block)) options_.keeper->commit();
+        ScenarioResults& results = study_.scenarios[task.scenario];
+        store_columns(results, block);
+        if (finish_task(task, block, block_aggregates(results, block))) options_.keeper->commit();
     }
 
     /// Adds the block's totals; returns whether a commit was prepared.
-    bool finish_task(const Task& task, const Block& block) {
+    bool finish_task(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates) {
         const std::lock_guard lock(mutex_);
-        add_totals(study_.scenarios[task.scenario], block);
+        add_totals(study_.scenarios[task.scenario], block, aggregates);
         if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
         finished(task);
         report();
@@ -120,7 +119,7 @@ private:
     }
 
     void finished(const Task& task) {
-        done_[task.scenario].push_back(task.block);
+        done_[task.scenario].add(task.block);
         progress_.done += trials_in_block(options_.trials, task.block);
     }
 
@@ -133,7 +132,7 @@ private:
     // What the crew sees [BlockDesk].
     std::int64_t trials() const override { return options_.trials; }
     std::int64_t left() const override {
-        return static_cast<std::int64_t>(tasks_.size() - std::min(tasks_.size(), next_.load()));
+        return static_cast<std::int64_t>(task_count_ - std::min(task_count_, next_.load()));
     }
     std::vector<Task> hand_out(std::int64_t most) override {
         std::vector<Task> tasks;
@@ -157,7 +156,7 @@ private:
     bool add(ScenarioResults& results, const ComputedBlocks& computed) {
         const std::lock_guard lock(mutex_);
         for (std::size_t a = 0; a < results.arms.size(); ++a) add_totals(results.arms[a], computed.results.arms[a]);
-        options_.keeper->take(computed.scenario, computed.blocks, options_.trials, computed.values);
+        options_.keeper->take(computed.scenario, computed.blocks, computed.values);
         for (const std::int64_t block : computed.blocks) finished({computed.scenario, block});
         report();
         return prepare_commit();
@@ -165,10 +164,8 @@ private:
 
     /// After an early stop: only what is done is there.
     void leave_out_missing() {
-        for (std::size_t s = 0; s < study_.scenarios.size(); ++s) {
-            std::sort(done_[s].begin(), done_[s].end());
+        for (std::size_t s = 0; s < study_.scenarios.size(); ++s)
             set_blocks(study_.scenarios[s], std::move(done_[s]), options_.trials);
-        }
     }
 
     void report() {
@@ -179,8 +176,9 @@ private:
     Study& study_;
     const RunOptions& options_;
     std::vector<BlockRunner> runners_;
-    std::vector<std::vector<std::int64_t>> done_;  ///< by scenario: blocks that are there
-    std::vector<Task> tasks_;
+    std::vector<BlockRanges> done_;      ///< by scenario: blocks that are there
+    std::vector<BlockRanges> missing_;   ///< likewise: those that are this run's tasks, one scenario after the other
+    std::size_t task_count_ = 0;
     std::atomic<std::size_t> next_ = 0;  ///< the first task that nobody has
     std::atomic<bool> stopped_ = false;
     std::exception_ptr trouble_;

@@ -15,13 +15,15 @@ namespace {
 
 /// The shard whose blocks these are, all of them and no others; that of the whole study where there is none such.
 Shard shard_of(const ScenarioResults& results, std::int64_t trials) {
-    const std::vector<std::int64_t>& blocks = results.blocks;
+    const BlockRanges& blocks = results.blocks;
     if (blocks.size() < 2) return {};
     const Shard shard{blocks[0], blocks[1] - blocks[0]};
-    const auto count = static_cast<std::int64_t>(blocks.size());
-    if (shard.index >= shard.count || count != blocks_of_shard(shard, trials)) return {};
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (blocks[i] != shard.index + static_cast<std::int64_t>(i) * shard.count) return {};
+    if (shard.count == 1 || shard.index >= shard.count || blocks.count() != blocks_of_shard(shard, trials)) return {};
+    std::int64_t next = shard.index;
+    for (const std::int64_t block : blocks) {
+        if (block != next) return {};
+        next += shard.count;
+    }
     return shard;
 }
 
@@ -88,8 +90,10 @@ WatchLook RunWatch::look_at_results() const {
         if (results.blocks != study.scenarios.front().blocks) look.shard = {};
         WatchedScenario scenario = described(results);
         scenario.trials = results.trials;
-        scenario.blocks = static_cast<std::int64_t>(results.blocks.size());
-        scenario.arms = watched_arms(results, sums_of_rows(results, 0, results.trials));
+        scenario.blocks = results.blocks.count();
+        scenario.arms = watched_arms(results, results.keep == Keep::aggregates
+                                                  ? sums_of_aggregates(results)
+                                                  : sums_of_rows(results, 0, results.trials));
         look.scenarios.push_back(std::move(scenario));
     }
     for (WatchedScenario& scenario : look.scenarios) {

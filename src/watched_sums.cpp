@@ -25,6 +25,20 @@ std::vector<double> figure_of(const ColumnOf& column, std::size_t arm, std::size
 
 bool is_of(const Shard& shard, std::int64_t block) { return block % shard.count == shard.index; }
 
+/// How many blocks are a shard's.
+std::int64_t count_of(const BlockRanges& blocks, const Shard& shard) {
+    std::int64_t count = 0;
+    for (const BlockRange& range : blocks.ranges())
+        count += blocks_of_shard(shard, block_size * (range.last + 1)) - blocks_of_shard(shard, block_size * range.first);
+    return count;
+}
+
+RunningMoments running(const ExactMoments& exact) {
+    const Moments moments = moments_of(exact);
+    if (exact.count < 2) return {exact.count, exact.count > 0 ? moments.mean : 0, 0};
+    return {exact.count, moments.mean, moments.standard_deviation * moments.standard_deviation * (moments.count - 1)};
+}
+
 }  // namespace
 
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
@@ -71,7 +85,22 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
     return sums;
 }
 
+WatchedSums sums_of_aggregates(const ScenarioResults& results) {
+    WatchedSums sums{results.trials, std::vector<ArmSums>(results.arms.size())};
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        const ArmResults& arm = results.arms[a];
+        sums.arms[a].failed = arm.aggregates.trials() - arm.aggregates.counted();
+        sums.arms[a].diverged = arm.aggregates.statuses[static_cast<std::size_t>(Status::diverged)];
+        for (const std::size_t index : watched_columns(results.columns))
+            sums.arms[a].figures.push_back(running(arm.aggregates.columns[index]));
+        if (const ArmResults* fixed = partner_of(results, arm))
+            sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, 0).difference);
+    }
+    return sums;
+}
+
 WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
+    if (results.keep == Keep::aggregates) return {count, {}};
     constexpr std::int64_t at_once = 64 * block_size;
     WatchedSums sums;
     for (std::int64_t row = first; row < first + count; row += at_once) {
@@ -83,43 +112,29 @@ WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std
     return sums;
 }
 
-bool BlockSet::insert(std::int64_t block) {
-    auto bit = pages_[block / page_size][static_cast<std::size_t>(block % page_size)];
-    if (bit) return false;
-    bit = true;
-    ++count_;
-    return true;
-}
-
-bool BlockSet::has(std::int64_t block) const {
-    const auto page = pages_.find(block / page_size);
-    return page != pages_.end() && page->second[static_cast<std::size_t>(block % page_size)];
-}
-
-std::int64_t BlockSet::count_of(const Shard& shard) const {
-    if (shard.count == 1) return count_;
-    std::int64_t count = 0;
-    for (const auto& [page, bits] : pages_)
-        for (std::int64_t i = 0; i < page_size; ++i)
-            count += bits[static_cast<std::size_t>(i)] && is_of(shard, page * page_size + i);
-    return count;
-}
-
-bool BlockSet::contains(const BlockSet& other) const {
-    return std::all_of(other.pages_.begin(), other.pages_.end(), [&](const auto& entry) {
-        const auto page = pages_.find(entry.first);
-        return page != pages_.end() && (entry.second & ~page->second).none();
-    });
-}
-
 void WatchedBlocks::add(std::int64_t index, WatchedSums of_block) {
     if (of_block.trials < block_size) {
         partial = Partial{index, std::move(of_block)};
         return;
     }
-    if (!whole.insert(index)) throw BadBytes("a block is there twice");
+    if (whole.contains(index)) throw BadBytes("a block is there twice");
+    whole.add(index);
     if (partial && partial->index == index) partial.reset();
     sums.add(of_block);
+}
+
+void WatchedBlocks::add(const BlockRange& range, std::int64_t trials) {
+    const std::int64_t of_last = trials_in_block(trials, range.last);
+    BlockRanges all;
+    all.add(range);
+    if (of_last < block_size) {
+        all.remove(range.last);
+        partial = Partial{range.last, {of_last, {}}};
+    }
+    if (!whole.common(all).empty()) throw BadBytes("a block is there twice");
+    whole.add(all);
+    if (partial && all.contains(partial->index)) partial.reset();
+    sums.trials += block_size * all.count();
 }
 
 void WatchedBlocks::asked(std::int64_t trials) {
@@ -127,18 +142,18 @@ void WatchedBlocks::asked(std::int64_t trials) {
 }
 
 std::int64_t WatchedBlocks::blocks_of(const Shard& shard) const {
-    return whole.count_of(shard) + (partial && is_of(shard, partial->index) ? 1 : 0);
+    return count_of(whole, shard) + (partial && is_of(shard, partial->index) ? 1 : 0);
 }
 
 std::int64_t WatchedBlocks::trials_of(const Shard& shard) const {
-    return block_size * whole.count_of(shard) +
+    return block_size * count_of(whole, shard) +
            (partial && is_of(shard, partial->index) ? partial->sums.trials : 0);
 }
 
 bool WatchedBlocks::contains(const WatchedBlocks& other) const {
     const bool has_partial = !other.partial || (partial && partial->index == other.partial->index &&
                                                 partial->sums.trials == other.partial->sums.trials);
-    return has_partial && whole.contains(other.whole);
+    return has_partial && other.whole.without(whole).empty();
 }
 
 void WatchedBlocks::add_to(WatchedSums& all) const {
@@ -148,13 +163,13 @@ void WatchedBlocks::add_to(WatchedSums& all) const {
 
 WatchedBlocks blocks_of(const ScenarioResults& results) {
     WatchedBlocks blocks;
+    blocks.whole = results.blocks;
     const std::int64_t in_whole = results.trials / block_size * block_size;
-    for (const std::int64_t block : results.blocks)
-        if (blocks.whole.count() < in_whole / block_size) blocks.whole.insert(block);
     blocks.sums = sums_of_rows(results, 0, in_whole);
-    if (in_whole < results.trials)
-        blocks.partial = WatchedBlocks::Partial{results.blocks.back(),
-                                                sums_of_rows(results, in_whole, results.trials - in_whole)};
+    if (in_whole == results.trials) return blocks;
+    const std::int64_t last = results.blocks.back();
+    blocks.whole.remove(last);
+    blocks.partial = WatchedBlocks::Partial{last, sums_of_rows(results, in_whole, results.trials - in_whole)};
     return blocks;
 }
 

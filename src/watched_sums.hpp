@@ -5,9 +5,7 @@
 
 #include "running_moments.hpp"
 
-#include <bitset>
 #include <functional>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -31,25 +29,11 @@ struct WatchedSums {
 using ColumnOf = std::function<std::vector<double>(std::size_t arm, std::size_t column)>;
 WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const ColumnOf& column);
 
-/// The same of rows of stored results, a part of them at a time.
+/// Of results that keep no trial.
+WatchedSums sums_of_aggregates(const ScenarioResults& results);
+
+/// Those of rows of stored results, a part of them at a time. Where no trial is kept only their number is told.
 WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std::int64_t count);
-
-/// Numbers of blocks, a bit each.
-class BlockSet {
-public:
-    /// Returns whether it was not there.
-    bool insert(std::int64_t block);
-    bool has(std::int64_t block) const;
-    std::int64_t count() const { return count_; }
-    /// How many are a shard's.
-    std::int64_t count_of(const Shard& shard) const;
-    bool contains(const BlockSet& other) const;
-
-private:
-    static constexpr std::int64_t page_size = 4096;
-    std::map<std::int64_t, std::bitset<page_size>> pages_;
-    std::int64_t count_ = 0;
-};
 
 /// A scenario's blocks and their sums. Only the last block may be partial, and it may still be taken back.
 struct WatchedBlocks {
@@ -57,12 +41,14 @@ struct WatchedBlocks {
         std::int64_t index = 0;
         WatchedSums sums;
     };
-    BlockSet whole;
+    BlockRanges whole;
     WatchedSums sums;  ///< of the whole ones
     std::optional<Partial> partial;
 
     /// Throws BadBytes for a whole block that is there already.
     void add(std::int64_t index, WatchedSums sums);
+    /// The same of blocks of a study of `trials` trials of which no trial is kept.
+    void add(const BlockRange& range, std::int64_t trials);
     /// A study that was asked for so many trials computes its partial block again where that becomes larger.
     void asked(std::int64_t trials);
     std::int64_t trials() const { return sums.trials + (partial ? partial->sums.trials : 0); }

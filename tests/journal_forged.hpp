@@ -16,10 +16,11 @@ struct Record {
     std::string values, totals;
     std::optional<std::int64_t> payload;      ///< as its head says; none: as it is
     std::optional<std::uint32_t> blocks;      ///< as its start says
+    Keep keep = Keep::trials;
 
     std::string bytes() const {
         ByteWriter begin, head;
-        put_record_start(begin, start);
+        put_record_start(begin, start, keep);
         if (blocks) begin.set(record_start_size - sizeof *blocks, *blocks);
         const std::string all = begin.bytes() + values + totals;
         put_record_head(head, {scenario, payload.value_or(static_cast<std::int64_t>(all.size()))});
@@ -35,20 +36,21 @@ inline std::string totals_of(const ScenarioResults& results) {
 
 /// A run of one scenario of 3 trials, and the record that its journal has.
 struct Made {
-    Asked asked{3, 1, {}, {tiny("a")}, 1};
+    Asked asked;
     TemporaryFolder folder;
     std::string path = folder / "x.h5", header;
-    Study study = undisturbed(asked);
+    Study study;
     Record record;
 
-    Made() {
+    explicit Made(Keep keep = Keep::trials) : asked{3, 1, {}, {tiny("a")}, 1, keep}, study(undisturbed(asked)) {
         run_and_die(path, asked);
         const std::string bytes = bytes_of(path + ".journal");
         const std::vector<std::size_t> ends = record_ends(bytes);
         header = bytes.substr(0, ends[0]);
-        record.start = {3, 3, {{0, 3}}};
+        record.keep = keep;
+        record.start = {3, 3, {{0, 3}}, {}, {{0, 0}}};
         const BlockLayout layout(study.scenarios.front());
-        record.values = bytes.substr(ends[0] + record_head_size + record_start_size + journal_block_size,
+        record.values = bytes.substr(ends[0] + record_head_size + record_start_size + block_list_size(record.start, keep),
                                      static_cast<std::size_t>(layout.size({0, 3})));
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));

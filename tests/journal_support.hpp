@@ -26,8 +26,9 @@ struct Asked {
     Shard shard;
     std::vector<Scenario> scenarios{tiny("a"), tiny("b"), tiny("c")};
     int threads = 1;
+    Keep keep = Keep::trials;
 
-    Study study() const { return new_study(scenarios, root_seed); }
+    Study study() const { return new_study(scenarios, root_seed, keep); }
 };
 
 inline constexpr std::int64_t all_blocks = std::numeric_limits<std::int64_t>::max();

@@ -38,6 +38,8 @@ nearest() {
     *belief.hpp | *update.hpp | *condition.hpp) echo filter_belief_test status_test "$whole" ;;
     *edges.hpp) echo evidence_test filter_belief_test ;;
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
+    *aggregates.cpp | *superaccumulator.hpp | *paired.cpp) echo aggregates_test ;;
+    *block_ranges.cpp) echo block_ranges_test ;;
     *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
     *horizon.hpp) echo horizon_test ;;

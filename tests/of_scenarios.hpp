@@ -14,10 +14,12 @@ inline std::vector<Declaration> declarations_of(const std::vector<Scenario>& sce
     return declared;
 }
 
-inline Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed) {
-    return new_study(declarations_of(scenarios), root_seed);
+inline Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials) {
+    return new_study(declarations_of(scenarios), root_seed, keep);
 }
 
-inline ScenarioResults empty_results(const Scenario& scenario) { return empty_results(declaration_of(scenario)); }
+inline ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials) {
+    return empty_results(declaration_of(scenario), keep);
+}
 
 }  // namespace credence

@@ -117,6 +117,23 @@ TEST_CASE("ranks: any number of them gives the bytes of one process") {
     }
 }
 
+TEST_CASE("ranks: of a study that keeps aggregates they send totals, and give the bytes of one process") {
+    const TemporaryFolder folder;
+    Asked asked = some();
+    asked.keep = Keep::aggregates;
+    run_to_end(folder / "one.h5", asked);
+    run_together(folder / "x.h5", asked, {3, {}, no_signal, RankLeader::Sending::at_once});
+    CHECK(bytes_of(folder / "x.h5") == bytes_of(folder / "one.h5"));
+    Asked less = asked;
+    less.trials = 1400;
+    {
+        StoredRun run = opened(folder / "grown.h5", less);
+        compute_together(run, less, {});  // and dies before it writes its file
+    }
+    run_together(folder / "grown.h5", asked, {2});
+    CHECK(bytes_of(folder / "grown.h5") == bytes_of(folder / "one.h5"));
+}
+
 TEST_CASE("ranks: what they sent is in the journal, and the run goes on with it on one process, grown and as a shard") {
     const TemporaryFolder folder;
     Asked asked = some();
@@ -159,7 +176,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
             for (std::size_t a = 0; a < study.scenarios[s].arms.size(); ++a)
                 CHECK(study.scenarios[s].arms[a].counted == study.scenarios[s].trials);
         // The totals are those of the blocks that are there, which another run computes by itself.
-        const std::vector<std::int64_t>& blocks = study.scenarios.front().blocks;
+        const BlockRanges& blocks = study.scenarios.front().blocks;
         ScenarioResults& results = again.scenarios.front();
         const Problem problem(scenario_of(results.scenario));
         for (const std::int64_t block : blocks)
@@ -213,7 +230,7 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
     struct NoSpace : BlockKeeper {
         void take_back(std::size_t, std::int64_t) override {}
         void take(std::size_t, const Block&) override {}
-        void take(std::size_t, const std::vector<std::int64_t>&, std::int64_t, const std::string&) override {}
+        void take(std::size_t, const std::vector<std::int64_t>&, const std::string&) override {}
         bool due() const override { return true; }
         void prepare(const Study&) override {}
         void commit() override { throw Failure("no space"); }

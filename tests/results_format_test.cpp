@@ -46,9 +46,13 @@ TEST_CASE("results format: the documentation and the files say the same of every
     Scenario charts = scenario("charts");
     charts.arms.estimators = {Estimator::ekf, Estimator::riekf};
     write_results(folder / "charts.h5", made_up_study({charts}), {});
-    const Facts results = together(together(found_in(folder / "study.h5"), found_in(folder / "swept.h5")),
-                                   found_in(folder / "charts.h5")),
-                trajectories = found_in(folder / "trace.h5");
+    Study aggregates = new_study({scenario("first")}, 1, Keep::aggregates);
+    run_study(aggregates, {3, 1, {}});
+    write_results(folder / "aggregates.h5", aggregates, {});
+    Facts results;
+    for (const char* file : {"study.h5", "swept.h5", "charts.h5", "aggregates.h5"})
+        results = together(results, found_in(folder / file));
+    const Facts trajectories = found_in(folder / "trace.h5");
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
     const Facts common = documented(part_of_page(page, "# The files", "## What a reader")),
                 of_results = documented(part_of_page(page, "## Results", "## `/run`")),

@@ -92,4 +92,26 @@ inline std::string text_of(const std::string& name, const std::string& key, cons
     return scenario_text(other);
 }
 
+/// A file of the study is refused after each damage by itself, with what that says, in one line.
+inline void require_refused(const Study& study, const std::vector<Damage>& damages) {
+    const TemporaryFolder folder;
+    write_results(folder / "good.h5", study, {{"fact", "x"}});
+    const std::string good = bytes_of(folder / "good.h5"), path = folder / "bad.h5";
+    for (const Damage& damage : damages) {
+        put_bytes(path, good);
+        {
+            const hdf5::QuietErrors quiet;
+            const Handle root(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, path, "cannot open it");
+            damage.apply(root);
+        }
+        const std::string said = refusal<InputError>([&] { read_results(path); });
+        INFO("expected: " << damage.said);
+        INFO("said: " << said);
+        CHECK(said.find(damage.said) != std::string::npos);
+        CHECK(said.starts_with(path + ": "));
+        CHECK(said.ends_with("."));
+        CHECK(said.find('\n') == std::string::npos);
+    }
+}
+
 }  // namespace credence::test

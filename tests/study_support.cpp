@@ -21,7 +21,24 @@ bool same_sums(const std::vector<ExactSum>& a, const std::vector<ExactSum>& b) {
     return true;
 }
 
+bool same_moments(const ExactMoments& a, const ExactMoments& b) {
+    return a.count == b.count && same_sums({a.sum, a.square_sum}, {b.sum, b.square_sum});
+}
+
+bool same_aggregates(const ArmAggregates& a, const ArmAggregates& b) {
+    if (a.statuses != b.statuses || a.columns.size() != b.columns.size()) return false;
+    if (!std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), same_moments)) return false;
+    for (std::size_t arm = 0; arm < a.differences.size(); ++arm)
+        for (std::size_t c = 0; c < a.columns.size(); ++c) {
+            const DifferenceTotals &one = a.differences[arm][c], &other = b.differences[arm][c];
+            if (!same_moments(one.difference, other.difference) || one.below != other.below || one.above != other.above)
+                return false;
+        }
+    return true;
+}
+
 bool same_columns(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm) {
+    if (a.keep == Keep::aggregates) return same_aggregates(a.arms[arm].aggregates, b.arms[arm].aggregates);
     for (std::size_t c = 0; c < a.columns.size(); ++c)
         if (!same_bits(column_values(a, a.arms[arm], c), column_values(b, b.arms[arm], c))) return false;
     return true;
@@ -65,7 +82,8 @@ Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads) {
 bool same_results(const Study& a, const Study& b) {
     if (a.scenarios.size() != b.scenarios.size()) return false;
     for (std::size_t s = 0; s < a.scenarios.size(); ++s) {
-        if (a.scenarios[s].trials != b.scenarios[s].trials || a.scenarios[s].blocks != b.scenarios[s].blocks) return false;
+        if (a.scenarios[s].keep != b.scenarios[s].keep || a.scenarios[s].trials != b.scenarios[s].trials ||
+            a.scenarios[s].blocks != b.scenarios[s].blocks) return false;
         for (std::size_t i = 0; i < a.scenarios[s].arms.size(); ++i)
             if (!same_arm(a.scenarios[s].arms[i], b.scenarios[s].arms[i]) ||
                 !same_columns(a.scenarios[s], b.scenarios[s], i))

@@ -11,7 +11,7 @@ std::vector<Scenario> small_scenarios();
 /// The study of small_scenarios, run.
 Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads);
 
-/// The same bits in every column and every total (NaN equals NaN).
+/// The same bits in every column or what is kept of it, and every total (NaN equals NaN).
 bool same_results(const Study& a, const Study& b);
 
 }  // namespace credence

@@ -19,7 +19,12 @@ function plot_study(file, scenario, picture)
   for i = 1:numel(arms)
     colour = colours(mod(i - 1, 6) + 1, :);
     lines(i) = draw_nees(left, file, arms{i}, colour);
-    draw_distribution(right, file, arms{i}, colour);
+    if credence_keeps_trials(file)
+      draw_distribution(right, file, arms{i}, colour);
+    else
+      set(right, 'visible', 'off');
+      text(0, 0.5, 'distributions need the trials: --keep trials', 'parent', right);
+    end
   end
   legend(lines, names, 'location', 'northoutside', 'orientation', 'horizontal', 'interpreter', 'none');
   print(drawing, picture, '-dsvg');

@@ -10,7 +10,7 @@ from . import style
 def caption(scenario):
     """What every picture says of where its figures come from."""
     root = scenario.file
-    trials = max(group["trial"].size for group in scenario.values())
+    trials = max(results.trials(group) for group in scenario.values())
     unfinished = "" if root.attrs["complete"] else ", part of a study"
     return f"{scenario.name[1:]}, {trials:,} trials, seed {results.text(root, 'root_seed_text')}{unfinished}"
 

@@ -77,11 +77,10 @@ def _rows(scenario):
     unit = style.unit_text(results.units(scenario[arms[0]], "trace_P"))
 
     def of_arm(name):
-        return {arm: lambda group, arm=arm: _mean(group, [arm], lambda own: results.column(own, name)) for arm in arms}
+        return {arm: lambda group, arm=arm: _mean(group, name, arm) for arm in arms}
 
     def of_pair(planned, fixed):
-        return lambda group: _mean(group, [planned, fixed], lambda a, b: results.column(a, "trace_P")
-                                   - results.column(b, "trace_P"))
+        return lambda group: _mean(group, "trace_P", planned, fixed)
 
     rows = [("NEES / state dimension", 1, of_arm("nees_ratio")), ("trace(P), last pose" + unit, None, of_arm("trace_P"))]
     if pairs := study.pairs(scenario):
@@ -90,9 +89,10 @@ def _rows(scenario):
     return rows
 
 
-def _mean(group, arms, values_of):
-    """[mean, low, high] of what arms have, one value a trial; None where one of them is not there."""
-    return results.mean_with_interval(values_of(*(group[arm] for arm in arms))) if all(a in group for a in arms) else None
+def _mean(group, name, *arms):
+    """[mean, low, high] of an arm's figure, or of its differences to a second arm; None where one of them is not there."""
+    there = all(arm in group for arm in arms)
+    return results.mean_with_interval(group[arms[0]], name, *(group[arm] for arm in arms[1:])) if there else None
 
 
 def curves(file, grid, width=style.PAGE):
@@ -120,7 +120,7 @@ def curves(file, grid, width=style.PAGE):
         axis.set_title(title, pad=4 + 12 * ((len(rows[0][2]) + 1) // 2))  # above the legend, which has two columns
     for row in axes[[0, -1]] if len(rows) > 2 else axes[:1]:
         style.legend_above(row[0])
-    trials = max(group["trial"].size for group in first.values())
+    trials = max(results.trials(group) for group in first.values())
     left_out = grid.names.size // grid.coordinates[key].size - len(columns)
     style.headline(figure, f"{grid.of} over {', '.join(grid.coordinates)}, {trials:,} trials each, seed "
                            f"{results.text(file, 'root_seed_text')}; shades: 95 % intervals of the means"

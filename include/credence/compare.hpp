@@ -46,7 +46,8 @@ struct ComparedSide {
     std::string file, source;               ///< its path, and `study UUID`
     std::int64_t trials = 0;                ///< of its file
     std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
-    std::vector<double> mean;               ///< by figure, over the pairs: mean of A - mean of B = mean of A - B
+    /// By figure, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some is in no pair.
+    std::vector<double> mean;
 };
 
 /// A - B of one scenario.
@@ -56,6 +57,7 @@ struct ComparedPair {
     ComparedSide a, b;
     std::int64_t trials = 0;                 ///< that both have, from 0 on; those that failed in A or B are no pairs
     bool complete = true;                    ///< the studies of both are
+    Keep keep = Keep::trials;
     std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published figures
     Conclusion conclusion = Conclusion::not_shown;
 
@@ -74,10 +76,11 @@ struct CompareReport {
 ///
 /// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors, m
 /// the number of comparisons, so that all conclusions hold together at 95 %, and where the bootstrap's 95 % interval
-/// leaves 0 out too: trace(P) is heavy-tailed.
+/// leaves 0 out too: trace(P) is heavy-tailed. Where no trial is kept there is no bootstrap, and the t interval decides.
 ///
 /// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
-/// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms.
+/// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and for
+/// arms of different files of which one keeps no trials.
 CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice);
 
 /// For people: the conclusions first, then a table with a row per figure for each pair.

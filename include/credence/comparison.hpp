@@ -52,7 +52,8 @@ private:
     std::int64_t count_ = 0;
 };
 
-/// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap.
+/// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap. Where no trial is kept, the
+/// arms must be of the same results, whose totals say what they can.
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed);
 
 /// Fills in holm_p over all figures of all comparisons.

@@ -12,6 +12,7 @@ class ExactSum {
 public:
     void add(double value);
     void add(const ExactSum& other);
+    void subtract(const ExactSum& other);
 
     /// The sum, rounded once to nearest, ties to even.
     double rounded() const;

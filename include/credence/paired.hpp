@@ -2,6 +2,7 @@
 // Room 10: two arms compared by trial, as pairs: all arms of a trial share their noise. [docs/statistics.md, Comparison
 // of arms]
 
+#include <credence/aggregates.hpp>
 #include <credence/histogram.hpp>
 #include <credence/statistics.hpp>
 #include <cstdint>
@@ -34,6 +35,10 @@ struct PairedComparison {
 /// too (NaN for differences of 0). Draws of the bootstrap are keyed by `root_seed` and `figure`.
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
                                 const std::string& figure);
+
+/// The same of totals: mean, t interval, shares of wins and d_z; what needs the trials is NaN, the histogram empty. The
+/// variance reduction is known where every trial of `a` and `b`, the values of the arms by themselves, is in a pair.
+PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMoments& a, const ExactMoments& b);
 
 /// p-values adjusted for their number [Holm 1979], in the order given: with p_(1) <= ... <= p_(m),
 /// max over j <= i of min(1, (m - j + 1) p_(j)). NaN stays NaN and does not count.

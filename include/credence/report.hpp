@@ -25,10 +25,10 @@ inline constexpr double reported_quantiles[] = {0.05, 0.25, 0.75, 0.95};
 struct FigureReport {
     std::string name, unit;
     Summary summary;
-    std::vector<double> quantiles;          ///< of type 7, at reported_quantiles
-    std::optional<Interval> bootstrap95;    ///< of the mean; not of figures that have their own tests
-    std::optional<PublishedPlace> published;
-    std::optional<Histogram> histogram;     ///< of the figures that may have a published one
+    std::vector<double> quantiles;          ///< of type 7, at reported_quantiles; NaN where no trial is kept
+    std::optional<Interval> bootstrap95;    ///< of the mean; not of figures that have their own tests; NaN likewise
+    std::optional<PublishedPlace> published;  ///< its percentile NaN likewise
+    std::optional<Histogram> histogram;     ///< of the figures that may have a published one; none likewise
 };
 
 struct ArmReport {
@@ -44,6 +44,7 @@ struct Report {
     std::optional<std::uint64_t> root_seed; ///< none for a record
     std::int64_t trials = 0;  ///< of each scenario that were asked for
     bool complete = true;
+    Keep keep = Keep::trials;
     double margin = 0;
     std::vector<Declaration> scenarios;
     std::vector<ArmReport> arms;

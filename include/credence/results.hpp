@@ -1,7 +1,9 @@
 #pragma once
 // Room 10: the results of a study in memory: what blocks add up to. It knows columns and figures by declaration only.
 
+#include <credence/aggregates.hpp>
 #include <credence/block.hpp>
+#include <credence/block_ranges.hpp>
 #include <credence/exact_sum.hpp>
 
 #include <cstdint>
@@ -11,6 +13,14 @@
 #include <vector>
 
 namespace credence {
+
+/// What is kept of the columns, which hold one number a trial.
+enum class Keep {
+    trials,      ///< all of them
+    aggregates,  ///< totals over the trials [aggregates.hpp]
+};
+/// `trials`, `aggregates`
+std::string keep_name(Keep keep);
 
 /// Totals over trials of one declared figure.
 struct FigureTotals {
@@ -40,9 +50,11 @@ public:
 /// One arm of a scenario: per-trial columns and per-step totals.
 struct ArmResults {
     std::string name;
-    /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them: read column_values.
+    /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them (read column_values), and where no
+    /// trial is kept.
     std::vector<std::vector<double>> columns;
     std::shared_ptr<const KeptColumns> kept;
+    ArmAggregates aggregates;                  ///< where no trial is kept; else empty
     std::vector<FigureTotals> totals;          ///< [figure_count]
     std::int64_t counted = 0;                  ///< trials in the totals: those that did not fail
     std::vector<std::int64_t> cells;           ///< [K - 1, shape_cells] trials by cell of the first nees figure
@@ -62,10 +74,11 @@ struct ScenarioResults {
     std::vector<Column> columns;
     std::vector<Figure> figures;
     std::vector<ArmResults> arms;
-    std::int64_t trials = 0;                   ///< that are there: rows of the columns
-    /// The blocks that are there, rising: row r is trial blocks[r / 256] * 256 + r % 256. Only the last may be partial.
+    std::int64_t trials = 0;                   ///< that are there: rows of the columns, where they are kept
+    /// The blocks that are there: row r is trial blocks[r / 256] * 256 + r % 256. Only the last may be partial.
     /// 0, 1, 2 ... but for shards and interrupted runs. Empty for a record.
-    std::vector<std::int64_t> blocks{};
+    BlockRanges blocks{};
+    Keep keep = Keep::trials;
 
     int steps() const { return scenario.poses - 1; }
     /// Trials that are there whose errors are kept: the rows of the details.
@@ -75,10 +88,19 @@ struct ScenarioResults {
 };
 
 /// An empty result of a resolved scenario. Throws InputError where there is no such world.
-ScenarioResults empty_results(const Declaration& scenario);
+ScenarioResults empty_results(const Declaration& scenario, Keep keep = Keep::trials);
 
 /// Whether a column is a figure of the trial, not its status.
 bool is_figure(const Column& column);
+
+/// Trials by how they ended.
+std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm);
+
+/// What all rows of a column, failed trials left out, have in common where no trial is kept; and their differences from
+/// those of another arm of the scenario, a - b.
+Moments aggregate_moments(const ArmResults& arm, std::size_t column);
+DifferenceTotals aggregate_differences(const ScenarioResults& results, const ArmResults& a, const ArmResults& b,
+                                       std::size_t column);
 
 /// A column's values as stored, of all rows or of `count` rows from `first` on; read where they are kept in a file.
 std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);
@@ -97,6 +119,9 @@ const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& a
 /// Trials in block `blocks[place]`.
 std::int64_t block_rows(const ScenarioResults& results, std::size_t place);
 
+/// Trials that these blocks of a study of `trials` trials have.
+std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials);
+
 /// The trials of rows first ... first + count - 1.
 std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count);
 
@@ -105,14 +130,18 @@ std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64
 
 /// Makes `blocks`, of a study of `trials` trials, those that are there: rows of blocks that were and stay are moved, rows
 /// of others hold anything until they are stored. Totals are not touched, nor columns that are kept in a file.
-void set_blocks(ScenarioResults& results, std::vector<std::int64_t> blocks, std::int64_t trials);
+void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials);
 
 /// All blocks of `trials` trials.
 void extend(ScenarioResults& results, std::int64_t trials);
 
-/// Adds a block's totals, and its details and columns (where they are not kept in a file) at their rows. Those of
+/// What of a block's columns is kept in its totals: nothing where the trials are kept. From several threads at once.
+std::vector<ArmAggregates> block_aggregates(const ScenarioResults& results, const Block& block);
+
+/// Adds a block's totals, and its details and columns (where they are kept, and not in a file) at their rows. Those of
 /// different blocks may be stored from several threads at once; totals may not.
 void store_columns(ScenarioResults& results, const Block& block);
+void add_totals(ScenarioResults& results, const Block& block, const std::vector<ArmAggregates>& aggregates);
 void add_totals(ScenarioResults& results, const Block& block);
 
 /// Copies the details of a block that both have, where it has any. Different blocks may be copied at once.

@@ -47,6 +47,8 @@ struct Moments {
 };
 /// mean -+ t_{1 - alpha/2, count - 1} standard_error
 Interval t_interval(const Moments& moments, double alpha = 0.05);
+/// What is left of a summary where there are sums only: the median is NaN.
+Summary summary_of(const Moments& moments);
 Moments moments_from_sums(std::int64_t count, double sum, double square_sum);
 
 }  // namespace credence

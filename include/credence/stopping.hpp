@@ -10,6 +10,7 @@
 // alpha spent at looks fixed in advance: [Jennison and Turnbull 2000, ch. 7]. Each interval is so by itself: several
 // together are not corrected for their number. Between looks nothing is looked at.
 
+#include <credence/statistics.hpp>
 #include <credence/study.hpp>
 
 #include <cstdint>
@@ -80,9 +81,11 @@ std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first =
 
 /// How well look `number` knows the mean of a sample, one value a trial; NaN values are left out. It has no name yet.
 GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number);
+GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number);
 
-/// Look `number` at the first `trials` trials of every scenario, however many there are beyond them. Throws as
-/// check_goals does; a scenario with fewer trials is the caller's mistake (std::logic_error).
+/// Look `number` at the first `trials` trials of every scenario, however many there are beyond them; where no trial is
+/// kept, there must be none beyond them. Throws as check_goals does; a scenario with fewer trials, or more, is the
+/// caller's mistake (std::logic_error).
 Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
 
 /// The count of trials at which every unmet state is expected to be small enough: the next look, the ceiling's or one
@@ -99,7 +102,8 @@ Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t t
 
 /// Grows the study from look to look (run_study) until the goals are met or the ceiling is reached; the last look.
 /// Trials that a study has beyond a look are neither judged by it nor given up: the look is the same for any number of
-/// threads and any history. Throws as check_goals does, before any trial. `options.trials` is not used; `after_look`,
+/// threads and any history. Where no trial is kept, a study cannot be looked at with fewer trials than it has: such looks
+/// are left out, their share of alpha unspent. A run that was interrupted has taken them already. Throws as check_goals does, before any trial. `options.trials` is not used; `after_look`,
 /// which may be empty, sees every look.
 Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
                const std::function<void(const Look&)>& after_look = {});

@@ -46,7 +46,7 @@ private:
     /// What a results file has, to tell whether it has to be written.
     struct Contents {
         std::int64_t trials = 0;
-        std::vector<std::vector<std::int64_t>> blocks;  ///< by scenario
+        std::vector<BlockRanges> blocks;  ///< by scenario
 
         static Contents of(const Study& study);
         bool operator==(const Contents&) const = default;

@@ -28,8 +28,12 @@ struct Study {
 struct StudyDefinition {
     std::uint64_t root_seed = 1;
     std::vector<Declaration> scenarios; ///< resolved
+    Keep keep = Keep::trials;
 };
 StudyDefinition definition_of(const Study& study);
+
+/// What the study keeps of its columns: the same in every scenario.
+Keep keep_of(const Study& study);
 
 /// Names the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, schema version and what is kept.
 std::string study_hash(const StudyDefinition& definition);
@@ -58,10 +62,9 @@ public:
     virtual void take_back(std::size_t scenario, std::int64_t block) = 0;
     /// A finished block; the study holds its totals already.
     virtual void take(std::size_t scenario, const Block& block) = 0;
-    /// The same of blocks that another process computed, for the study's number of trials; `values` are their columns and
-    /// details in order, in the keeper's own form.
-    virtual void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, std::int64_t trials,
-                      const std::string& values) = 0;
+    /// The same of blocks that another process computed; `values` are their columns and details in order, in the keeper's
+    /// own form.
+    virtual void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) = 0;
     /// Whether what was taken should be committed.
     virtual bool due() const = 0;
     /// Makes a commit of all that was taken, with the study's totals, which hold just that.
@@ -80,12 +83,12 @@ struct RunOptions {
     std::function<void(const Progress&)> progress{};  ///< called from one thread at a time; may be empty
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
-    BlockKeeper* keeper = nullptr;      ///< none: columns stay in memory
+    BlockKeeper* keeper = nullptr;      ///< none: columns that are kept stay in memory
     Crew* crew = nullptr;               ///< other processes that compute blocks too; needs a keeper
 };
 
 /// An empty study of resolved, validated scenarios with names that differ.
-Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed);
+Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
 
 /// Runs what is missing of the shard's blocks of the first `options.trials` trials of every scenario; a partial last
 /// block is computed again. The same bits for any number of threads and any history. Returns early where `options.stop`
@@ -101,7 +104,7 @@ bool last_would_grow(const ScenarioResults& results, std::int64_t trials);
 
 /// The blocks of a shard that a scenario of the study lacks, of `trials` trials; a partial one that is there and would be
 /// larger is among them, whosever it is.
-std::vector<std::int64_t> missing_blocks(const ScenarioResults& results, std::int64_t trials, const Shard& shard = {});
+BlockRanges missing_blocks(const ScenarioResults& results, std::int64_t trials, const Shard& shard = {});
 
 /// Bytes of memory and of file that `trials` trials of the study take.
 struct Footprint {

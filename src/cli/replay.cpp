@@ -19,7 +19,8 @@ const Command& replay_command() {
         "replay",
         "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
         "run one trial again, pose by pose: from a results file, or on recorded noise",
-        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs).\n"
+        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); a file "
+        "that\nkeeps aggregates has none to check it against.\n"
         "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2], "
         "standardised.\n",
         {{"scenario", "NAME", "scenario of the results file"},
@@ -98,7 +99,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
     const Problem problem(scenario_of(results.scenario));
     Trajectory trajectory = replay_trial(problem, arms_of(problem.scenario())[a], study.root_seed, trial);
-    for (std::size_t c = 0; c < results.columns.size(); ++c) {
+    for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
         const double stored = column_values(results.arms[a], c, row, 1).front();
         if (!same(stored, trajectory.columns[c]))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +

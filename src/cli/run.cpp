@@ -45,6 +45,10 @@ const Command& run_command() {
          {"resume", "",
           "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
+         {"keep", "WHAT",
+          "trials: one number a trial of every column (default); aggregates: their totals over the trials only, in memory, "
+          "journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
+          false, {"trials", "aggregates"}},
          {"commit-every", "BLOCKS",
           "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},

@@ -35,12 +35,10 @@ int dry_run(const RunRequest& request, const Study& study) {
     double seconds = 0;
     std::int64_t blocks = 0;
     for (const ScenarioResults& results : study.scenarios) {
-        std::int64_t trials = 0;
-        for (const std::int64_t block : missing_blocks(results, request.options.trials, request.options.shard)) {
-            trials += trials_in_block(request.options.trials, block);
-            ++blocks;
-        }
-        seconds += seconds_of_a_trial(results.scenario, request) * static_cast<double>(trials);
+        const BlockRanges missing = missing_blocks(results, request.options.trials, request.options.shard);
+        blocks += missing.count();
+        seconds += seconds_of_a_trial(results.scenario, request) *
+                   static_cast<double>(trials_in(missing, request.options.trials));
     }
     const std::int64_t of_a_rank = std::min<std::int64_t>(request.options.threads, omp_get_num_procs()),
                        at_once = std::min(of_a_rank * request.ranks, std::max<std::int64_t>(1, blocks));
@@ -50,7 +48,8 @@ int dry_run(const RunRequest& request, const Study& study) {
               << ", threads: " << threads_text(request) << ". About "
               << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
               << " of memory, " << bytes_text(size.file) << " in " << request.output
-              << ", as much again in its journal meanwhile"
+              << (request.keep == Keep::trials ? ", as much again in its journal meanwhile"
+                                               : ", as much in its journal at every commit")
               << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
     return 0;
 }

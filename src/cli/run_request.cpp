@@ -69,6 +69,7 @@ RunRequest read_request(const Parsed& parsed) {
     request.threads_given = parsed.has("threads");
     request.start = start_of(parsed);
     request.quiet = parsed.has("quiet");
+    request.keep = parsed.choice("keep") == keep_name(Keep::aggregates) ? Keep::aggregates : Keep::trials;
     request.commit_every = parsed.integer("commit-every", 0, 1, most_trials);
     if (request.options.shard.count > 1 && !request.goals.empty())
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
@@ -78,7 +79,7 @@ RunRequest read_request(const Parsed& parsed) {
 }
 
 StoredRun starting_run(RunRequest& request) {
-    Study study = new_study(request.scenarios, request.root_seed);
+    Study study = new_study(request.scenarios, request.root_seed, request.keep);
     check_goals(request.goals, study);
     StoredRun run(request.output, std::move(study), request.start);
     const std::int64_t before = least_trials(run.study());

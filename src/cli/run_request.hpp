@@ -21,6 +21,7 @@ struct RunRequest {
     bool trials_given = true;          ///< else a run that goes on does so to what it was asked for before
     Start start = Start::fresh;
     std::int64_t commit_every = 0;
+    Keep keep = Keep::trials;
     bool quiet = false;
     int ranks = 1;                     ///< processes that share the run
     bool threads_given = false;        ///< else every rank takes as many as it may have

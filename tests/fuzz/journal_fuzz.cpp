@@ -22,8 +22,8 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-/// The study of the seeds [journal.ini].
-Study asked() { return new_study({read_scenario(CREDENCE_FUZZ_SCENARIO, {})}, 1); }
+/// The study of the seeds [journal.ini]; what it keeps, the journal's version says.
+Study asked(Keep keep) { return new_study({read_scenario(CREDENCE_FUZZ_SCENARIO, {})}, 1, keep); }
 
 template <class T>
 T number_at(const std::uint8_t* data, std::size_t position) {
@@ -67,7 +67,8 @@ void use(Study& study) {
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms) {
             require(arm.nees.size() == static_cast<std::size_t>(results.detailed() * results.steps()), "details fit");
-            for (std::size_t c = 0; c < results.columns.size(); ++c)
+            require(results.keep == Keep::trials || arm.aggregates.trials() == results.trials, "aggregates are of all trials");
+            for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c)
                 require(column_values(results, arm, c).size() == static_cast<std::size_t>(results.trials),
                         "a column has its rows");
         }
@@ -91,7 +92,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const Study study = asked();
+    static const Study trials = asked(Keep::trials), aggregates = asked(Keep::aggregates);
+    constexpr std::size_t version_at = 16;
+    const Study& study = size > version_at && data[version_at] == 3 ? aggregates : trials;
     const ScratchFile file(data, size);
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");

@@ -24,14 +24,18 @@ printf '[scenario]\nname = one\n' >"$work/one.ini"
 printf '[scenario]\nname = two\n[model]\nprocess = translation\n' >"$work/two.ini"
 "$program" run "$work/one.ini" "${tiny[@]}" --set arms.controllers=fixed --trials 3 -o "$work/heading.h5"
 "$program" run "$work/two.ini" "${tiny[@]}" --trials 2 -o "$work/arms.h5"
+"$program" run "$work/two.ini" "${tiny[@]}" --trials 2 --keep aggregates -o "$work/aggregates.h5"
 "$program" run "$work/two.ini" "${tiny[@]}" --set arms.controllers=fixed --set scenario.poses=4 --trials 3 \
   -o "$work/lags.h5"
 "$program" run "$work"/{one,two}.ini "${tiny[@]}" --set arms.controllers=greedy --trials 1 -o "$work/scenarios.h5"
 /usr/bin/python3 tests/fuzz/make_seeds.py "$work" "$seeds"
 # Journals of runs that could not write their results: a limit on file sizes between the two.
 mkdir -p "$seeds/journal"
-for trials in 3 300; do
-  (ulimit -f 40; "$program" run tests/fuzz/journal.ini --trials $trials --quiet -o "$work/run.h5") 2>/dev/null || true
-  mv "$work/run.h5.journal" "$seeds/journal/$trials-trials"
+for keep in trials aggregates; do
+  for trials in 3 300; do
+    (ulimit -f 40
+      "$program" run tests/fuzz/journal.ini --trials $trials --keep $keep --quiet -o "$work/run.h5") 2>/dev/null || true
+    mv "$work/run.h5.journal" "$seeds/journal/$trials-$keep"
+  done
 done
 find "$seeds" -type f -printf '%s %p\n' | sort -n | tail -n 3

@@ -48,9 +48,13 @@ void repair_study_hash(Image image) {
     if (hashes.size() != 1 || seeds.size() != 1) return;
     Study study;
     study.root_seed = number_at(seeds[0], 0, 8);
+    const bool aggregates = !attribute_values(image, structure, "keep").empty();
     try {
-        for (const Image text : attribute_values(image, structure, "scenario"))
-            study.scenarios.emplace_back().scenario = read_scenario_text(text_of(text), "image", "scenario");
+        for (const Image text : attribute_values(image, structure, "scenario")) {
+            ScenarioResults& results = study.scenarios.emplace_back();
+            results.scenario = read_declaration_text(text_of(text), "image", "scenario");
+            results.keep = aggregates ? Keep::aggregates : Keep::trials;
+        }
     } catch (const InputError&) {
         return;
     }
