@@ -42,14 +42,18 @@ def tenths(group):
     return [steps * part // 10 - 1 for part in range(1, 11)]
 
 
+def ratio(means, k):
+    """A mean over its dimension."""
+    return with_error(means.mean[k] / means.dimension, means.standard_error[k] / means.dimension)
+
+
 def ratios(scenario, figure, title):
     """NEES over its dimension at ten steps, by arm."""
     first = next(iter(scenario.values()))
     heading(title, *(str(first["step"][k]) for k in tenths(first)))
     for arm, group in scenario.items():
         means = results.per_step(group, figure)
-        row([estimator(arm), *(with_error(means.mean[k] / means.dimension, means.standard_error[k] / means.dimension)
-                               for k in tenths(group))])
+        row([estimator(arm), *(ratio(means, k) for k in tenths(group))])
 
 
 def root(mean, error):
@@ -62,15 +66,16 @@ def summary(scenario):
     first = next(iter(scenario.values()))
     k = [tenths(first)[place] for place in (0, 4, 9)]
     at = ", ".join(str(first["step"][i]) for i in k)
-    heading("", f"NEES/n at {at}", f"heading RMSE at {at}", "heading RMSE, all steps", "position RMSE, all steps",
-            f"predicted heading σ at {first['step'][k[-1]]}", "unsettled updates a run")
+    last = first["step"][k[-1]]
+    heading("", f"NEES/n at {at}", f"in the invariant chart at {last}", f"heading RMSE at {at}", "heading RMSE, all steps", "position RMSE, all steps",
+            f"predicted heading σ at {last}", "unsettled updates a run")
     for arm, group in scenario.items():
         nees, squares = results.per_step(group, "nees"), results.per_step(group, "squared_error_heading")
+        invariant = results.per_step(group, "nees_invariant")
         whole = [results.over_steps(group, f"squared_error_{part}") for part in ("heading", "position")]
         variance = results.per_step(group, "variance_heading").mean[k[-1]]
         unsettled = results.total(group, "unsettled_updates_total").sum() / int(group.attrs["counted_trials"])
-        row([estimator(arm),
-             "; ".join(with_error(nees.mean[i] / nees.dimension, nees.standard_error[i] / nees.dimension) for i in k),
+        row([estimator(arm), "; ".join(ratio(nees, i) for i in k), ratio(invariant, k[-1]),
              "; ".join(root(squares.mean[i], squares.standard_error[i]) for i in k),
              *(root(means.mean, means.standard_error) for means in whole), f"{np.sqrt(variance):.4f}",
              f"{unsettled:.3f}"])

@@ -9,6 +9,7 @@ Scenario reported_as(const LandmarkScenario& scenario) {
     slam.length_unit = scenario.length_unit;
     slam.features.positions.resize(static_cast<std::size_t>(scenario.landmarks.count));
     slam.edges.graph = EdgeGraph::none;
+    slam.arms.estimators = scenario.estimators;
     return slam;
 }
 
@@ -28,6 +29,7 @@ LandmarkProblem::LandmarkProblem(const LandmarkScenario& scenario) {
     coverage_bounds_ = coverage_bounds(blocks);
     view_.block_count = static_cast<int>(blocks.size());
     view_.coverage_bounds = coverage_bounds_.data();
+    view_.charts = charts_of(slam);
     view_.figure_count = static_cast<int>(landmark_figures(scenario).size());
     fill_loop(scenario);
     fill_world(scenario);

@@ -16,7 +16,7 @@ struct LandmarkTrial {
     using View = LandmarkView;
     using Layout = credence::Layout<Process::heading, any_count>;
     using Real = Pack<CREDENCE_LANES>;
-    using Workspace = LandmarkWorkspace<Layout, Real, typename Tag::template type<Layout, Real>>;
+    using Workspace = CommonWorkspace<Layout, Real, typename Tag::template type<Layout, Real>>;
 
     static constexpr double truncate(const View&) { return __builtin_inf(); }
     void run(const View& problem, const KeyedDraws<Real>& draws, Detail<Layout, Real>& detail, Workspace& work,

@@ -119,6 +119,12 @@ TEST_CASE("landmarks: every table of the classical loop is what an independent i
         check(totals.root(arm, "squared_error_heading"), all_heading[arm], 1e-4);
         check(totals.root(arm, "squared_error_position"), all_position[arm], 1e-3);
     }
+    // NEES of the whole state depends on the chart, that of the pose hardly does.
+    const Mean invariant = totals.at(0, "nees_invariant", 600);
+    check({invariant.value / 43, invariant.error / 43}, 1.59, 0.01);
+    for (std::size_t arm = 0; arm < 5; ++arm)
+        for (const int k : tenths)
+            CHECK(std::abs(totals.at(arm, "nees_invariant_pose", k).value - totals.at(arm, "nees_pose", k).value) / 3 < 0.02);
     // The mark of the effect; a variance varies little from trial to trial.
     CHECK(std::abs(std::sqrt(totals.at(0, "variance_heading", 600).value) - 0.052) < 0.001);
     for (const std::size_t arm : {std::size_t{1}, std::size_t{3}})

@@ -95,7 +95,7 @@ TEST_CASE("landmark world: a block is its trials one by one, on every unit") {
     const LandmarkView& view = problem.view();
     using Heading = Layout<Process::heading, any_count>;
     Unobserved nothing;
-    const auto work = std::make_unique<LandmarkWorkspace<Heading, double>>();
+    const auto work = std::make_unique<CommonWorkspace<Heading, double>>();
     constexpr int trials = 11;
     for (const Unit& unit : runnable_units()) {
         CAPTURE(unit.name);

@@ -12,7 +12,8 @@ struct LandmarkView : CommonView {
     LandmarkParameters world;
 };
 
-/// The SLAM scenario whose trials report what these do: one with a heading, as many features and no edges.
+/// The SLAM scenario whose trials report what these do: one with a heading, as many features, the same estimators and no
+/// edges.
 Scenario reported_as(const LandmarkScenario& scenario);
 
 /// The per-step figures, in the order in which landmark_trial.hpp writes them: those of a SLAM scenario, and whether an

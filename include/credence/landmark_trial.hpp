@@ -2,29 +2,16 @@
 // Room 8: one trial of one arm in the world of landmarks, poses in order [docs/landmarks.md]. It reads like trial.hpp,
 // and shares everything with it but the world: layout, belief, estimators, update, judge and observers.
 
-#include <credence/estimator.hpp>
-#include <credence/judge.hpp>
 #include <credence/landmark_problem.hpp>
+#include <credence/workspace.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
 
-/// What one trial needs room for.
-template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
-struct LandmarkWorkspace {
-    static_assert(meets_the_contract<Estimating, Layout, Real>());
-    Truth<Real, Layout::feature_capacity> truth;
-    Belief<Real, Layout::capacity> belief;
-    Sighting<Real> sightings[Layout::feature_capacity];
-    Update<Real, Layout::capacity> update;
-    Elimination<Real, Layout::capacity> elimination;
-    Estimating estimator;
-};
-
 /// Landmarks that pose k shows for the first time enter the belief.
 template <class Layout, class Real, class Estimating>
 void initialise_landmarks(const LandmarkView& problem, const Layout& layout, int k,
-                          LandmarkWorkspace<Layout, Real, Estimating>& work) {
+                          CommonWorkspace<Layout, Real, Estimating>& work) {
     for (int j = 0; j < layout.features(); ++j)
         if (problem.world.first_pose[j] == k)
             work.estimator.initialise(work.belief, problem.filter, layout, j, work.sightings[j], work.truth);
@@ -33,7 +20,7 @@ void initialise_landmarks(const LandmarkView& problem, const Layout& layout, int
 /// Pose 0, which is known: landmarks in sight are initialised, of the others there is a prior.
 template <class Layout, class Real, class Estimating, class Noise>
 void start_trial(const LandmarkView& problem, const Layout& layout, const Noise& noise,
-                 LandmarkWorkspace<Layout, Real, Estimating>& work) {
+                 CommonWorkspace<Layout, Real, Estimating>& work) {
     const int features = layout.features();
     start_truth(work.truth, problem.world, features);
     for (int j = 0; j < features; ++j) work.sightings[j] = drawn_prior(work.truth, problem.world, j, noise);
@@ -46,7 +33,7 @@ void start_trial(const LandmarkView& problem, const Layout& layout, const Noise&
 /// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
 template <class Layout, class Real, class Estimating, class Noise, class Observer>
 void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observer,
-               LandmarkWorkspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
+               CommonWorkspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
     const Layout layout(problem.features);
     auto& truth = work.truth;
     auto& belief = work.belief;

@@ -4,8 +4,7 @@
 // Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at
 // once.
 
-#include <credence/estimator.hpp>
-#include <credence/judge.hpp>
+#include <credence/workspace.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
@@ -13,17 +12,10 @@ inline namespace CREDENCE_UNIT {
 // An observer watches a trial without touching it: the engine's (detail.hpp), replay's, which writes the trajectory, and
 // those of the tests. Its face: started, planned, predicted and updated, as called below.
 
-/// What one trial needs room for. Sixty-four features in lanes would not fit a thread's stack.
+/// What one trial needs room for.
 template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
-struct Workspace {
-    static_assert(meets_the_contract<Estimating, Layout, Real>());
-    Truth<Real, Layout::feature_capacity> truth;
-    Belief<Real, Layout::capacity> belief;
-    Sighting<Real> sightings[Layout::feature_capacity];
-    Update<Real, Layout::capacity> update;
-    Elimination<Real, Layout::capacity> elimination;
+struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
     PlannerWorkspace<Layout, Real> planner;
-    Estimating estimator;
     HorizonWorkspace<Layout, Real> horizon;
 };
 
