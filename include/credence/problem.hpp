@@ -24,12 +24,6 @@ struct CommonView {
     int figure_count = 0;
     Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
-
-    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
-    int steps_ahead(Controller controller, int k) const {
-        if (controller != Controller::horizon) return 1;
-        return control.horizon < poses - k ? control.horizon : poses - k;
-    }
 };
 
 /// What a trial in the deforming world reads beside that.
@@ -37,6 +31,12 @@ struct ProblemView : CommonView {
     Process process = Process::heading;
     WorldParameters world;
     ControlParameters control;
+
+    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    int steps_ahead(Controller controller, int k) const {
+        if (controller != Controller::horizon) return 1;
+        return control.horizon < poses - k ? control.horizon : poses - k;
+    }
 };
 
 /// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
