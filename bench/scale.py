@@ -5,7 +5,7 @@ usage: scale.py [--credence build/credence] [--repeats 5] PART...
   cost    processor time of a million trials on one core, for each of the seed's scenarios, both arms
   sizes   bytes of journal and file of a million trials
   merge   time and memory of merging 1,000 shards, and of 100 shards of the same study
-  aggregates  time, memory, journal and file of 10^6 trials that are kept, and of 10^6 and 10^7 of which totals are
+  aggregates  time, memory, journal and file of 10^6 trials that are kept, and of 10^6 and 10^7 of which totals are, and a merge
   ranks   a study on one rank and on two of mpirun, one thread each, beside one process of one and of two threads
 Medians of the repeats; the spread is (largest - smallest) / median.
 """
@@ -93,6 +93,11 @@ def aggregates(credence, repeats, folder):
               f"journal {journal / 1e6:.1f} MB, file {os.stat(output).st_size / 1e6:.1f} MB; report: {report[1]:.1f} s of "
               f"processor, {report[2]:.0f} MB", flush=True)
         os.remove(output)
+    parts = [f"{folder}/{i}.h5" for i in range(50)]
+    for i, part in enumerate(parts):
+        measured(run(credence, [name], 51_200, part, "--keep", "aggregates", "--threads", "1", "--shard", f"{i}/50"))
+    wall, processor, memory = measured([credence, "merge", *parts, "-o", output, "--quiet"])
+    print(f"  merge of 50 shards, 51200 trials: {wall:.1f} s, processor {processor:.2f} s, {memory:.0f} MB of memory", flush=True)
 
 
 def merge(credence, repeats, folder):

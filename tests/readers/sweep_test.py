@@ -25,8 +25,7 @@ def check_grid(file, report):
     for name in grid.names.flat:
         of, at = results.place(file[name])
         assert {"of": of, "at": at} == parts[name, "fixed.ekf"]["sweep"]
-    means = results.over_grid(file, grid, lambda group: results.mean_with_interval(
-        group["greedy.ekf"], "trace_P"))
+    means = results.over_grid(file, grid, lambda group: results.mean_with_interval(group["greedy.ekf"], "trace_P"))
     assert means.shape == (2, 2, 3)
     for place, name in np.ndenumerate(grid.names):
         expected = parts[name, "greedy.ekf"]["trace_P"]
