@@ -1,5 +1,7 @@
 #include <credence/declaration.hpp>
 
+#include <credence/text.hpp>
+
 #include <algorithm>
 
 namespace credence {
@@ -32,6 +34,15 @@ std::string scenario_text(const Declaration& scenario) {
     if (const SweepPoint& sweep = scenario.sweep; !sweep.at.empty())
         text += "\n[sweep]\nof = " + sweep.of + "\nat = " + coordinates_text(sweep.at) + "\n";
     return text;
+}
+
+bool names_something(const std::string& text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), is_name_character);
+}
+
+bool names_arm(const std::string& text) {
+    const std::size_t dot = text.find('.');
+    return names_something(text.substr(0, dot)) && (dot == std::string::npos || names_something(text.substr(dot + 1)));
 }
 
 std::string controller_of(const std::string& arm) { return arm.substr(0, arm.find('.')); }

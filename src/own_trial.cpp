@@ -16,10 +16,6 @@ namespace {
 
 constexpr int largest_state = 1000;
 
-bool is_name(const std::string& text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(), is_name_character);
-}
-
 bool is_word(const std::string& text) {
     return !text.empty() && text.find_first_of(" \t\n") == std::string::npos;
 }
@@ -31,7 +27,7 @@ void check_names(const std::string& world, const std::string& what, const std::v
     for (const Named& one : all) names.push_back(name(one));
     std::sort(names.begin(), names.end());
     const bool twice = std::adjacent_find(names.begin(), names.end()) != names.end();
-    if (names.empty() || twice || !std::all_of(names.begin(), names.end(), is_name))
+    if (names.empty() || twice || !std::all_of(names.begin(), names.end(), names_something))
         throw std::invalid_argument("world " + world + ": its " + what +
                                     " need names that differ, of letters, digits, _ and -.");
 }
@@ -66,7 +62,7 @@ void check_declared(const Declaration& scenario) {
     check_names(scenario.world, "components", scenario.components, [](const Component& one) { return one.name; });
     check_names(scenario.world, "blocks", scenario.blocks, [](const StateBlock& one) { return one.name; });
     for (const std::string& arm : scenario.arms)
-        if (!is_word(arm) || arm.find('/') != std::string::npos)
+        if (!names_arm(arm))
             throw std::invalid_argument("world " + scenario.world + ": " + printable(arm) + " is no name for an arm.");
     if (scenario.arms.empty() || n > largest_state)
         throw std::invalid_argument("world " + scenario.world + ": it needs an arm, and a state of 1 to 1000.");

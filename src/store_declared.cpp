@@ -34,16 +34,12 @@ std::vector<std::string> words(const std::string& text) {
     return all;
 }
 
-bool is_name(const std::string& text) {
-    return !text.empty() && std::all_of(text.begin(), text.end(), is_name_character);
-}
-
 std::vector<Component> read_components(const Handle& arm) {
     const hdf5::Dataset scale(arm, "component");
     const std::vector<std::string> names = words(hdf5::read_text(scale.object(), "component_names")),
                                    units = words(hdf5::read_text(scale.object(), "component_units"));
     if (names.empty() || names.size() != units.size() || names.size() > largest_state ||
-        !std::all_of(names.begin(), names.end(), is_name))
+        !std::all_of(names.begin(), names.end(), names_something))
         throw Error(scale.place(), "does not name the components of a state and their units");
     std::vector<Component> components;
     for (std::size_t i = 0; i < names.size(); ++i) components.push_back({names[i], printable(units[i])});
@@ -55,7 +51,7 @@ std::optional<Column> column_of(const Handle& arm, const std::string& name) {
     const hdf5::Dataset dataset(arm, name);
     const Handle& object = dataset.object();
     const bool status = hdf5::has_attribute(object, "flag_meanings");
-    if (!is_name(name) || (!status && !hdf5::has_attribute(object, "_FillValue"))) return std::nullopt;
+    if (!names_something(name) || (!status && !hdf5::has_attribute(object, "_FillValue"))) return std::nullopt;
     if (dataset.extents() != hdf5::Dataset(arm, "trial").extents()) return std::nullopt;
     const std::string long_name = printable(hdf5::read_text(object, "long_name")),
                       unit = printable(hdf5::read_text(object, "units"));
@@ -85,7 +81,7 @@ std::vector<Column> read_aggregated_columns(const Handle& arm) {
     const std::vector<std::string> names = words(hdf5::read_text(scale.object(), "column_names")),
                                    units = split_list(hdf5::read_text(scale.object(), "column_units"));
     if (names.empty() || names.size() != units.size() || names.size() > most_columns ||
-        !std::all_of(names.begin(), names.end(), is_name))
+        !std::all_of(names.begin(), names.end(), names_something))
         throw Error(scale.place(), "does not name the figures of trials and their units");
     std::vector<Column> columns;
     for (std::size_t c = 0; c < names.size(); ++c)
@@ -109,7 +105,8 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
     scenario.title = hdf5::read_text(group, "title");
     scenario.length_unit = hdf5::read_text(group, "length_unit");
     scenario.arms = hdf5::link_names(group);
-    if (scenario.arms.empty() || !is_name(scenario.name))
+    if (scenario.arms.empty() || !names_something(scenario.name) ||
+        !std::all_of(scenario.arms.begin(), scenario.arms.end(), names_arm))
         throw Error(hdf5::place_of(group), "is no scenario with arms");
     const Handle arm = hdf5::open_group(group, scenario.arms.front());
     const hdf5::Dataset steps(arm, "step");

@@ -39,6 +39,11 @@ struct Declaration {
 /// same scenario.
 std::string scenario_text(const Declaration& scenario);
 
+/// Whether a text is a name: letters, digits, _ and -; and whether it is that of an arm: a name, or two with a point
+/// between them.
+bool names_something(const std::string& text);
+bool names_arm(const std::string& text);
+
 /// The controller in an arm's name.
 std::string controller_of(const std::string& arm);
 
