@@ -96,6 +96,20 @@ TEST_CASE("aggregates: shards, a crash, a grown study and a partial block taken 
     CHECK(bytes_of(folder / "grown.h5") == one);
 }
 
+TEST_CASE("aggregates: a shard whose blocks have no details is grown, from its file and from its journal") {
+    const TemporaryFolder folder;
+    Asked asked{2 * 18 * block_size, 1, {17, 18}, {tiny("a")}, 1, Keep::aggregates}, first = asked;
+    first.trials = 18 * block_size;  // block 17 alone
+    run_to_end(folder / "one.h5", asked);
+    run_to_end(folder / "grown.h5", first);
+    run_to_end(folder / "grown.h5", asked);
+    CHECK(bytes_of(folder / "grown.h5") == bytes_of(folder / "one.h5"));
+    run_and_die(folder / "journal.h5", first);
+    run_to_end(folder / "journal.h5", asked);
+    CHECK(bytes_of(folder / "journal.h5") == bytes_of(folder / "one.h5"));
+    CHECK(read_results(folder / "one.h5").study.scenarios.front().blocks == BlockRanges{17, 35});
+}
+
 TEST_CASE("aggregates: neither journal nor file grows with the trials") {
     const TemporaryFolder folder;
     const auto sizes = [&](const std::string& name, std::int64_t trials, Keep keep) {
