@@ -32,9 +32,9 @@ Study unknown_world() {
 const std::string arm = "/mine/kf";
 
 const std::vector<Damage> damages{
-    {"/mine/@blocks: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "blocks"); }},
-    {"/mine/@blocks: `beyond 3:9` ends beyond the 4 components", [](auto& r) { set_text(r, "/mine", "blocks", "beyond 3:9"); }},
-    {"/mine/@blocks: names two blocks", [](auto& r) { set_text(r, "/mine", "blocks", "a 0:1, a 1:2"); }},
+    {"/mine@blocks: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "blocks"); }},
+    {"/mine@blocks: `beyond 3:9` ends beyond the 4 components", [](auto& r) { set_text(r, "/mine", "blocks", "beyond 3:9"); }},
+    {"/mine@blocks: names two blocks", [](auto& r) { set_text(r, "/mine", "blocks", "a 0:1, a 1:2"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_names", "p_x p_y"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_names", "a b c \x1b"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_units", ""); }},
@@ -45,10 +45,10 @@ const std::vector<Damage> damages{
     {"/mine/kf: has no columns that end with status", [](auto& r) { H5Adelete(open(r, arm + "/status").id(), "flag_meanings"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/calm/measurements"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/kf/nees_total"); }},
-    {"does not belong here", [](auto& r) { hdf5::new_group(open(r, "/mine/kf"), "more"); }},
+    {"/mine/kf/more: is no readable dataset", [](auto& r) { hdf5::new_group(open(r, "/mine/kf"), "more"); }},
     {"/mine: is no scenario with arms", [](auto& r) { remove(r, "/mine/kf"), remove(r, "/mine/calm"); }},
     {"does not agree with the group's name", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = other\n"); }},
-    {"broken line", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\n= x\n"); }},
+    {"broken line", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\njunk\n"); }},
     {"/@study_hash: does not belong", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = mine\n"); }},
 };
 

@@ -80,9 +80,10 @@ std::string case_of(const Command& command) {
            "            [[ $current == -* ]] || { " + (arguments.empty() ? ":" : arguments) + "; return; } ;;\n";
 }
 
-/// Of every world there is, the first one's choices where several have a key.
+/// Which world, and the keys of every world there is, the first one's choices where several have a key.
 std::vector<DescribedKey> every_key() {
-    std::vector<DescribedKey> keys;
+    std::vector<DescribedKey> keys{{world_key, first_world, "", {}}};
+    for (const World* world : all_worlds()) keys.front().choices.push_back(world->name());
     for (const World* world : all_worlds())
         for (DescribedKey& key : world->keys())
             if (std::none_of(keys.begin(), keys.end(), [&](const DescribedKey& known) { return known.key == key.key; }))
