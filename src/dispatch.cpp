@@ -13,6 +13,8 @@ namespace credence {
 inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_UNIT by default, hence inline here too
 #ifdef CREDENCE_X86_UNITS
 CREDENCE_DECLARE_UNIT(v3)
+#endif
+#ifdef CREDENCE_UNIT_V4
 CREDENCE_DECLARE_UNIT(v4)
 #endif
 
@@ -32,11 +34,13 @@ bool runs_v3() {
            __builtin_cpu_supports("bmi2") && has_lzcnt_movbe_f16c();
 }
 
+#ifdef CREDENCE_UNIT_V4
 bool runs_v4() {
     return runs_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512vl");
 }
+#endif
 #endif
 
 /// A unit of this build, and whether this processor runs it.
@@ -48,8 +52,10 @@ struct BuiltUnit {
 /// The best one first.
 std::vector<BuiltUnit> built_units() {
     return {
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_UNIT_V4
         {CREDENCE_LIST_UNIT(v4, 8), runs_v4()},
+#endif
+#ifdef CREDENCE_X86_UNITS
         {CREDENCE_LIST_UNIT(v3, 4), runs_v3()},
 #endif
         {CREDENCE_LIST_UNIT(portable, 1), true}};

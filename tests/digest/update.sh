@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/setup.sh
 directory=${1:-build}
-build "$directory" credence_digest "${@:2}"
+build "$directory" credence_digest_widths "${@:2}"
 schema=$(sed -n 's/.* schema_version = \([0-9]*\);.*/\1/p' include/credence/study.hpp)
-lines=$("$directory/tests/digest/credence_digest")
+lines=$("$directory/tests/digest/credence_digest_widths")
 printf 'schema %s\n%s\n' "$schema" "$lines" >tests/digest/expected.txt

@@ -1,17 +1,19 @@
 #!/usr/bin/env bash
-# Label digest: rooms 1 to 9 print the committed digest from g++ at -O2 on aarch64, and the core's own build of them on
-# older x86 processors, both emulated. The core label has g++ at -O3 and -O1, the label compilers clang at -O2. (g++ at
-# -O2 on this processor: `cmake --preset digest-o2`.)
+# Label digest: rooms 1 to 9 print the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and the
+# core's own build of them on older x86 processors, both emulated. The core label has g++ at -O3, the label compilers
+# clang at -O2. (g++ at -O2 on this processor: `cmake --preset digest-o2`.)
 set -euo pipefail
 for tool in aarch64-linux-gnu-g++ qemu-aarch64 qemu-x86_64; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
 done
 
 cmake --preset digest-aarch64 >/dev/null
-cmake --build --preset digest-aarch64 -j "$(nproc)" | tail -n 1
+cmake --build --preset digest-aarch64 --target credence_digest_widths -j "$(nproc)" | tail -n 1
 native=build/tests/digest/credence_digest
-bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest &
+bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest_widths &
 checks=($!)
+cmake --build build --target credence_digest_widths -j "$(nproc)" | tail -n 1
+bash tests/digest/check.sh build/tests/digest/credence_digest_widths
 
 # A processor of 2006 has neither AVX nor fma: an instruction too new would end the program. One of 2013 has no AVX-512.
 if [ "$(uname -m)" = x86_64 ]; then
