@@ -8,9 +8,9 @@ for tool in aarch64-linux-gnu-g++ qemu-aarch64 qemu-x86_64; do
 done
 
 cmake --preset digest-aarch64 >/dev/null
-cmake --build --preset digest-aarch64 --target credence_digest_widths -j "$(nproc)" | tail -n 1
+cmake --build --preset digest-aarch64 --target credence_digest -j "$(nproc)" | tail -n 1
 native=build/tests/digest/credence_digest
-bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest_widths &
+bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest &
 checks=($!)
 cmake --build build --target credence_digest_widths -j "$(nproc)" | tail -n 1
 bash tests/digest/check.sh build/tests/digest/credence_digest_widths
