@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <credence/deformable.hpp>
 #include <credence/store.hpp>
 #include <filesystem>
 #include <memory>
@@ -71,7 +72,7 @@ struct Job {
     Job(const Case& c, const Effort& effort)
         : scenario(scenario_with("program", {"arms.controllers", c.controllers})),
           trials(effort.of(c.trials, c.quick_trials)),
-          study(new_study({scenario}, 1)) {
+          study(new_study({declaration_of(scenario)}, 1)) {
         run_study(study, {trials, 1, {}});
         write_results(folder / "results.h5", study, {});
         size = std::filesystem::file_size(folder / "results.h5");
@@ -83,7 +84,7 @@ struct Job {
                             "--threads", "1", "--output", folder / "program.h5", "--overwrite", "--quiet"});
     }
     void engine() const {
-        Study fresh = new_study({scenario}, 1);
+        Study fresh = new_study({declaration_of(scenario)}, 1);
         run_study(fresh, {trials, 1, {}});
     }
 };

@@ -1,7 +1,7 @@
 #include "rows.hpp"
 
 #include <cmath>
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 #include <credence/scenario_keys.hpp>
 #include <credence/text.hpp>
 

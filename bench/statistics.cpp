@@ -2,7 +2,7 @@
 
 #include "statistics.hpp"
 
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 #include <credence/chi_square.hpp>
 
 namespace credence {

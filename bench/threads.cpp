@@ -1,5 +1,6 @@
 #include <omp.h>
 
+#include <credence/deformable.hpp>
 #include <credence/study.hpp>
 
 #include "rows.hpp"
@@ -41,7 +42,7 @@ void add_threads(const Effort& effort) {
             benchmark::RegisterBenchmark((benchmark_name(c) + "/" + std::to_string(T)).c_str(),
                                          [scenario, options](benchmark::State& state) {
                                              for (auto _ : state) {
-                                                 Study study = new_study({scenario}, 1);
+                                                 Study study = new_study({declaration_of(scenario)}, 1);
                                                  run_study(study, options);
                                              }
                                          })

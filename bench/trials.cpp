@@ -1,7 +1,7 @@
 #include "trials.hpp"
 
 #include <cmath>
-#include <credence/block.hpp>
+#include <credence/deformable.hpp>
 #include <memory>
 
 #include "baseline.hpp"
