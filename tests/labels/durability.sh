@@ -5,9 +5,9 @@ set -euo pipefail
 for tool in cc h5diff; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
 done
-every=150
+every=300
 bash tests/durability/sweep.sh build/credence $every &
 sweep=$!
-bash tests/durability/random_kills.sh build/credence 100
+bash tests/durability/random_kills.sh build/credence 50
 bash tests/durability/no_space.sh build/credence $every
 wait $sweep
