@@ -6,10 +6,10 @@
 
 #include <boost/program_options.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 
 namespace credence {
@@ -66,26 +66,33 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
     return all;
 }
 
+/// A value that the text or an override gives to a key, and how messages call its place.
+struct Given {
+    std::string value, where;
+};
+
+/// The last one; nothing where the key is not given.
+std::optional<Given> given(const std::string& key, const std::vector<Assignment>& assignments,
+                           const std::string& origin, const Overrides& overrides) {
+    std::optional<Given> last;
+    for (const Assignment& one : assignments)
+        if (one.key == key) last = Given{one.value, place(origin, one.line)};
+    for (const auto& [name, value] : overrides)
+        if (name == key) last = Given{trimmed(value), "--set " + key + ": "};
+    return last;
+}
+
 /// An empty scenario of the world that the text or an override names.
 std::unique_ptr<Draft> draft_of(const std::vector<Assignment>& assignments, const std::string& origin,
                                 const Overrides& overrides) {
+    const Given world = given(world_key, assignments, origin, overrides).value_or(Given{first_world, origin + ": "});
     Declaration named;
-    std::string where = origin + ": ";
-    for (const Assignment& one : assignments)
-        if (one.key == world_key) named.world = one.value, where = place(origin, one.line);
-    for (const auto& [key, value] : overrides)
-        if (key == world_key) named.world = trimmed(value), where = "--set " + key + ": ";
+    named.world = world.value;
     try {
         return world_of(named).draft();
     } catch (const InputError& error) {
-        throw InputError(where + error.what(), error.key());
+        throw InputError(world.where + error.what(), error.key());
     }
-}
-
-bool says_name(const std::vector<Assignment>& assignments, const Overrides& overrides) {
-    const std::string name = "scenario.name";
-    return std::any_of(assignments.begin(), assignments.end(), [&](const Assignment& one) { return one.key == name; }) ||
-           std::any_of(overrides.begin(), overrides.end(), [&](const auto& one) { return one.first == name; });
 }
 
 /// Sets a key of the world, or of the place in a grid, which scenarios of every world have.
@@ -144,7 +151,7 @@ std::string stem(const std::string& path) { return std::filesystem::path(path).s
 void check_place(const Declaration& scenario) {
     const SweepPoint& sweep = scenario.sweep;
     if (sweep.at.empty() && sweep.of.empty()) return;
-    if (sweep.at.empty() || sweep.of.empty() || !std::all_of(sweep.of.begin(), sweep.of.end(), is_name_character))
+    if (sweep.at.empty() || sweep.of.empty() || !names_something(sweep.of))
         throw invalid_value("sweep.of", sweep.of, "a point of a grid says of which scenario, and where in sweep.at",
                             "Give both, or neither");
     for (const SweepCoordinate& one : sweep.at) {
@@ -195,7 +202,7 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
     const std::map<std::string, int> lines = fill(*draft, sweep, assignments, origin, overrides);
     try {
         // It is refused only where it is used.
-        if (!says_name(assignments, overrides)) draft->set("scenario.name", default_name);
+        if (!given("scenario.name", assignments, origin, overrides)) draft->set("scenario.name", default_name);
         Declaration scenario = draft->declare();
         scenario.sweep = std::move(sweep);
         check_place(scenario);
@@ -215,11 +222,7 @@ std::vector<Declaration> read_grid(const std::string& path, const Overrides& ove
                                    const std::vector<SweepAxis>& axes) {
     if (axes.empty()) return {read_declaration(path, overrides)};
     const std::vector<Assignment> assignments = read_lines(text_of_file(path), path);
-    std::string name = stem(path);
-    for (const Assignment& one : assignments)
-        if (one.key == "scenario.name") name = one.value;
-    for (const auto& [key, value] : overrides)
-        if (key == "scenario.name") name = trimmed(value);
+    const std::string name = given("scenario.name", assignments, path, overrides).value_or(Given{stem(path), ""}).value;
     std::vector<Declaration> scenarios;
     for (const std::vector<SweepCoordinate>& at : grid_points(axes)) {
         const std::unique_ptr<Draft> draft = draft_of(assignments, path, overrides);

@@ -1,5 +1,6 @@
 // The attribute `blocks`: parts of the state that are judged by themselves.
 
+#include <credence/declaration.hpp>
 #include <credence/text.hpp>
 
 #include "judgement_file.hpp"
@@ -16,10 +17,6 @@ constexpr std::size_t most_blocks = 1000;
 const std::string example = "Write the blocks as NAME FIRST:END, counted from 0 and END not included, such as "
                             "`pose 0:3, feature_1 3:5` for components 0, 1, 2 and 3, 4";
 
-bool is_name(const std::string& name) {
-    return !name.empty() && std::all_of(name.begin(), name.end(), is_name_character);
-}
-
 std::string quoted(const std::string& text) { return "`" + printable(text) + "`"; }
 
 /// One `NAME FIRST:END`.
@@ -31,7 +28,7 @@ StateBlock parse_block(const std::string& entry, int n, const std::string& place
     const auto first = to_integer(trimmed(entry.substr(space, colon - space)));
     const auto end = to_integer(trimmed(entry.substr(colon + 1)));
     if (!first || !end) throw Error(place, "broken entry " + quoted(entry), example);
-    if (!is_name(name))
+    if (!names_something(name))
         throw Error(place, quoted(name) + " is no name for a block", "Use letters, digits, _ and -");
     if (name == "all")
         throw Error(place, "`all` cannot name a block, because it stands for the whole state",

@@ -49,6 +49,11 @@ StateFigures record_figures(const RecordShape& shape) {
     return figures;
 }
 
+bool figures_add_up(const double* figures, std::size_t count) {
+    constexpr double largest = 1e140;
+    return std::all_of(figures, figures + count, [](double value) { return std::abs(value) <= largest; });
+}
+
 StepJudge::StepJudge(const RecordShape& shape, const StateFigures& figures)
     : shape_(shape), places_(figures), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
 

@@ -51,6 +51,9 @@ bool check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& c
 /// The figures of a record, whose components are called x0, x1 ...
 StateFigures record_figures(const RecordShape& shape);
 
+/// Whether every figure of a step is a number whose square, over all steps, still adds up.
+bool figures_add_up(const double* figures, std::size_t count);
+
 /// Turns checked steps into figures. Keeps its matrices from step to step.
 class StepJudge {
 public:

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< of NEES that are kept, and of cells
-constexpr double largest_figure = 1e140;                     ///< its square, over all steps, still adds up
 constexpr std::size_t most_troubles = 20;
 
 std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
@@ -62,7 +61,7 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     double* values = &figure(0, k);
     const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
     if (!trouble.empty()) return fail(step, Status::covariance_not_positive_definite, trouble);
-    if (!std::all_of(values, values + figures_.list.size(), [](double v) { return std::abs(v) <= largest_figure; }))
+    if (!figures_add_up(values, figures_.list.size()))
         return fail(step, Status::non_finite, "a figure of this step is beyond 1e140");
     present_.push_back(k);
     keep_details(step.trial, k, checked);

@@ -6,24 +6,33 @@
 
 namespace credence {
 
+namespace {
+
+const std::vector<KeyOf<OwnBasics>>& common_keys() {
+    static const std::vector<KeyOf<OwnBasics>> keys = [] {
+        std::vector<KeyOf<OwnBasics>> common;
+        add_common_keys(common);
+        return common;
+    }();
+    return keys;
+}
+
+}  // namespace
+
 std::vector<DescribedKey> basic_keys(const OwnBasics& basics) {
-    return {{"scenario.name", basics.name, "letters, digits, _ and -; unique in a run; default the file's stem"},
-            {"scenario.title", basics.title, "one line of text"},
-            {"scenario.length_unit", basics.length_unit, "unit of every length; lengths are never converted"},
-            {"scenario.poses", std::to_string(basics.poses), "K, the first included: K - 1 steps"}};
+    std::vector<DescribedKey> described;
+    for (const KeyOf<OwnBasics>& key : common_keys())
+        described.push_back({key.name, key.get(basics), key.help, key.choices});
+    return described;
 }
 
 bool set_basic(OwnBasics& basics, const std::string& key, const std::string& value) {
-    const auto checked = [&](const std::string& why) {
-        if (!why.empty()) throw invalid_value(key, value, why, "Give another text");
-        return value;
-    };
-    if (key == "scenario.name") basics.name = checked(is_name(value));
-    else if (key == "scenario.title") basics.title = checked(is_title(value));
-    else if (key == "scenario.length_unit") basics.length_unit = checked(is_unit(value));
-    else if (key == "scenario.poses") basics.poses = own_integer(key, value, 2, largest_pose_count);
-    else return false;
-    return true;
+    for (const KeyOf<OwnBasics>& common : common_keys()) {
+        if (common.name != key) continue;
+        common.set(basics, value);
+        return true;
+    }
+    return false;
 }
 
 double own_real(const std::string& key, const std::string& text, double low, double high) {

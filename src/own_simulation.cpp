@@ -162,8 +162,7 @@ private:
             end(Status::non_finite);
         if (!judge_.judge(checked_, step_figures_.data(), products_.at(step_).data()).empty())
             end(Status::covariance_not_positive_definite);
-        const auto too_large = [](double value) { return !(std::abs(value) <= largest_figure); };
-        if (std::any_of(step_figures_.begin(), step_figures_.end(), too_large)) end(Status::non_finite);
+        if (!figures_add_up(step_figures_.data(), step_figures_.size())) end(Status::non_finite);
         if (status_ == Status::completed && error.cwiseAbs().maxCoeff() > divergence_bound) note(Status::diverged);
         for (std::size_t f = 0; f < step_figures_.size(); ++f) figures_[f * case_.steps() + step_] = step_figures_[f];
         std::copy(error.begin(), error.end(), errors_.begin() + static_cast<std::ptrdiff_t>(step_) * n);
@@ -179,8 +178,6 @@ private:
         note(status);
         throw TrialEnds();
     }
-
-    static constexpr double largest_figure = 1e140;  ///< its square, over all steps, still adds up
 
     const Case& case_;
     std::size_t arm_;
