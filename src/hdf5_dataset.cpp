@@ -42,12 +42,13 @@ H5D_layout_t Dataset::own_layout(const Handle& creation) const {
 /// Throws where the file is too small to hold what the extents promise.
 void Dataset::check_storage(H5D_layout_t layout) const {
     if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
-    hsize_t room = file_size(dataset_) * (layout == H5D_CHUNKED ? largest_compression : 1) /
-                   std::max<hsize_t>(H5Tget_size(type_.id()), 1);
-    const hsize_t stored = H5Dget_storage_size(dataset_.id());
+    const hsize_t stored = H5Dget_storage_size(dataset_.id()), file = file_size(dataset_);
     if (stored == 0) throw Error(place_, "has no values");
+    // Chunks that were never written take no room: what they would hold is a claim.
+    hsize_t room = (layout == H5D_CHUNKED ? std::min(stored, file) * largest_compression : file) /
+                   std::max<hsize_t>(H5Tget_size(type_.id()), 1);
     for (const hsize_t extent : extents_) room /= extent;
-    if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into the file");
+    if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into what is stored");
     if (layout == H5D_CHUNKED) return;
     hsize_t needed = H5Tget_size(type_.id());  // HDF5 itself would read on behind what is stored
     for (const hsize_t extent : extents_) needed *= extent;

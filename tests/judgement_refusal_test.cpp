@@ -47,6 +47,21 @@ void write_with_unknown_filter(const Handle& root) {
     H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
+/// Room for many trials, in chunks of which only the first was written.
+void claim_trials(const Handle& root) {
+    remove(root, "error");
+    const hsize_t size[] = {100000, 1, 2}, chunk[] = {64, 1, 2}, first[] = {0, 0, 0};
+    const Handle space(H5Screate_simple(3, size, nullptr), H5Sclose, "", "");
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "", "");
+    H5Pset_chunk(properties.id(), 3, chunk);
+    const Handle dataset(H5Dcreate2(root.id(), "error", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(),
+                                    H5P_DEFAULT), H5Dclose, "", "cannot make the dataset");
+    const Handle memory(H5Screate_simple(3, chunk, nullptr), H5Sclose, "", "");
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first, nullptr, chunk, nullptr);
+    const std::vector<double> values(128, 0.5);
+    H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data());
+}
+
 const std::vector<Damage> value_damages{
     {"/error: trial 1, step 2 (both counted from 0) holds NaN in some components and numbers in others. A step exists",
      value("error", vector_at(1, 2) + 1, nan)},
@@ -122,7 +137,8 @@ const std::vector<Damage> shape_damages{
          hdf5::new_group(r, "error");
      }},
     {"/error: is compressed by a filter that is not installed, 32015", write_with_unknown_filter},
-    {"/error: [1099511627776] does not fit into the file", [](auto& r) { promise_terabytes(r, "/error"); }},
+    {"/error: [1099511627776] does not fit into what is stored", [](auto& r) { promise_terabytes(r, "/error"); }},
+    {"/error: [100000, 1, 2] does not fit into what is stored", claim_trials},
     {"/error: keeps its values in other files", [](auto& r) { keep_elsewhere(r, "/error"); }},
     {"/error: is a link to somewhere else", [](auto& r) {
          remove(r, "error");
