@@ -6,18 +6,14 @@
 
 namespace credence {
 
-namespace {
-
-const Setting* find(const Declaration& scenario, const std::string& key) {
-    const auto found = std::find_if(scenario.settings.begin(), scenario.settings.end(),
-                                    [&](const Setting& setting) { return setting.key == key; });
-    return found == scenario.settings.end() ? nullptr : &*found;
+const Setting* find_setting(const std::vector<Setting>& settings, const std::string& key) {
+    const auto found =
+        std::find_if(settings.begin(), settings.end(), [&](const Setting& setting) { return setting.key == key; });
+    return found == settings.end() ? nullptr : &*found;
 }
 
-}  // namespace
-
 std::string value_of(const Declaration& scenario, const std::string& key) {
-    const Setting* setting = find(scenario, key);
+    const Setting* setting = find_setting(scenario.settings, key);
     return setting ? setting->value : "";
 }
 
@@ -57,7 +53,7 @@ std::vector<KeyDifference> key_differences(const Declaration& a, const Declarati
     };
     for (const Setting& setting : a.settings) note(setting.key);
     for (const Setting& setting : b.settings)
-        if (find(a, setting.key) == nullptr) note(setting.key);
+        if (find_setting(a.settings, setting.key) == nullptr) note(setting.key);
     return differences;
 }
 

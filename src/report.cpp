@@ -18,9 +18,9 @@ namespace {
 /// What `published.COLUMN` says; nothing where the scenario has no such key.
 std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scenario, const std::string& column) {
     const std::string key = "published." + column;
-    for (const Setting& setting : scenario.settings)
-        if (setting.key == key) return parse_published(key, setting.value);
-    return std::nullopt;
+    const Setting* published = find_setting(scenario.settings, key);
+    if (published == nullptr) return std::nullopt;
+    return parse_published(key, published->value);
 }
 
 /// `values` may be none: then nothing is known of its place.

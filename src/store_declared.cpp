@@ -21,12 +21,6 @@ using hdf5::Handle;
 constexpr int largest_state = 1000;
 constexpr std::size_t most_columns = 1000;
 
-std::optional<std::string> value_of(const std::vector<Setting>& settings, const std::string& key) {
-    for (const Setting& setting : settings)
-        if (setting.key == key) return setting.value;
-    return std::nullopt;
-}
-
 std::vector<std::string> words(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> all;
@@ -100,8 +94,8 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
         if (setting.key == "sweep.of") scenario.sweep.of = printable(setting.value);
         else if (setting.key == "sweep.at") scenario.sweep.at = parse_coordinates(printable(setting.value, setting.value.size()));
         else scenario.settings.push_back(setting);
-    scenario.world = *value_of(settings, world_key);
-    scenario.name = value_of(settings, "scenario.name").value_or("");
+    scenario.world = value_of(scenario, world_key);
+    scenario.name = value_of(scenario, "scenario.name");
     scenario.title = hdf5::read_text(group, "title");
     scenario.length_unit = hdf5::read_text(group, "length_unit");
     scenario.arms = hdf5::link_names(group);
@@ -129,8 +123,8 @@ ScenarioResults read_declared(const Handle& group, const std::string& file, Keep
     const std::string text = hdf5::read_text(group, "scenario");
     const std::string origin = file + ": " + hdf5::attribute_place(group, "scenario");
     const std::vector<Setting> settings = read_settings(text, origin);
-    const std::optional<std::string> named = value_of(settings, world_key);
-    if (named && find_world(*named) == nullptr) return declared_by_file(group, settings, keep);
+    const Setting* named = find_setting(settings, world_key);
+    if (named != nullptr && find_world(named->value) == nullptr) return declared_by_file(group, settings, keep);
     const Declaration scenario = read_declaration_text(text, origin, "scenario");
     const World& world = world_of(scenario);
     return {scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};

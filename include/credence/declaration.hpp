@@ -47,6 +47,9 @@ bool names_arm(const std::string& text);
 /// The controller in an arm's name.
 std::string controller_of(const std::string& arm);
 
+/// The setting of that key, or nullptr.
+const Setting* find_setting(const std::vector<Setting>& settings, const std::string& key);
+
 /// A key's value; empty where the scenario has no such key.
 std::string value_of(const Declaration& scenario, const std::string& key);
 
