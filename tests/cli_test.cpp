@@ -166,6 +166,12 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     CHECK(here.names() == before);
 }
 
+TEST_CASE("cli: a damaged file that HDF5 cannot close again is refused like any other") {
+    const Workplace here;
+    check_refused(here.credence("report " CREDENCE_SOURCE "/tests/fuzz/found/results/cannot-be-closed.h5"),
+                  "/one/fixed.ekf: cannot be listed");
+}
+
 TEST_CASE("cli: replay of a stored trial checks it, and writes its trajectory") {
     const Workplace here;
     REQUIRE(here.credence("run " + seed_scenario("ekf-circle-ranged") + small).exit_code == 0);

@@ -9,6 +9,8 @@
 #include <credence/simulate.hpp>
 #include <credence/text.hpp>
 
+#include <hdf5.h>
+
 #include <algorithm>
 #include <exception>
 #include <iostream>
@@ -101,6 +103,9 @@ std::vector<const cli::Command*> cli::all_commands() {
 }
 
 int program(int argc, char** argv) {
+    // At the process's end HDF5 would close what is open, and crash over what a damaged file kept it from closing. What
+    // credence writes is closed, and checked, long before.
+    H5dont_atexit();
     const std::string name = argc > 1 ? argv[1] : "--help";
     const bool known = name != "--help" && name != "-h" && name != "--version" && !name.empty() && name.front() != '-';
     const std::string prefix = known ? "credence " + name + ": " : "credence: ";
