@@ -34,7 +34,7 @@ build() {
   mkdir -p "$directory"
   log=$directory/build.log
   echo "building $target in $directory"
-  if ! { cmake -S . -B "$directory" "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1; then
+  if ! { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     echo "the build failed; all of it is in $log" >&2
     return 1

@@ -1,18 +1,16 @@
 #include <credence/results.hpp>
 
+#include "nan.hpp"
 #include "superaccumulator.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// a b exactly: the product rounded, and what rounding it left.
 template <class Sum>

@@ -4,13 +4,13 @@
 #include <credence/bootstrap.hpp>
 #include <credence/draws.hpp>
 #include <credence/each.hpp>
-#include <limits>
+
+#include "nan.hpp"
 
 namespace credence {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_blocks = 100;
 
 /// 64-bit FNV-1a [Fowler, Noll, Vo].

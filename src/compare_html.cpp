@@ -21,7 +21,7 @@ Html lines(const std::string& text, const Html& classes) {
     return text.empty() ? Html() : element("p", escaped(text), "class=\""_html + classes + "\""_html) + "\n"_html;
 }
 
-Html conclusions(const CompareReport& report) {
+Html conclusion_list(const CompareReport& report) {
     Html items;
     for (const ComparedPair& pair : report.pairs)
         items += element("li",
@@ -37,7 +37,7 @@ Html means_table(const ComparedPair& pair) {
     for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
         const ComparedFigure& one = pair.comparison.figures[f];
         const Interval& interval = one.paired.difference.ci95;
-        const int digits = decimals_for((interval.high - interval.low) / 2);
+        const int digits = decimals_for(half_width(interval));
         table.row(escaped(figure_words(one.name, one.unit)),
                   {figure(pair.a.mean[f], digits), figure(pair.b.mean[f], digits)});
     }
@@ -77,7 +77,7 @@ Html origin_part(const CompareReport& report, const std::string& made_by) {
 std::string compare_html(const CompareReport& report, const std::string& made_by) {
     const Html header = "<h1>What does it change?</h1>\n"_html + element("p", escaped(compare_head(report))) +
                         lines(compare_notes(report), "lines warnings"_html);
-    Html body = conclusions(report);
+    Html body = conclusion_list(report);
     for (std::size_t i = 0; i < report.pairs.size(); ++i) body += pair_section(report.pairs[i], i);
     return document("credence: comparison", header, body + origin_part(report, made_by) + terms());
 }

@@ -14,7 +14,7 @@ namespace {
 
 /// Decimals that show two digits of the mean difference's uncertainty.
 int decimals_of(const PairedComparison& paired) {
-    return decimals_for((paired.difference.ci95.high - paired.difference.ci95.low) / 2);
+    return decimals_for(half_width(paired.difference.ci95));
 }
 
 /// `10000 pairs`, or from the fewest to the most.

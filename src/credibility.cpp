@@ -1,13 +1,12 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <credence/credibility.hpp>
-#include <limits>
+
+#include "nan.hpp"
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Errors of the trials that are used, a column each, every component over its root mean square: eps* does not depend
 /// on the units, and the decomposition is the better for it.

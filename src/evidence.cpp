@@ -4,16 +4,14 @@
 #include <credence/goodness.hpp>
 
 #include "evidence_parts.hpp"
+#include "nan.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const FigureTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
     for (std::size_t f = 0; f < results.figures.size(); ++f)

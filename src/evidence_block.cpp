@@ -3,15 +3,13 @@
 #include <credence/goodness.hpp>
 
 #include "evidence_parts.hpp"
+#include "nan.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Moments scaled(Moments moments, double scale) {
     moments.mean *= scale;

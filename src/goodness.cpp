@@ -2,13 +2,12 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <credence/goodness.hpp>
-#include <limits>
+
+#include "nan.hpp"
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Lower end of Wilson's interval, in a form that does not cancel for few successes, and gives 0 for none.
 double wilson_low(double successes, double trials, double z) {

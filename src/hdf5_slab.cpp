@@ -9,7 +9,7 @@ namespace credence::hdf5 {
 
 namespace {
 
-constexpr std::size_t longest_text = std::size_t{1} << 20;
+constexpr std::size_t longest_attribute = std::size_t{1} << 20;
 
 /// 2^-52, or more where the type has fewer digits.
 double epsilon_of(const Handle& type) {
@@ -41,7 +41,7 @@ std::vector<std::string> variable_texts(const Handle& attribute, const Handle& t
 std::vector<std::string> fixed_texts(const Handle& attribute, const Handle& type, std::size_t count,
                                      const std::string& place) {
     const std::size_t size = H5Tget_size(type.id());
-    if (size == 0 || size > longest_text / count) throw Error(place, "is longer than it can be");
+    if (size == 0 || size > longest_attribute / count) throw Error(place, "is longer than it can be");
     std::string all(size * count, '\0');
     check(H5Aread(attribute.id(), type.id(), all.data()), place, "HDF5 cannot read it");
     std::vector<std::string> texts;
@@ -97,7 +97,7 @@ std::string read_any_text(const Handle& object, const std::string& name) {
     if (H5Tget_class(type.id()) != H5T_STRING) throw Error(place, "is not text");
     const std::size_t count = element_count(attribute, place);
     if (count == 0) return {};
-    if (count > longest_text) throw Error(place, "is longer than it can be");
+    if (count > longest_attribute) throw Error(place, "is longer than it can be");
     return joined(H5Tis_variable_str(type.id()) > 0 ? variable_texts(attribute, type, count, place)
                                                     : fixed_texts(attribute, type, count, place));
 }

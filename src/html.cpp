@@ -83,7 +83,7 @@ Html figure_interval(const Interval& interval, int digits) {
 }
 
 Html figure_with_interval(double mean, const Interval& interval) {
-    const double half = (interval.high - interval.low) / 2;
+    const double half = half_width(interval);
     const int digits = decimals_for(half);
     if (std::isnan(mean) || std::isnan(half)) return figure(mean, digits);
     return figure(mean, digits) + " ± "_html + escaped(number(half, digits));

@@ -5,15 +5,14 @@
 
 #include "judgement_results.hpp"
 
+#include "nan.hpp"
+
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The file's stem as a name.
 std::string scenario_name(const std::string& path) {

@@ -1,14 +1,13 @@
 #include "judgement_step.hpp"
 
+#include "nan.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 enum class Definiteness { positive, singular, indefinite };
 

@@ -5,16 +5,15 @@
 #include <credence/slam_record.hpp>
 
 #include "judgement_results.hpp"
+#include "nan.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< of NEES that are kept, and of cells
 constexpr std::size_t most_troubles = 20;
 

@@ -1,10 +1,11 @@
 #pragma once
 // Room 10: how far one trial's whitened innovations are correlated in time [docs/statistics.md, Whiteness].
 
+#include "nan.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace credence {
@@ -41,7 +42,6 @@ public:
     std::vector<double> sum, count;  ///< [lags]
 
 private:
-    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::vector<double>> whitened_;  ///< by step, modulo its length
 };
 

@@ -20,7 +20,7 @@ std::vector<std::string> estimators_with_heading() {
 std::vector<LandmarkKey> all_keys() {
     std::vector<LandmarkKey> keys;
     add_common_keys(keys);
-    const auto real = [&](const char* name, const char* help, const Range& range, auto field) {
+    const auto real = [&](const char* name, const char* help, const ValueRange& range, auto field) {
         keys.push_back(real_key<LandmarkScenario>(name, help, range, field));
     };
     const auto integer = [&](const char* name, const char* help, int low, int high, auto field) {

@@ -47,7 +47,7 @@ private:
 };
 
 /// Where a block is: its file, its first row there, and its trials.
-struct Place {
+struct Found {
     std::size_t file;
     std::int64_t row, trials;
 };
@@ -102,7 +102,7 @@ public:
 private:
     void check_same(const ScenarioResults& from, std::int64_t block, std::size_t file,
                     const std::vector<std::string>& paths) const {
-        const Place& place = places_.at(block);
+        const Found& place = places_.at(block);
         const std::int64_t row = first_row(from, block).value();
         for (std::size_t a = 0; a < from.arms.size(); ++a)
             for (std::size_t c = 0; c < from.columns.size(); ++c)
@@ -123,7 +123,7 @@ private:
     }
 
     ScenarioResults results_;
-    std::map<std::int64_t, Place> places_;                                  ///< of the trials that are kept
+    std::map<std::int64_t, Found> places_;                                  ///< of the trials that are kept
     std::vector<std::vector<std::shared_ptr<const KeptColumns>>> columns_;  ///< by file and arm
 };
 

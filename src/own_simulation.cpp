@@ -7,6 +7,7 @@
 
 #include "judgement_step.hpp"
 #include "lag_products.hpp"
+#include "nan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,6 @@
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
 

@@ -6,8 +6,9 @@
 #include <credence/state_figures.hpp>
 #include <credence/text.hpp>
 
+#include "nan.hpp"
+
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 namespace credence {
@@ -35,7 +36,6 @@ void check_names(const std::string& world, const std::string& what, const std::v
 }  // namespace
 
 std::vector<Column> own_columns(const Declaration& scenario, const OwnReport& report) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const std::string unit = squared_unit(scenario.components, scenario.blocks.front());
     const auto real = [&](const std::string& name, const std::string& long_name, const std::string& of) {
         return Column{name, long_name, of, ColumnType::real, nan};

@@ -2,14 +2,13 @@
 #include <cmath>
 #include <credence/bootstrap.hpp>
 #include <credence/paired.hpp>
-#include <limits>
+
+#include "nan.hpp"
 #include <utility>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Sum of the ranks of positive differences, and sum of t^3 - t over groups of t differences of one size.
 struct RankSums {

@@ -13,9 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Between two looks at what has come: short beside the time for which a rank has blocks, long beside that of a look.
-constexpr std::chrono::milliseconds pause(1);
-
 /// Rank 0 adds up the totals of a record in milliseconds: it is to get no more than some tens of them a second.
 double seconds_between_records(int ranks) { return std::max(0.5, 0.02 * ranks); }
 
@@ -42,7 +39,7 @@ RankLeader::~RankLeader() {
         while (!lost_ && std::any_of(ranks_.begin(), ranks_.end(), here)) {
             while (const std::optional<Message> message = post_.receive()) hear(*message, nullptr);
             check_alive();
-            std::this_thread::sleep_for(pause);
+            std::this_thread::sleep_for(rank_pause);
         }
     } catch (const std::exception&) {
         lost_ = true;  // whatever it was that came first is being told already
@@ -78,7 +75,7 @@ void RankLeader::serve(BlockDesk& desk) {
                                : desk.left() == 0 && std::none_of(ranks_.begin(), ranks_.end(), busy);
         if (over) return;
         check_alive();
-        std::this_thread::sleep_for(pause);
+        std::this_thread::sleep_for(rank_pause);
     }
 }
 

@@ -5,10 +5,14 @@
 
 #include "journal_record.hpp"
 
+#include <chrono>
 #include <string>
 #include <vector>
 
 namespace credence {
+
+/// Between two looks at what has come: short beside the time for which a rank has blocks, long beside that of a look.
+inline constexpr std::chrono::milliseconds rank_pause(1);
 
 /// What a rank computes, and how.
 struct RankOrder {

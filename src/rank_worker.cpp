@@ -19,7 +19,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds pause(1);
 constexpr std::chrono::seconds silence(5);               ///< after which a rank says that it is alive
 constexpr double seconds_ahead = 0.1;                    ///< for which a rank is to have blocks
 constexpr double most_blocks_ahead = 1000;               ///< of a thread
@@ -54,7 +53,7 @@ private:
 
     /// Whether there is any work before the end.
     bool await_order() {
-        for (;; std::this_thread::sleep_for(pause)) {
+        for (;; std::this_thread::sleep_for(rank_pause)) {
             tell_of_life();
             const std::optional<Message> message = post_.receive();
             if (!message) continue;
@@ -126,7 +125,7 @@ private:
             ask_for_tasks();
             send_what_is_done();
             tell_of_life();
-            std::this_thread::sleep_for(pause);
+            std::this_thread::sleep_for(rank_pause);
         }
     }
 

@@ -5,6 +5,7 @@
 #include <credence/slam_record.hpp>
 #include <credence/text.hpp>
 
+#include "nan.hpp"
 #include "scenario_values.hpp"
 
 #include <algorithm>
@@ -37,7 +38,6 @@ bool has_bootstrap(const std::string& column) { return column != "nees_ratio" &&
 
 /// Of totals: mean and spread are known, and nothing of the distribution.
 FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Column& column = results.columns[c];
     FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
                         std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,

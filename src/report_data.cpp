@@ -4,11 +4,11 @@
 
 #include <credence/text.hpp>
 
+#include "nan.hpp"
 #include "report_json.hpp"
 #include "report_sweep.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
@@ -68,7 +68,6 @@ Json arm_json(const Report& report, const ArmReport& arm) {
 /// One row, with `end` behind its figures; cells that are NaN stay empty.
 std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
                     const std::optional<PublishedPlace>& published, const std::string& end) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
     const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
     for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
@@ -108,7 +107,6 @@ public:
     }
 
 private:
-    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     static constexpr Interval none{nan, nan};
 
     void add(const std::string& figure, double mean, double se, const Interval& interval, double sd = nan) {

@@ -29,7 +29,7 @@ int decimals_for(double uncertainty) {
 }
 
 std::string with_interval(double mean, const Interval& interval) {
-    const double half = (interval.high - interval.low) / 2;
+    const double half = half_width(interval);
     const int digits = decimals_for(half);
     return std::isnan(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
 }

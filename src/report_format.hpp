@@ -17,6 +17,8 @@ std::string number(double value, int digits);
 /// Decimals that show two digits of the uncertainty, at most 6.
 int decimals_for(double uncertainty);
 
+inline double half_width(const Interval& interval) { return (interval.high - interval.low) / 2; }
+
 /// `mean ± half-width`
 std::string with_interval(double mean, const Interval& interval);
 

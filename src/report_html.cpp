@@ -42,7 +42,7 @@ Html intro(const Report& report, const PageOrigin& origin) {
                              (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "");
     Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
                 element("p", escaped(origin.file + ": " + size + "."), "class=\"source\""_html) + "\n"_html +
-                element("p", escaped(summary_of(report)), "class=\"lead\""_html) + "\n"_html;
+                element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
     Html warnings;
     for (const std::string& warning : warnings_of(report)) warnings += element("li", escaped(warning));
     if (!warnings.empty()) html += element("ul", warnings, "class=\"warnings\""_html) + "\n"_html;

@@ -38,7 +38,7 @@ inline Html section_id(const std::string& scenario) { return "scenario:"_html + 
 Html badge(Verdict verdict);
 
 /// How many arms have which verdict, in one sentence.
-std::string summary_of(const Report& report);
+std::string verdict_counts(const Report& report);
 
 /// A line for every arm: the verdict and the first reason for it.
 Html verdicts(const Report& report);

@@ -12,8 +12,6 @@ namespace credence::page {
 
 namespace {
 
-double half_of(const Interval& interval) { return (interval.high - interval.low) / 2; }
-
 /// A table whose rows are grouped by arm.
 template <class AddRows>
 Html by_arm(const Part& part, HtmlTable table, const AddRows& add_rows) {
@@ -38,8 +36,8 @@ Html blocks_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
         for (const BlockEvidence* block : shown_blocks(evidence)) {
             const Interval over_steps = over_steps95(*block);
-            const int digits = decimals_for(half_of(over_steps)),
-                      ratio_digits = decimals_for(half_of(block->accuracy.ratio_ci95));
+            const int digits = decimals_for(half_width(over_steps)),
+                      ratio_digits = decimals_for(half_width(block->accuracy.ratio_ci95));
             rows.row(
                 escaped(block->block),
                 {figure_count(block->dimension), figure(block->run.mean, digits), figure_interval(over_steps, digits),
@@ -70,7 +68,7 @@ Html charts_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
         for (const ChartEvidence& chart : evidence.charts) {
             const Interval over_steps = t_interval(chart.run);
-            const int digits = decimals_for(half_of(over_steps));
+            const int digits = decimals_for(half_width(over_steps));
             rows.row(escaped(chart.block),
                      {escaped(chart.chart), figure(chart.run.mean, digits), figure_interval(over_steps, digits),
                       figure_within(chart.run.standard_error, chart.run.standard_error),
@@ -104,7 +102,7 @@ Html nis_table(const Part& part) {
         {"rows", "Σm", "NIS/m", "95 %", "factor on S, 95 %", "out of joint band", "out of own band"});
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
         for (const NisEvidence& nis : evidence.nis) {
-            const double half = half_of(std::isnan(nis.ratio95.low) ? nis.scale95 : nis.ratio95);
+            const double half = half_width(std::isnan(nis.ratio95.low) ? nis.scale95 : nis.ratio95);
             const int digits = decimals_for(half);
             rows.row(escaped(nis.part), {figure_count(nis.degrees), figure(nis.ratio, digits),
                                          figure_interval(nis.ratio95, digits), figure_interval(nis.scale95, digits + 1),

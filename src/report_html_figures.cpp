@@ -13,8 +13,6 @@ namespace credence::page {
 
 namespace {
 
-double half_of(const Interval& interval) { return (interval.high - interval.low) / 2; }
-
 /// All names of figures that some arm has values of, in their order.
 std::vector<std::string> names_of(const Part& part) {
     std::vector<std::string> names;
@@ -62,7 +60,7 @@ Html arms_table(const Part& part) {
     HtmlTable table(part.scenario.name + ": figures of a trial", heads);
     add_rows(part, table, [&](const FigureReport& one) {
         const Summary& s = one.summary;
-        const int digits = decimals_for(half_of(s.ci95));
+        const int digits = decimals_for(half_width(s.ci95));
         std::vector<Html> cells{figure(s.mean, digits), figure_interval(s.ci95, digits),
                                 one.bootstrap95 ? figure_interval(*one.bootstrap95, digits) : Html(),
                                 figure(s.median, digits), figure(s.standard_deviation, digits)};
@@ -77,7 +75,7 @@ Html spread_table(const Part& part) {
     for (const double p : reported_quantiles) heads.push_back(number(100 * p, 0) + " % quantile");
     HtmlTable table(part.scenario.name + ": how the figures are spread", heads);
     add_rows(part, table, [](const FigureReport& one) {
-        const int digits = decimals_for(half_of(one.summary.ci95));
+        const int digits = decimals_for(half_width(one.summary.ci95));
         std::vector<Html> cells{figure_count(static_cast<double>(one.summary.count)),
                                 figure_within(one.summary.standard_error, one.summary.standard_error)};
         for (const double quantile : one.quantiles) cells.push_back(figure(quantile, digits));
@@ -101,7 +99,7 @@ Html difference_table(const Comparison& pair) {
         const PairedComparison& paired = one.paired;
         if (paired.pairs == 0) continue;
         const Summary& s = paired.difference;
-        const int digits = decimals_for(half_of(s.ci95));
+        const int digits = decimals_for(half_width(s.ci95));
         table.row(escaped(figure_words(one.name, one.unit)),
                   {figure(s.mean, digits), figure_interval(s.ci95, digits), figure_interval(paired.bootstrap95, digits),
                    figure(s.median, digits), share(paired.wins_a), share(paired.wins_b), share(paired.ties),
@@ -119,7 +117,7 @@ Html difference_spread_table(const Comparison& pair) {
         table.row(
             escaped(figure_words(one.name, one.unit)),
             {figure_count(static_cast<double>(one.paired.pairs)), figure_within(s.standard_error, s.standard_error),
-             figure(s.standard_deviation, decimals_for(half_of(s.ci95))), figure(one.paired.wilcoxon_z, 2),
+             figure(s.standard_deviation, decimals_for(half_width(s.ci95))), figure(one.paired.wilcoxon_z, 2),
              p_value(one.paired.wilcoxon_p)});
     }
     return table.html();

@@ -62,7 +62,7 @@ Html verdict_line(const ArmReport& arm) {
 HtmlTable findings_table(const std::string& caption, const std::vector<Finding>& findings) {
     HtmlTable table(caption, {"what", "where", "when", "value", "interval, corrected"});
     for (const Finding& finding : findings) {
-        const double half = (finding.interval.high - finding.interval.low) / 2;
+        const double half = half_width(finding.interval);
         table.row(escaped(finding.what),
                   {escaped(finding.where), escaped(finding.when), figure_within(finding.value, half),
                    figure_interval(finding.interval, decimals_for(half))});
@@ -104,7 +104,7 @@ std::string figure_words(const std::string& name, const std::string& unit) {
     return with_powers(figure_title(name, unit));
 }
 
-std::string summary_of(const Report& report) {
+std::string verdict_counts(const Report& report) {
     std::map<Verdict, int> counts;
     if (report.arms.empty()) return "There is nothing to judge.";
     for (const ArmReport& arm : report.arms) ++counts[arm.consistency.verdict];

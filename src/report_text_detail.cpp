@@ -18,7 +18,7 @@ std::string published_text(const PublishedPlace& published) {
 
 std::string figure_row(const std::string& label, const Summary& s, const std::optional<Interval>& bootstrap,
                        const std::string& last) {
-    const int digits = decimals_for((s.ci95.high - s.ci95.low) / 2);
+    const int digits = decimals_for(half_width(s.ci95));
     return "    " + padded(label, 24, false) + padded(with_interval(s.mean, s.ci95), 22) +
            padded(bootstrap ? bracketed(*bootstrap, digits) : "", 22) + padded(number(s.median, digits), 12) +
            padded(number(s.standard_deviation, digits), 12) + (last.empty() ? "" : padded(last, 20)) + "\n";

@@ -3,8 +3,9 @@
 
 #include <credence/statistics.hpp>
 
+#include "nan.hpp"
+
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace credence {
@@ -40,7 +41,6 @@ struct RunningMoments {
 
     /// NaN where there are too few values.
     Moments moments() const {
-        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         const auto n = static_cast<double>(count);
         const double variance = count > 1 ? squares / (n - 1) : nan;
         return {n, count > 0 ? mean : nan, std::sqrt(variance), std::sqrt(variance / n)};

@@ -7,13 +7,13 @@ namespace credence {
 
 namespace {
 
-std::string range_text(const Range& range) {
+std::string range_text(const ValueRange& range) {
     std::string text = range.low_included ? "at least " + to_text(range.low) : "above " + to_text(range.low);
     text += " and at most " + to_text(range.high);
     return "must be " + text + (range.infinity_allowed ? ", or inf" : "");
 }
 
-bool inside(double value, const Range& range) {
+bool inside(double value, const ValueRange& range) {
     if (std::isinf(value)) return value > 0 && range.infinity_allowed;
     return (range.low_included ? value >= range.low : value > range.low) && value <= range.high;
 }
@@ -47,7 +47,7 @@ std::vector<Enum> parse_names(const std::string& name, const std::string& value,
 
 }  // namespace
 
-double parse_real(const std::string& name, const std::string& value, const Range& range) {
+double parse_real(const std::string& name, const std::string& value, const ValueRange& range) {
     const std::optional<double> number = to_number(value);
     if (!number) throw invalid_value(name, value, "not a number", "It " + range_text(range));
     if (!inside(*number, range)) throw invalid_value(name, value, range_text(range), "Give a number in that range");
@@ -77,7 +77,7 @@ std::vector<Point> parse_positions(const std::string& value) {
     for (const std::string& pair : split_list(value)) {
         const std::size_t space = pair.find_first_of(" \t");
         const std::string x = pair.substr(0, space), y = space == std::string::npos ? "" : trimmed(pair.substr(space));
-        const Range anywhere = between(-largest_value, largest_value);
+        const ValueRange anywhere = between(-largest_value, largest_value);
         positions.push_back({parse_real(name, x, anywhere), parse_real(name, y, anywhere)});
     }
     if (positions.empty() || positions.size() > largest_feature_count)

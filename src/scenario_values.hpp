@@ -12,21 +12,21 @@ namespace credence {
 /// Lengths and angles beyond this are a slip of the pen, and would drown in rounding.
 inline constexpr double largest_value = 1e9;
 
-struct Range {
+struct ValueRange {
     double low = 0, high = largest_value;
     bool low_included = true;
     bool infinity_allowed = false;
 };
 
-inline Range from(double low) { return {low, largest_value, true, false}; }
-inline Range above(double low) { return {low, largest_value, false, false}; }
-inline Range above_or_infinite(double low) { return {low, largest_value, false, true}; }
-inline Range between(double low, double high) { return {low, high, true, false}; }
+inline ValueRange from(double low) { return {low, largest_value, true, false}; }
+inline ValueRange above(double low) { return {low, largest_value, false, false}; }
+inline ValueRange above_or_infinite(double low) { return {low, largest_value, false, true}; }
+inline ValueRange between(double low, double high) { return {low, high, true, false}; }
 
 /// Whether sigma^2 is a number that an inverse can be taken of.
 inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
 
-double parse_real(const std::string& name, const std::string& value, const Range& range);
+double parse_real(const std::string& name, const std::string& value, const ValueRange& range);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
 
@@ -62,7 +62,7 @@ std::string names_text(const std::vector<Enum>& values, const std::vector<std::s
 // A key of one field. `field` gives the field of a scenario, constant or not, as a reference.
 
 template <class S = Scenario, class Field>
-KeyOf<S> real_key(const std::string& name, const std::string& help, const Range& range, Field field) {
+KeyOf<S> real_key(const std::string& name, const std::string& help, const ValueRange& range, Field field) {
     return {name, help, [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
             [=](const S& s) { return to_text(field(s)); }};
 }

@@ -1,13 +1,12 @@
 #include <credence/slam_record.hpp>
 
+#include "nan.hpp"
+
 #include <algorithm>
-#include <limits>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const std::string& described(const StateBlock& block) {
     static const std::string whole = "the whole state";

@@ -2,6 +2,8 @@
 
 #include <credence/exact_sum.hpp>
 
+#include "nan.hpp"
+
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -13,8 +15,6 @@
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double exact_mean(const std::vector<double>& values) {
     ExactSum sum;

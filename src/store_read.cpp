@@ -82,7 +82,7 @@ void check_columns(const Handle& group, const ScenarioResults& results, const Ar
 }
 
 /// A study and the file that it is read from.
-struct Source {
+struct Opened {
     std::shared_ptr<const Handle> file;
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
@@ -100,7 +100,7 @@ FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t step
 
 /// The first arm tells which trials are there, the others must agree.
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
-                    const Source& source) {
+                    const Opened& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
     require_links(group, arm_links(results));
     const bool trials = results.keep == Keep::trials;
@@ -129,7 +129,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     return arm;
 }
 
-ScenarioResults read_scenario_results(const std::string& name, const Source& source) {
+ScenarioResults read_scenario_results(const std::string& name, const Opened& source) {
     const Handle group = hdf5::open_group(*source.file, name);
     ScenarioResults results = read_declared(group, source.path, source.keep);
     const Declaration& scenario = results.scenario;
@@ -166,7 +166,7 @@ bool read_complete(const Handle& root, const Study& study) {
     return complete == 1;
 }
 
-StoredStudy read_study(const Source& source) {
+StoredStudy read_study(const Opened& source) {
     const Handle& root = *source.file;
     StoredStudy stored;
     Study& study = stored.study;
@@ -185,8 +185,8 @@ StoredStudy read_study(const Source& source) {
     return stored;
 }
 
-Source open_results(const std::string& path) {
-    Source source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials};
+Opened open_results(const std::string& path) {
+    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials};
     check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");

@@ -4,14 +4,13 @@
 #include <credence/estimators.hpp>
 #include <credence/trial.hpp>
 
-#include <limits>
+#include "nan.hpp"
+
 #include <memory>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <int capacity>
 Eigen::MatrixXd dense(const Symmetric<double, capacity>& P, int n) {

@@ -3,14 +3,13 @@
 #include <credence/watch.hpp>
 
 #include "bytes.hpp"
+#include "nan.hpp"
 
 #include <algorithm>
 
 namespace credence {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Status status_of(double value) { return static_cast<Status>(static_cast<int>(value)); }
 

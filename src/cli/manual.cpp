@@ -60,7 +60,7 @@ std::string text_of(const Command& command) {
     return text + (command.details.empty() ? "" : roff::paragraph + roff::filled(command.details));
 }
 
-std::string keys_text() {
+std::string described_keys() {
     std::string text = roff::filled(
         "A scenario file is an INI text that names only what differs from the defaults; --set overrides it. Keys,\n"
         "with their defaults:");
@@ -100,7 +100,7 @@ std::string head() {
 std::string page() {
     std::string text = head() + roff::section("COMMANDS");
     for (const Command* command : all_commands()) text += text_of(*command);
-    text += roff::section("SCENARIOS") + keys_text() + roff::section("EXIT STATUS");
+    text += roff::section("SCENARIOS") + described_keys() + roff::section("EXIT STATUS");
     for (const ExitCode& exit : exit_codes())
         text += roff::tagged(roff::bold(std::to_string(exit.code)), exit.meaning + ".");
     text += roff::section("ENVIRONMENT") +
