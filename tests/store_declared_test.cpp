@@ -29,20 +29,20 @@ Study unknown_world() {
     return study;
 }
 
-const std::string arm = "/mine/kf";
+const std::string own_arm = "/mine/kf";
 
 const std::vector<Damage> damages{
     {"/mine@blocks: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "blocks"); }},
     {"/mine@blocks: `beyond 3:9` ends beyond the 4 components", [](auto& r) { set_text(r, "/mine", "blocks", "beyond 3:9"); }},
     {"/mine@blocks: names two blocks", [](auto& r) { set_text(r, "/mine", "blocks", "a 0:1, a 1:2"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_names", "p_x p_y"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_names", "a b c \x1b"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, arm + "/component", "component_units", ""); }},
-    {"/component: is missing", [](auto& r) { remove(r, arm + "/component"); }},
-    {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {0}, {}); }},
-    {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {2, 2}, {}); }},
-    {"/mine/kf: has no columns that end with status", [](auto& r) { remove(r, arm + "/status_pose"); }},
-    {"/mine/kf: has no columns that end with status", [](auto& r) { H5Adelete(open(r, arm + "/status").id(), "flag_meanings"); }},
+    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "p_x p_y"); }},
+    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "a b c \x1b"); }},
+    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_units", ""); }},
+    {"/component: is missing", [](auto& r) { remove(r, own_arm + "/component"); }},
+    {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, own_arm + "/step", {0}, {}); }},
+    {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, own_arm + "/step", {2, 2}, {}); }},
+    {"/mine/kf: has no columns that end with status", [](auto& r) { remove(r, own_arm + "/status_pose"); }},
+    {"/mine/kf: has no columns that end with status", [](auto& r) { H5Adelete(open(r, own_arm + "/status").id(), "flag_meanings"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/calm/measurements"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/kf/nees_total"); }},
     {"/mine/kf/more: is no readable dataset", [](auto& r) { hdf5::new_group(open(r, "/mine/kf"), "more"); }},
