@@ -12,6 +12,9 @@ mkdir -p "$seeds"/{scenario,noise,judge,results}
 
 cp experiments/seed/*.ini "$seeds/scenario/"
 "$program" show >"$seeds/scenario/every-key.ini"
+"$program" show --set scenario.world=landmarks >"$seeds/scenario/landmarks.ini"
+printf '%s\n' '[noise]' 'walk = 0.2' 'heading = 0.1' '[sweep]' 'of = one' 'at = noise.walk=0.2, noise.heading=0.1' \
+  >"$seeds/scenario/swept.ini"
 # Overrides stand behind the text, each after a record separator.
 printf '[model]\nprocess = translation\n\x1enoise.walk=1\x1eedges.graph=0-1, 1-2\x1escenario.title=a b' \
   >"$seeds/scenario/overrides"
@@ -28,6 +31,10 @@ printf '[scenario]\nname = two\n[model]\nprocess = translation\n' >"$work/two.in
 "$program" run "$work/two.ini" "${tiny[@]}" --set arms.controllers=fixed --set scenario.poses=4 --trials 3 \
   -o "$work/lags.h5"
 "$program" run "$work"/{one,two}.ini "${tiny[@]}" --set arms.controllers=greedy --trials 1 -o "$work/scenarios.h5"
+"$program" run "$work/one.ini" "${tiny[@]}" --set arms.controllers=fixed --sweep noise.walk=0.2,0.3 --trials 1 \
+  -o "$work/swept.h5"
+printf '[scenario]\nname = three\nworld = landmarks\n[landmarks]\ncount = 1\n' >"$work/three.ini"
+"$program" run "$work/three.ini" --set scenario.poses=2 --set arms.estimators=ekf --trials 1 --quiet -o "$work/landmarks.h5"
 /usr/bin/python3 tests/fuzz/make_seeds.py "$work" "$seeds"
 # Journals of runs that could not write their results: a limit on file sizes between the two.
 mkdir -p "$seeds/journal"
