@@ -1,7 +1,8 @@
 #include <credence/exact_sum.hpp>
 
+#include "nan.hpp"
+
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
@@ -36,7 +37,7 @@ void ExactSum::subtract(const ExactSum& other) {
 }
 
 double ExactSum::rounded() const {
-    if (!finite_) return std::numeric_limits<double>::quiet_NaN();
+    if (!finite_) return nan;
     if (expansion_.empty()) return 0;
     // From the largest part down, until the parts below no longer change the sum.
     std::size_t i = expansion_.size() - 1;
@@ -55,7 +56,7 @@ double ExactSum::rounded() const {
 }
 
 std::vector<double> ExactSum::parts() const {
-    if (!finite_) return {std::numeric_limits<double>::quiet_NaN()};
+    if (!finite_) return {nan};
     std::vector<double> parts;
     ExactSum rest = *this;
     do {

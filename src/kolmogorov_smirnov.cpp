@@ -1,12 +1,15 @@
 // P(D_n >= d) by the methods that Simard and L'Ecuyer [2011] select for n and d. Nomenclature: n values, distance d,
 // z = sqrt(n) d.
+#include <credence/goodness.hpp>
+
+#include "nan.hpp"
+
 #include <Eigen/Dense>
-#include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/log1p.hpp>
+
+#include <algorithm>
 #include <cmath>
-#include <credence/goodness.hpp>
-#include <limits>
 
 namespace credence {
 
@@ -97,7 +100,7 @@ double pelz_good(double n, double d) {
 
 double kolmogorov_smirnov_p(double distance, double count) {
     const double n = count, d = distance, nd = n * d, z2 = nd * d;
-    if (std::isnan(d) || !(n >= 1) || std::isinf(n)) return std::numeric_limits<double>::quiet_NaN();
+    if (std::isnan(d) || !(n >= 1) || std::isinf(n)) return nan;
     if (nd <= 0.5) return 1;
     if (d >= 1) return 0;
     if (nd <= 1)

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
@@ -98,8 +97,7 @@ Report make_report(const Study& study, double margin) {
 Report make_record_report(JudgedRecord record, const std::string& path, double margin) {
     ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
-    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(),
-              std::numeric_limits<double>::quiet_NaN());  // a record does not tell
+    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell
     Report report;
     report.source = "record " + path;
     report.margin = margin;

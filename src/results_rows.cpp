@@ -2,8 +2,9 @@
 
 #include <credence/results.hpp>
 
+#include "nan.hpp"
+
 #include <algorithm>
-#include <limits>
 
 namespace credence {
 
@@ -59,7 +60,7 @@ std::vector<double> figure_values(const ScenarioResults& results, const ArmResul
     const std::vector<double> status = column_values(results, arm, status_column(results.columns));
     for (std::size_t i = 0; i < values.size(); ++i)
         if (failed(static_cast<Status>(static_cast<int>(status[i]))))
-            values[i] = std::numeric_limits<double>::quiet_NaN();
+            values[i] = nan;
     return values;
 }
 

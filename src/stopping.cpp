@@ -2,6 +2,7 @@
 
 #include <credence/statistics.hpp>
 
+#include "nan.hpp"
 #include "stopping_subject.hpp"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, in
     for (const double value : values)
         if (!std::isnan(value)) squares += (value - moments.mean) * (value - moments.mean);
     moments.standard_deviation =
-        moments.count > 1 ? std::sqrt(squares / (moments.count - 1)) : std::numeric_limits<double>::quiet_NaN();
+        moments.count > 1 ? std::sqrt(squares / (moments.count - 1)) : nan;
     return decide_from(moments, goal, number);
 }
 

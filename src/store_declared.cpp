@@ -1,3 +1,4 @@
+#include "nan.hpp"
 #include "store_declared.hpp"
 
 #include <credence/ini.hpp>
@@ -7,7 +8,6 @@
 #include "judgement_file.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -51,7 +51,7 @@ std::optional<Column> column_of(const Handle& arm, const std::string& name) {
                       unit = printable(hdf5::read_text(object, "units"));
     if (status) return Column{name, long_name, unit, ColumnType::status, 0};
     if (dataset.holds<std::int32_t>()) return Column{name, long_name, unit, ColumnType::integer, -1};
-    return Column{name, long_name, unit, ColumnType::real, std::numeric_limits<double>::quiet_NaN()};
+    return Column{name, long_name, unit, ColumnType::real, nan};
 }
 
 /// The columns of an arm, in the order in which they were written.
@@ -79,8 +79,7 @@ std::vector<Column> read_aggregated_columns(const Handle& arm) {
         throw Error(scale.place(), "does not name the figures of trials and their units");
     std::vector<Column> columns;
     for (std::size_t c = 0; c < names.size(); ++c)
-        columns.push_back({names[c], names[c], printable(units[c]), ColumnType::real,
-                           std::numeric_limits<double>::quiet_NaN()});
+        columns.push_back({names[c], names[c], printable(units[c]), ColumnType::real, nan});
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }

@@ -8,11 +8,11 @@
 #include "durable_file.hpp"
 #include "hdf5_driver.hpp"
 #include "hdf5_write.hpp"
+#include "nan.hpp"
 #include "store_sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace credence {
 
@@ -20,7 +20,7 @@ inline const std::string results_format = "credence results", trajectories_forma
 inline const std::string run_group = "run";
 
 /// NaNs come with different bits from different processors; files hold one of them.
-inline double one_nan(double value) { return value == value ? value : std::numeric_limits<double>::quiet_NaN(); }
+inline double one_nan(double value) { return value == value ? value : nan; }
 
 /// The group /run would be mistaken for a scenario, and the other way round.
 inline void refuse_reserved_name(const Declaration& scenario) {

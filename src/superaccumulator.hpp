@@ -3,12 +3,13 @@
 
 #include <credence/exact_sum.hpp>
 
+#include "nan.hpp"
+
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 namespace credence {
 
@@ -38,7 +39,7 @@ public:
 
     ExactSum sum() const {
         ExactSum sum;
-        if (!finite_) sum.add(std::numeric_limits<double>::quiet_NaN());
+        if (!finite_) sum.add(nan);
         for (std::size_t c = 0; c < chunks_.size(); ++c) {
             if (chunks_[c] == 0) continue;
             const std::int64_t high = chunks_[c] >> 32, low = chunks_[c] & 0xffffffff;  // each exact as a double

@@ -33,29 +33,32 @@ std::function<void(const Handle&)> extents(const std::string& name, const hdf5::
     };
 }
 
-/// Chunks that a filter was applied to, which this HDF5 does not have (Zstandard's number).
-void write_with_unknown_filter(const Handle& root) {
+using Three = const hsize_t (&)[3];
+
+/// `error` anew and without values, of this size and in such chunks; with a filter that this HDF5 does not have
+/// (Zstandard's number).
+Handle chunked_error(const Handle& root, Three size, Three chunk, bool unknown_filter) {
     remove(root, "error");
-    const hsize_t size[] = {3, 4, 2};
     const Handle space(H5Screate_simple(3, size, nullptr), H5Sclose, "", "");
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "", "");
-    H5Pset_chunk(properties.id(), 3, size);
-    H5Pset_filter(properties.id(), 32015, H5Z_FLAG_OPTIONAL, 0, nullptr);
-    const Handle dataset(H5Dcreate2(root.id(), "error", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(),
-                                    H5P_DEFAULT), H5Dclose, "", "cannot make the dataset");
+    H5Pset_chunk(properties.id(), 3, chunk);
+    if (unknown_filter) H5Pset_filter(properties.id(), 32015, H5Z_FLAG_OPTIONAL, 0, nullptr);
+    return {H5Dcreate2(root.id(), "error", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+            H5Dclose, "", "cannot make the dataset"};
+}
+
+void write_with_unknown_filter(const Handle& root) {
+    const hsize_t size[] = {3, 4, 2};
+    const Handle dataset = chunked_error(root, size, size, true);
     const std::vector<double> values(24, 0.5);
     H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
 /// Room for many trials, in chunks of which only the first was written.
 void claim_trials(const Handle& root) {
-    remove(root, "error");
     const hsize_t size[] = {100000, 1, 2}, chunk[] = {64, 1, 2}, first[] = {0, 0, 0};
-    const Handle space(H5Screate_simple(3, size, nullptr), H5Sclose, "", "");
-    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "", "");
-    H5Pset_chunk(properties.id(), 3, chunk);
-    const Handle dataset(H5Dcreate2(root.id(), "error", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(),
-                                    H5P_DEFAULT), H5Dclose, "", "cannot make the dataset");
+    const Handle dataset = chunked_error(root, size, chunk, false);
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose, "", "");
     const Handle memory(H5Screate_simple(3, chunk, nullptr), H5Sclose, "", "");
     H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first, nullptr, chunk, nullptr);
     const std::vector<double> values(128, 0.5);
