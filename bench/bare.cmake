@@ -32,7 +32,7 @@ without(include/credence/judge.hpp
   "    add_by_block(layout, square, write)" "    (void)square"
   "    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
 without(include/credence/update.hpp
-  "    update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone)" "    (void)0"
+  "return nis_of_edges(belief.covariance, filter, layout, contrasts, work)" "return (void)work, Real(0)"
   "    update.nis_features = update.nis" "    (void)0")
 # What is left: NEES by block, NIS, its rows, trace(P).
 without(include/credence/simulate_batch.hpp

@@ -40,7 +40,7 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
     Outcome<Real> outcome;
     Real figures[room];
     start_truth(work.truth, problem.world, layout.features(), draws);
-    for (int j = 0; j < problem.features; ++j) work.sightings[j] = first_sight(work.truth, problem.sensor, j, draws);
+    look_first(work.truth, problem.sensor, layout.features(), draws, work.sightings);
     start_belief(work.belief, problem.filter, layout, work.sightings);
     look(work.truth, problem.sensor, layout, 1, draws, work.sightings);
     const auto edge_measurement = [&](int e) {

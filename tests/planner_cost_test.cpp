@@ -110,17 +110,24 @@ TEST_CASE("planner: no candidate costs less than its bound") {
             auto& screening = planner.work->screening;
             const ValueParameters parameters = value_parameters(view.sensor, view.filter);
             const auto& still = planner.work->still;
+            const auto check = [&](auto ranged) {
+                value_candidates<ranged()>(still, planner.heading, view.control, view.filter, view.sensor, layout,
+                                           parameters, 0, count, screening);
+                for (const int reference : {0, count / 3, count - 1}) {  // any reference will do
+                    const auto tangent =
+                        tangent_at(planner.work->space.position + planner.move(reference), still, planner.heading,
+                                   view.filter, view.sensor, layout, parameters.kappa, screening);
+                    for (int i = 0; i < count; i += 3) {
+                        const auto value = [&](int j) { return value_of<ranged()>(screening, parameters, i, j); };
+                        CHECK(tangent.bound(view.control.candidates[i].move, layout, value) <=
+                              planner.plain(i) * (1 + 1e-9));
+                    }
+                }
+            };
             if (view.sensor.noise == RangeNoise::ranged)
-                value_candidates<true>(still, planner.heading, view.control, view.filter, view.sensor, layout, parameters, 0, count,
-                                       screening);
+                check(std::true_type{});
             else
-                value_candidates<false>(still, planner.heading, view.control, view.filter, view.sensor, layout, parameters, 0, count, screening);
-            for (const int reference : {0, count / 3, count - 1}) {  // any reference will do
-                const auto rest = tangent(still, planner.work->space.position + planner.move(reference), view.filter,
-                                          view.sensor, layout, parameters.kappa, screening);
-                for (int i = 0; i < count; i += 3)
-                    CHECK(bound_of(rest, planner.move(i), screening.value[i], layout, screening) <= planner.plain(i) * (1 + 1e-9));
-            }
+                check(std::false_type{});
         });
 }
 
@@ -138,10 +145,14 @@ TEST_CASE("planner: the bound touches the cost at its reference, and its slope i
         auto& screening = planner.work->screening;
         const double kappa = least_feature_variance(planner.view.filter);
         for (int i = 0; i < planner.view.control.candidate_count; i += 7) {
-            const auto rest = tangent(planner.work->still, planner.work->space.position + planner.move(i),
-                                      planner.view.filter, planner.view.sensor, layout, kappa, screening);
-            const double here = bound_of(rest, planner.move(i), values(planner, i).data(), layout, screening);
-            const double there = bound_of(rest, planner.move(i), values(beside, i).data(), layout, screening);
+            const auto tangent =
+                tangent_at(planner.work->space.position + planner.move(i), planner.work->still, planner.heading,
+                           planner.view.filter, planner.view.sensor, layout, kappa, screening);
+            const auto bound = [&](auto& of) {
+                const auto v = values(of, i);
+                return tangent.bound(planner.view.control.candidates[i].move, layout, [&](int j) { return v[j]; });
+            };
+            const double here = bound(planner), there = bound(beside);
             CHECK(relative(here, planner.cost(i)) < 1e-9);
             // A tangent is off by the square of the distance: 1e-4 of the change.
             const double change = beside.cost(i) - planner.cost(i);

@@ -128,10 +128,11 @@ TEST_CASE("sensor: the first sight is in the world frame, whatever the range and
     truth.heading = 1.1;
     truth.rotation = rotation(1.1);
     const SensorParameters sensor = sensor_of({{"sensor.sigma", "0.5"}});
+    Sighting<double> sights[3];
+    look_first(truth, sensor, 3, measurement_noise({2, -3}), sights);
     for (int j = 0; j < 3; ++j) {
-        const Sighting<double> sight = first_sight(truth, sensor, j, measurement_noise({2, -3}));
-        CHECK(distance(sight.z, truth.feature[j].x + 1, truth.feature[j].y - 1.5) < rounding);
-        CHECK(sight.sigma == 0.5);
+        CHECK(distance(sights[j].z, truth.feature[j].x + 1, truth.feature[j].y - 1.5) < rounding);
+        CHECK(sights[j].sigma == 0.5);
     }
 }
 

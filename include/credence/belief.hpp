@@ -76,20 +76,38 @@ struct Elimination {
     Real e[capacity];
 };
 
-/// e' A^-1 e over the rows [i, i + 2), which are then eliminated from the rows [first, i).
+/// use(room); where the loops are written out, use(another room), of which the compiler keeps in registers what it can.
+template <class Layout, class Room, class Use>
+CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
+    if constexpr (Layout::written_out) {
+        Room own;
+        return use(own);
+    } else {
+        return use(room);
+    }
+}
+
+/// e' A^-1 e over the rows [i, i + 2), which are then eliminated from the rows [first, i): what is left of A and e goes
+/// into `left`, which may be where they are.
 template <class Real, int capacity, class First, class Index>
-CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& left, First first, Index i) {
-    auto& A = left.A.entry;
+CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
+                                                  First first, Index i, Elimination<Real, capacity>& left) {
+    const auto& A = matrix.entry;
     const Inverse2<Real> pivot = inverse(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
-    const Vector2<Real> e{left.e[i], left.e[i + one]};
+    const Vector2<Real> e{vector[i], vector[i + one]};
     each(first, i, [&](auto k) {
         const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
-        left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, left.e[k]));
+        left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
         each(first, k + one, [&](auto m) {
-            A[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+            left.A.entry[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
         });
     });
     return {between(e, pivot, e), pivot.positive_definite};
+}
+
+template <class Real, int capacity, class First, class Index>
+CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& left, First first, Index i) {
+    return eliminate_pair(left.A, left.e, first, i, left);
 }
 
 /// e' P^-1 e over the blocks [i, last) of the state, for i = last - 2, last - 4 ... down to first, each with that
@@ -98,10 +116,6 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& l
 template <class Real, int capacity, class First, class Last, class Told>
 CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
                                            Last last, Elimination<Real, capacity>& left, Told&& told) {
-    each(first, last, [&](auto i) {
-        left.e[i] = error[i];
-        each(i, last, [&](auto j) { left.A.entry[i][j] = P.entry[i][j]; });
-    });
     SquaredError<Real> sum{Real(0), all_lanes<Real>()};
     const auto add = [&](auto i, const SquaredError<Real>& part) {
         sum = {sum.value + part.value, both(sum.positive_definite, part.positive_definite)};
@@ -109,11 +123,13 @@ CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, c
     };
     each(zero, half(last - first), [&](auto pair) {
         const auto i = last - two * (pair + one);
-        add(i, eliminate_pair(left, first, i));
+        add(i, pair == 0 ? eliminate_pair(P, error, first, i, left) : eliminate_pair(left, first, i));
     });
     if ((last - first) % 2 != 0) {
-        const Real pivot = left.A.entry[first][first];
-        add(first, {left.e[first] * left.e[first] / pivot, pivot > Real(0)});
+        const bool alone = last - first == 1;
+        const Real pivot = alone ? P.entry[first][first] : left.A.entry[first][first];
+        const Real e = alone ? error[first] : left.e[first];
+        add(first, {e * e / pivot, pivot > Real(0)});
     }
 }
 

@@ -47,7 +47,8 @@ struct ContrastRows {
         Vector2<Real> sum{column(start), column(start + one)};
         each(first + one, layout.features(), [&](auto j) {
             const auto f = Layout::feature(j);
-            if (coefficient[j] != 0)
+            // Written out, a product with 0 costs less than to look; it changes nothing.
+            if (Layout::written_out || coefficient[j] != 0)
                 sum = add_scaled(sum, Real(coefficient[j]), Vector2<Real>{column(f), column(f + one)});
         });
         return sum;
@@ -76,11 +77,11 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
     const Vector2<Real> HWx = rows([&](auto s) { return W[s].x; });
     const Vector2<Real> HWy = rows([&](auto s) { return W[s].y; });
     const Inverse2<Real> S_inverse = inverse(HWx.x + N, HWx.y, HWy.y + N, used);
-    reload_memory();
+    auto& entry = read_anew(P).entry;
     each(zero, n, [&](auto i) {
         const Vector2<Real> K = times(S_inverse, W[i]);
         gained(i, K);
-        each(i, n, [&](auto j) { P.entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, P.entry[i][j])); });
+        each(i, n, [&](auto j) { entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, entry[i][j])); });
     });
     return S_inverse;
 }

@@ -31,7 +31,7 @@ struct DrawKey {
 
 inline namespace CREDENCE_UNIT {
 
-/// Four 32-bit words, each in the low half of a 64-bit one (one per lane).
+/// Four 32-bit words, each in the low half of a 64-bit one (one per lane); the high halves hold nothing in particular.
 template <class Word>
 struct PhiloxBlock {
     Word word[4];
@@ -57,7 +57,6 @@ struct PhiloxKeys {
 template <class Word>
 PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, const PhiloxKeys& keys) {
     Word w0 = counter.word[0], w1 = counter.word[1], w2 = counter.word[2], w3 = counter.word[3];
-    // What the rounds leave in the upper halves is never read: products take the lower ones.
     each(zero, Known<PhiloxKeys::rounds>{}, [&](auto round) CREDENCE_INLINE_LAMBDA {
         const Word product0 = widening_product(w0, 0xD2511F53u), product1 = widening_product(w2, 0xCD9E8D57u);
         w0 = exclusive_or(product1 >> 32, w1, Word(keys.round[round][0]));
@@ -65,14 +64,14 @@ PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, const PhiloxKeys& keys) {
         w1 = product1;
         w3 = product0;
     });
-    constexpr std::uint64_t lower_half = 0xffffffff;
-    return {{w0 & lower_half, w1 & lower_half, w2 & lower_half, w3 & lower_half}};
+    return {{w0, w1, w2, w3}};
 }
 
-/// 52 bits as a number in [1, 2).
+/// 52 bits of two words as a number in [1, 2).
 template <class Real>
 Real in_one_to_two(Bits<Real> high, Bits<Real> low) {
-    return from_bits((((high << 32) | low) >> 12) | 0x3ff0000000000000u);
+    constexpr std::uint64_t lower_half = 0xffffffff;
+    return from_bits((((high << 32) | (low & lower_half)) >> 12) | 0x3ff0000000000000u);
 }
 
 /// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).
@@ -97,7 +96,9 @@ public:
           truncate_(truncate) {}
 
     Vector2<Real> normal(Source source, int pose, int index) const {
-        return truncated(box_muller<Real>(block(source, pose, index, 0)), source, pose, index);
+        Vector2<Real> draw = box_muller<Real>(block(source, pose, index, 0));
+        if (truncates_) redraw(draw, source, pose, index);
+        return draw;
     }
 
     /// The same for several draws of one pose, step by step together.
@@ -110,9 +111,9 @@ public:
             each(zero, Known<4>{}, [&](auto word) { counter.word[word].part[i] = own.word[word]; });
         });
         const Vector2<Together> together = box_muller<Together>(philox(counter, keys_));
-        each(zero, Known<count>{}, [&](auto i) {
-            draws[i] = truncated({together.x.part[i], together.y.part[i]}, keys[i].source, pose, keys[i].index);
-        });
+        each(zero, Known<count>{}, [&](auto i) { draws[i] = {together.x.part[i], together.y.part[i]}; });
+        if (truncates_)
+            for (int i = 0; i < count; ++i) redraw(draws[i], keys[i].source, pose, keys[i].index);
     }
 
     Real uniform(Source source, int pose, int index) const {
@@ -125,13 +126,8 @@ private:
     /// sqrt(-2 log 2^-52) = 8.5: the transform gives nothing beyond.
     static constexpr double largest_draw = 9;
 
-    Vector2<Real> truncated(const Vector2<Real>& draw, Source source, int pose, int index) const {
-        return truncates_ ? redrawn(draw, source, pose, index) : draw;
-    }
-
-    /// The draw, or where a component lies beyond the truncation, what came of drawing it again. Kept out of the way of
-    /// those who do not truncate.
-    [[gnu::noinline]] Vector2<Real> redrawn(Vector2<Real> draw, Source source, int pose, int index) const {
+    /// Draws again what lies beyond the truncation. Kept out of the way of those who do not truncate.
+    [[gnu::noinline]] void redraw(Vector2<Real>& draw, Source source, int pose, int index) const {
         // Each component is redrawn by itself; the attempt's number is part of the key [model.md, Conventions].
         for (std::uint32_t again = 1; again < attempts; ++again) {
             const Mask<Real> redraw_x = absolute(draw.x) > truncate_, redraw_y = absolute(draw.y) > truncate_;
@@ -139,7 +135,6 @@ private:
             const Vector2<Real> next = box_muller<Real>(block(source, pose, index, again));
             draw = {select(redraw_x, next.x, draw.x), select(redraw_y, next.y, draw.y)};
         }
-        return draw;
     }
 
     /// Counter: trial (64 bits), pose (32), then attempt (12), source (4) and index (16).

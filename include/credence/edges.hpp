@@ -62,11 +62,15 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
             const Vector2<Real> x = other([&](auto s) { return W[s].x; }), y = other([&](auto s) { return W[s].y; });
             const Real noise = Real(c == d ? contrast.scale * filter.variance_edge : 0);
             const auto column = two * d;
-            const bool cross_idle = idle || filter.contrasts[d].scale == 0;
-            S[row][column] = cross_idle ? Real(c == d) : x.x + noise;
-            S[row][column + one] = cross_idle ? Real(0) : x.y;
-            if (c != d) S[row + one][column] = cross_idle ? Real(0) : y.x;
-            S[row + one][column + one] = cross_idle ? Real(c == d) : y.y + noise;
+            S[row][column] = x.x + noise;
+            S[row][column + one] = x.y;
+            if (c != d) S[row + one][column] = y.x;
+            S[row + one][column + one] = y.y + noise;
+            if (idle || filter.contrasts[d].scale == 0) {
+                S[row][column] = S[row + one][column + one] = Real(c == d);
+                S[row][column + one] = Real(0);
+                if (c != d) S[row + one][column] = Real(0);
+            }
         });
         work.e[row] = idle ? Real(0) : innovations.nu[c].x;
         work.e[row + one] = idle ? Real(0) : innovations.nu[c].y;

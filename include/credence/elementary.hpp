@@ -47,7 +47,8 @@ Real sqrt_from_below(Real x) {
     return xy * fnma(Real(0.5) * xy, y, Real(1.5));
 }
 
-/// sin and cos of |r| <= pi/4 by their Taylor series (next terms below 1e-17), turned by `quadrant` quarter turns.
+/// sin and cos of |r| <= pi/4 by their Taylor series (next terms below 1e-17), turned by `quadrant` quarter turns, of
+/// which the two lowest bits count.
 template <class Real>
 Rotation<Real> rotation_in_quadrant(Real r, Bits<Real> quadrant) {
     const Real s = r * r;
@@ -69,11 +70,10 @@ Rotation<Real> rotation_in_quadrant(Real r, Bits<Real> quadrant) {
     cosine = fma(cosine, s, Real(1.0 / 24));
     cosine = fma(cosine, s, Real(-0.5));
     cosine = fma(cosine, s, Real(1));
+    constexpr std::uint64_t sign = 0x8000000000000000u;
     const Mask<Real> odd = (quadrant & 1u) != 0u;
-    const Bits<Real> sine_sign = (quadrant & 2u) << 62;
-    const Bits<Real> cosine_sign = ((quadrant + 1u) & 2u) << 62;
-    return {from_bits(bits_of(select(odd, sine, cosine)) ^ cosine_sign),
-            from_bits(bits_of(select(odd, cosine, sine)) ^ sine_sign)};
+    return {from_bits(bits_of(select(odd, sine, cosine)) ^ (((quadrant + 1u) << 62) & sign)),
+            from_bits(bits_of(select(odd, cosine, sine)) ^ ((quadrant << 62) & sign))};
 }
 
 /// cos and sin of an angle in radians. Full accuracy for |angle| < 2^30; beyond 2^51 the value is meaningless but the
@@ -88,7 +88,7 @@ Rotation<Real> rotation(Real angle) {
     Real r = fnma(quarters, Real(half_pi_high), angle);
     r = fnma(quarters, Real(half_pi_middle), r);
     r = fnma(quarters, Real(half_pi_low), r);
-    return rotation_in_quadrant(r, bits_of(shifted) & 3u);
+    return rotation_in_quadrant(r, bits_of(shifted));
 }
 
 /// cos and sin of 2 pi `turns`, turns in [0, 1).
@@ -97,7 +97,7 @@ Rotation<Real> rotation_of_turns(Real turns) {
     const Real quarters = Real(4) * turns;
     const Real shifted = quarters + Real(integer_shifter);
     const Real rest = quarters - (shifted - Real(integer_shifter));
-    return rotation_in_quadrant(rest * Real(pi / 2), bits_of(shifted) & 3u);
+    return rotation_in_quadrant(rest * Real(pi / 2), bits_of(shifted));
 }
 
 /// A heading difference brought to [-pi, pi].

@@ -65,7 +65,7 @@ struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
     }
 
 private:
-    Vector2<Real> position_;                         ///< r^-, predicted, of the last pose that was predicted
+    Vector2<Real> position_{};                       ///< r^-, predicted, of the last pose that was predicted
     Vector2<Real> first_[Layout::feature_capacity];  ///< first estimates of the features, of this pose
 };
 

@@ -55,7 +55,7 @@ struct IdealFilter : KalmanFilter<Layout, Real> {
     }
 
 private:
-    Vector2<Real> position_;  ///< true, of the pose before
+    Vector2<Real> position_{};  ///< true, of the pose before
 };
 
 }  // namespace CREDENCE_UNIT

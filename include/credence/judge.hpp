@@ -169,7 +169,9 @@ CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
     Real error[state_capacity];
     Judgement<Layout, Real> judgement;
     estimation_error(belief, truth, layout, error);
-    judge_blocks(belief, layout, error, work, judgement);
+    near_at_hand(layout, work, [&](auto& left) CREDENCE_INLINE_LAMBDA {
+        judge_blocks(belief, layout, error, left, judgement);
+    });
     // What is reported is P times a factor, 1 but for tests of the judge.
     const double reported = problem.filter.covariance_factor;
     const Mask<Real> positive_definite = both(update.positive_definite, judgement.positive_definite);

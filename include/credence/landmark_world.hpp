@@ -46,9 +46,8 @@ void start_truth(Truth<Real, capacity>& truth, const LandmarkParameters& world, 
 /// What the filter is told of the motion to pose k: omega - sigma_head eps, v - sigma_odom eps (body frame).
 template <class Real, class Noise>
 CREDENCE_FLAT Command<Real> told_motion(const LandmarkParameters& world, int k, const Noise& noise) {
-    constexpr DrawKey keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
     Vector2<Real> draws[2];
-    draw_several(noise, keys, k, draws);
+    draw_several(noise, robot_keys, k, draws);
     const Control& motion = world.motion[k - 1];
     return {fnma(Real(world.sigma_heading), draws[1].x, Real(motion.turn)),
             add_scaled(broadcast<Real>(motion.move), Real(-world.sigma_odometry), draws[0])};

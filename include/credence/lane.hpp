@@ -38,7 +38,7 @@ template <int W>
 struct LaneBits {
     using V = typename LaneTypes<W>::Unsigned;
     V v;
-    LaneBits() : v{} {}
+    LaneBits() = default;
     LaneBits(V raw) : v(raw) {}
     LaneBits(std::uint64_t one) : v(V{} + one) {}
 
@@ -63,9 +63,9 @@ template <int W>
 struct Lane {
     using V = typename LaneTypes<W>::Doubles;
     V v;
-    Lane() : v{} {}
+    Lane() = default;
     Lane(V raw) : v(raw) {}
-    explicit Lane(double one) : v(V{} + one) {}
+    explicit Lane(double one) : v(one - V{}) {}
     explicit Lane(int one) : Lane(static_cast<double>(one)) {}
 
     friend Lane operator+(Lane a, Lane b) { return a.v + b.v; }

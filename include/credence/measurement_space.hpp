@@ -18,7 +18,7 @@ inline namespace CREDENCE_UNIT {
 
 template <class Real>
 struct Matrix2 {
-    Real xx{}, xy{}, yx{}, yy{};
+    Real xx, xy, yx, yy;
 };
 
 /// a b' added to m.
@@ -208,13 +208,15 @@ template <class Layout, class Real>
 CREDENCE_FLAT Real cost_in_measurement_space(const MeasurementSpace<Layout, Real>& space, const Vector2<Real>& u,
                                              const FilterParameters& filter, const SensorParameters& sensor,
                                              const Layout& layout, MeasurementElimination<Layout, Real>& work) {
-    form_candidate(space, u, filter, sensor, layout, work);
-    Real cost = space.prior.constant;
-    if constexpr (Layout::has_heading) cost = space.prior.at({-u.y, u.x}, squared_norm(u));
-    each(zero, layout.features(), [&](auto j) {
-        if (any(work.seen[j])) cost = cost - take_out(layout, j, work);
+    return near_at_hand(layout, work, [&](auto& near) CREDENCE_INLINE_LAMBDA {
+        form_candidate(space, u, filter, sensor, layout, near);
+        Real cost = space.prior.constant;
+        if constexpr (Layout::has_heading) cost = space.prior.at({-u.y, u.x}, squared_norm(u));
+        each(zero, layout.features(), [&](auto j) CREDENCE_INLINE_LAMBDA {
+            if (any(near.seen[j])) cost = cost - take_out(layout, j, near);
+        });
+        return cost;
     });
-    return cost;
 }
 
 }  // namespace CREDENCE_UNIT

@@ -53,10 +53,11 @@ Choice<Real> choose_by_screening(const ControlParameters& control, const FilterP
         const Real reference = value_candidates<ranged>(still, heading, control, filter, sensor, layout, parameters,
                                                         first, count, screening);
         Command<Real> command = fetch_each(control, reference);
-        const TurnedTrace<Real> rest = tangent(still, space.position + world_move<Layout>(heading, command.move),
-                                               filter, sensor, layout, parameters.kappa, screening);
+        const Tangent<Layout, Real> tangent =
+            tangent_at(space.position + world_move<Layout>(heading, command.move), still, heading, filter, sensor,
+                       layout, parameters.kappa, screening);
         const Real threshold = smaller(cost(command), smaller(choice.best, limit)) * Real(1 + 1e-9);
-        screen(rest, threshold, heading, control, layout, first, count, screening);
+        screen<ranged>(tangent, threshold, control, layout, parameters, first, count, screening);
         for (int turn = 0;; ++turn) {
             const Mask<Real> offered = fetch_queued(control, screening, turn, command);
             if (!any(offered)) break;

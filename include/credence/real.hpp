@@ -57,18 +57,24 @@ inline bool negated(bool mask) { return !mask; }
 inline bool finite(double x) { return x - x == 0.0; }
 inline double absolute(double x) { return __builtin_fabs(x); }
 
-/// Tells the compiler to read memory anew from here on: what it would keep of large arrays does not fit the registers,
-/// and goes to the stack and back.
-inline void reload_memory() { asm volatile("" ::: "memory"); }
+/// The same object, of which the compiler forgets what it has read: what it would keep of large arrays does not fit the
+/// registers, and goes to the stack and back.
+template <class T>
+T& read_anew(T& object) {
+    T* place = &object;
+    asm("" : "+r"(place));
+    return *place;
+}
 
 /// Added to |x| < 2^51 and taken away again, it rounds x to the nearest integer, ties to even; while it is added, the
 /// low bits of the sum are those of the integer.
 inline constexpr double integer_shifter = 6755399441055744.0;  // 1.5 * 2^52
 
-/// A vector of the plane.
+/// A vector of the plane. Like a Real, it holds nothing in particular until it is told: arrays of vectors that began
+/// with zeros would be kept in memory, not in registers.
 template <class Real>
 struct Vector2 {
-    Real x{}, y{};
+    Real x, y;
 };
 
 template <class Real>

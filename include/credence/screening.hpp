@@ -19,13 +19,12 @@ inline constexpr int screening_chunk = 128;
 
 template <class Layout, class Real>
 struct ScreeningWorkspace {
-    Real value[screening_chunk][Layout::feature_capacity];   ///< v_j of each candidate
-    Symmetric<Real, Layout::capacity> covariance;            ///< of the reference
-    TurnedTrace<Real> slope[Layout::feature_capacity];       ///< -d trace / d v_j
-    int queue[lanes<Real>][screening_chunk];                 ///< each lane's candidates that are left, in order
+    Real value[screening_chunk][Layout::feature_capacity];       ///< v_j of each candidate, where the noise is ranged
+    Mask<Real> seen[screening_chunk][Layout::feature_capacity];  ///< where it is constant: whether v_j is not 0
+    Symmetric<Real, Layout::capacity> covariance;                ///< of the reference
+    int queue[lanes<Real>][screening_chunk];                     ///< each lane's candidates that are left, in order
     int queued[lanes<Real>];
 };
-
 
 /// kappa: with fresh feature noise q, and at most lambda for the largest eigenvalue of the edge graph's Laplacian,
 /// P_ff >= (1/q + lambda/sigma_edge^2)^-1.
@@ -84,9 +83,13 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
         Real sum = Layout::has_heading ? -(price * squared_norm(u)) : Real(0);
         each(zero, layout.features(), [&](auto j) {
             const Real squared = squared_range(there, point_at(still.mean, Layout::feature(j)));
-            const Real value = greatest_value<ranged>(parameters, squared);
-            work.value[i][j] = select(in_range(sensor, squared), value, Real(0));
-            sum = sum + work.value[i][j];
+            const Mask<Real> seen = in_range(sensor, squared);
+            const Real value = select(seen, greatest_value<ranged>(parameters, squared), Real(0));
+            if constexpr (ranged)
+                work.value[i][j] = value;
+            else
+                work.seen[i][j] = seen;
+            sum = sum + value;
         });
         const Mask<Real> more = sum > most;
         most = select(more, sum, most);
@@ -95,12 +98,18 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
     return reference;
 }
 
+/// v_j of candidate i, as value_candidates found it.
+template <bool ranged, class Layout, class Real, class Index>
+Real value_of(const ScreeningWorkspace<Layout, Real>& work, const ValueParameters& parameters, int i, Index j) {
+    if constexpr (ranged) return work.value[i][j];
+    return select(work.seen[i][j], greatest_value<ranged>(parameters, Real(0)), Real(0));
+}
+
 /// |T W|^2 of W = A H0_j', times `weight`, as a polynomial in a.
 template <class Layout, class Real, int capacity, class Rows>
 TurnedTrace<Real> turned_norm(const Symmetric<Real, capacity>& A, const Layout& layout, const Rows& rows, Real weight) {
     Vector2<Real> W[capacity];
-    TurnedTrace<Real> result;
-    result.constant = Real(0);
+    TurnedTrace<Real> result{};
     each(zero, layout.size(), [&](auto i) {
         W[i] = rows([&](auto s) { return A.at(i, s); });
         result.constant = fma(W[i].y, W[i].y, fma(W[i].x, W[i].x, result.constant));
@@ -116,11 +125,39 @@ TurnedTrace<Real> turned_norm(const Symmetric<Real, capacity>& A, const Layout& 
     return result;
 }
 
-/// Conditions on the sightings from `there`; fills the slopes and returns the tangent's part that no v changes.
+/// A polynomial in a = J R(theta^) v as one in v, a candidate's move in the body frame, which is the same in all lanes.
+template <class Layout, class Real>
+TurnedTrace<Real> in_body_frame(const TurnedTrace<Real>& trace, const Rotation<Real>& heading) {
+    if constexpr (!Layout::has_heading) return trace;
+    return {trace.constant, trace.quadratic, rotate_back(heading, Vector2<Real>{trace.linear.y, -trace.linear.x})};
+}
+
+/// The tangent at a reference, by the move in the body frame.
+template <class Layout, class Real>
+struct Tangent {
+    TurnedTrace<Real> rest;                            ///< what no v_j changes
+    TurnedTrace<Real> slope[Layout::feature_capacity]; ///< -d trace / d v_j
+
+    /// The lowest cost that is left to a candidate whose v_j are value(j).
+    template <class Value>
+    Real bound(const Point& move, const Layout& layout, const Value& value) const {
+        const Vector2<Real> v = broadcast<Real>(move);
+        const Real squared = Real(move.x * move.x + move.y * move.y);
+        const auto at_move = [&](const TurnedTrace<Real>& trace) {
+            return Layout::has_heading ? trace.at(v, squared) : trace.constant;
+        };
+        Real least = at_move(rest);
+        each(zero, layout.features(), [&](auto j) { least = fnma(at_move(slope[j]), value(j), least); });
+        return least;
+    }
+};
+
+/// The tangent where the reference has moved to `there`.
 template <class Layout, class Real, int capacity>
-CREDENCE_FLAT TurnedTrace<Real> tangent(const Belief<Real, capacity>& still, const Vector2<Real>& there,
-                                        const FilterParameters& filter, const SensorParameters& sensor,
-                                        const Layout& layout, double kappa, ScreeningWorkspace<Layout, Real>& work) {
+CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const Belief<Real, capacity>& still,
+                                               const Rotation<Real>& heading, const FilterParameters& filter,
+                                               const SensorParameters& sensor, const Layout& layout, double kappa,
+                                               ScreeningWorkspace<Layout, Real>& work) {
     copy(still.covariance, layout.size(), work.covariance);
     Real value[Layout::feature_capacity], weight[Layout::feature_capacity];
     each(zero, layout.features(), [&](auto j) {
@@ -132,39 +169,30 @@ CREDENCE_FLAT TurnedTrace<Real> tangent(const Belief<Real, capacity>& still, con
         weight[j] = ratio * ratio;
         if (any(seen)) condition(work.covariance, layout, sighting_rows<Layout>(still.mean, j), N, seen);
     });
+    Tangent<Layout, Real> tangent;
     TurnedTrace<Real> rest = turned_trace(work.covariance, layout);
     each(zero, layout.features(), [&](auto j) {
-        work.slope[j] = turned_norm(work.covariance, layout, sighting_rows<Layout>(still.mean, j), weight[j]);
-        rest.constant = fma(work.slope[j].constant, value[j], rest.constant);
-        rest.linear = add_scaled(rest.linear, value[j], work.slope[j].linear);
-        rest.quadratic = fma(work.slope[j].quadratic, value[j], rest.quadratic);
+        const TurnedTrace<Real> slope =
+            turned_norm(work.covariance, layout, sighting_rows<Layout>(still.mean, j), weight[j]);
+        rest.constant = fma(slope.constant, value[j], rest.constant);
+        rest.linear = add_scaled(rest.linear, value[j], slope.linear);
+        rest.quadratic = fma(slope.quadratic, value[j], rest.quadratic);
+        tangent.slope[j] = in_body_frame<Layout>(slope, heading);
     });
-    return rest;
+    tangent.rest = in_body_frame<Layout>(rest, heading);
+    return tangent;
 }
 
-/// The lowest cost that the tangent leaves to a candidate whose v_j are `value`.
-template <class Layout, class Real>
-Real bound_of(const TurnedTrace<Real>& rest, const Vector2<Real>& u, const Real* value, const Layout& layout,
-              const ScreeningWorkspace<Layout, Real>& work) {
-    const Vector2<Real> a{-u.y, u.x};
-    const Real squared_a = squared_norm(u);
-    Real bound = Layout::has_heading ? rest.at(a, squared_a) : rest.constant;
-    each(zero, layout.features(), [&](auto j) {
-        const Real slope = Layout::has_heading ? work.slope[j].at(a, squared_a) : work.slope[j].constant;
-        bound = fnma(slope, value[j], bound);
-    });
-    return bound;
-}
-
-/// Queues, lane by lane and in order, the candidates whose bound does not lie above `threshold`.
-template <class Layout, class Real>
-CREDENCE_FLAT void screen(const TurnedTrace<Real>& rest, Real threshold, const Rotation<Real>& heading,
-                          const ControlParameters& control, const Layout& layout, int first, int count,
+/// Queues, lane by lane and in order, the candidates first ... first + count - 1 whose bound does not lie above
+/// `threshold`.
+template <bool ranged, class Layout, class Real>
+CREDENCE_FLAT void screen(const Tangent<Layout, Real>& tangent, Real threshold, const ControlParameters& control,
+                          const Layout& layout, const ValueParameters& parameters, int first, int count,
                           ScreeningWorkspace<Layout, Real>& work) {
     for (int lane = 0; lane < lanes<Real>; ++lane) work.queued[lane] = 0;
     for (int i = 0; i < count; ++i) {
-        const Vector2<Real> u = world_move<Layout>(heading, broadcast<Real>(control.candidates[first + i].move));
-        const Real bound = bound_of(rest, u, work.value[i], layout, work);
+        const Real bound = tangent.bound(control.candidates[first + i].move, layout,
+                                         [&](auto j) { return value_of<ranged>(work, parameters, i, j); });
         for (unsigned left = lane_bits(negated(bound > threshold)); left != 0; left &= left - 1) {
             const int lane = __builtin_ctz(left);
             work.queue[lane][work.queued[lane]++] = first + i;

@@ -51,7 +51,7 @@ Real sigma_at(const SensorParameters& sensor, Real squared) {
 template <class Real>
 struct Sighting {
     Mask<Real> seen{};
-    Vector2<Real> z;  ///< body frame
+    Vector2<Real> z{};  ///< body frame
     Real sigma{};     ///< true standard deviation of each axis
 };
 
@@ -76,13 +76,17 @@ CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParamete
     });
 }
 
-/// The first estimate of feature j, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j})
-/// eps^meas_{0,j}.
-template <class Real, int capacity, class Noise>
-Sighting<Real> first_sight(const Truth<Real, capacity>& truth, const SensorParameters& sensor, int j,
-                           const Noise& noise) {
-    const Real sigma = sigma_at(sensor, squared_range(truth.position, truth.feature[j]));
-    return {Mask<Real>{}, add_scaled(truth.feature[j], sigma, noise.normal(Source::measurement, 0, j)), sigma};
+/// The first estimate of every feature, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j})
+/// eps^meas_{0,j}. `sightings` [M].
+template <class Real, int capacity, class Count, class Noise>
+void look_first(const Truth<Real, capacity>& truth, const SensorParameters& sensor, Count features, const Noise& noise,
+                Sighting<Real>* sightings) {
+    Vector2<Real> measurement[capacity];
+    draw_all(noise, Source::measurement, 0, features, measurement);
+    each(zero, features, [&](auto j) {
+        const Real sigma = sigma_at(sensor, squared_range(truth.position, truth.feature[j]));
+        sightings[j] = {Mask<Real>{}, add_scaled(truth.feature[j], sigma, measurement[j]), sigma};
+    });
 }
 
 /// Edge measurement z = p_b - p_a, world frame, with a noise of its own where the truth has one.

@@ -49,30 +49,35 @@ struct Unfolded {
     Real* next() { return figures + packs * cells; }
     void keep(Mask<Real> counted) { counts[packs++] = counted; }
     bool full() const { return packs == capacity; }
+    /// Octets of which pack number `start` is there: the last one may end before it.
+    int octets(int start) const { return (packs - start + packs_per_octet - 1) / packs_per_octet; }
 };
 
-/// Adds one figure's unfolded values to its running sums.
-template <class Real>
-void fold_figure(const Unfolded<Real>& unfolded, int f, int start, int steps, const Batch& batch) {
+/// Adds one figure's values, those of the packs start, start + stride ... of `octets` octets, to its running sums.
+template <class Real, class Octets>
+void fold_figure(const Unfolded<Real>& unfolded, int f, int start, Octets octets, int steps, const Batch& batch) {
     constexpr int stride = Unfolded<Real>::packs_per_octet;
     const int place = start * lanes<Real>;
     Real run_sum[fold_octets];
-    for (Real& sum : run_sum) sum = Real(0);
+    each(zero, octets, [&](auto i) CREDENCE_INLINE_LAMBDA { run_sum[i] = Real(0); });
     for (int cell = f * steps; cell < (f + 1) * steps; ++cell) {
         double *to = batch.sums + cell * octet + place, *to_square = batch.square_sums + cell * octet + place;
         Real sum = load<Real>(to), square_sum = load<Real>(to_square);
-        for (int pack = start, i = 0; pack < unfolded.packs; pack += stride, ++i) {
+        each(zero, octets, [&](auto i) CREDENCE_INLINE_LAMBDA {
+            const int pack = start + i * stride;
             const Real value = select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
             sum = sum + value;
             square_sum = fma(value, value, square_sum);
             run_sum[i] = run_sum[i] + value;
-        }
+        });
         store(sum, to);
         store(square_sum, to_square);
     }
     double* to = batch.run_square_sums + f * octet + place;
     Real run_square_sum = load<Real>(to);
-    for (int i = 0; i < fold_octets; ++i) run_square_sum = fma(run_sum[i], run_sum[i], run_square_sum);
+    each(zero, octets, [&](auto i) CREDENCE_INLINE_LAMBDA {
+        run_square_sum = fma(run_sum[i], run_sum[i], run_square_sum);
+    });
     store(run_square_sum, to);
 }
 
@@ -96,7 +101,11 @@ template <class Real>
 void fold(Unfolded<Real>& unfolded, const CommonView& problem, const Batch& batch) {
     const int steps = problem.poses - 1;
     for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start)
-        for (int f = 0; f < problem.figure_count; ++f) fold_figure(unfolded, f, start, steps, batch);
+        for (int f = 0; f < problem.figure_count; ++f)
+            if (const int octets = unfolded.octets(start); octets == fold_octets)
+                fold_figure(unfolded, f, start, Known<fold_octets>{}, steps, batch);
+            else
+                fold_figure(unfolded, f, start, octets, steps, batch);
     for (int b = 0; b < problem.block_count; ++b)
         fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
     unfolded.packs = 0;

@@ -34,7 +34,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
 
     // Pose 0: every feature is initialised, whatever its range.
     start_truth(truth, problem.world, features, noise);
-    for (int j = 0; j < features; ++j) sightings[j] = first_sight(truth, problem.sensor, j, noise);
+    look_first(truth, problem.sensor, features, noise, sightings);
     start_belief(belief, problem.filter, layout, sightings);
     Real error[Layout::capacity];
     estimation_error(belief, truth, layout, error);

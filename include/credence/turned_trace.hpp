@@ -11,7 +11,7 @@ inline namespace CREDENCE_UNIT {
 /// constant + a . linear + |a|^2 quadratic. In the translation model there is only the constant.
 template <class Real>
 struct TurnedTrace {
-    Real constant{}, quadratic{};
+    Real constant, quadratic;
     Vector2<Real> linear;
 
     Real at(const Vector2<Real>& a, Real squared_a) const {
@@ -22,7 +22,7 @@ struct TurnedTrace {
 /// trace(T A T'), T = I but T[r, theta] = a, as a polynomial in a.
 template <class Layout, class Real, int capacity>
 TurnedTrace<Real> turned_trace(const Symmetric<Real, capacity>& A, const Layout& layout) {
-    TurnedTrace<Real> result;
+    TurnedTrace<Real> result{};
     result.constant = trace(A, layout.size());
     if constexpr (Layout::has_heading) {
         constexpr auto t = Layout::heading;

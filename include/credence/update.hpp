@@ -14,20 +14,26 @@ void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& fi
                       const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                       const Linearisation& linearised, Update<Real, capacity>& update) {
     const auto n = layout.size();
-    update.nis = update.nis_edges = update.unseen = update.unsettled = Real(0);
-    update.rows = Real(2 * filter.edge_count);
+    update.nis = update.nis_edges = update.unsettled = Real(0);
+    Real rows = Real(2 * filter.edge_count), unseen = Real(0);
+    each(zero, layout.features(), [&](auto j) {
+        rows = rows + select(sightings[j].seen, Real(2), Real(0));
+        unseen = unseen + select(sightings[j].seen, Real(0), Real(1));
+    });
+    update.rows = rows;
+    update.unseen = unseen;
     update.positive_definite = all_lanes<Real>();
     each(zero, n, [&](auto i) { update.correction[i] = Real(0); });
     ContrastInnovations<Layout, Real> contrasts;
     if (filter.edge_count > 0) {
         contrast_innovations(belief, filter, layout, edge_measurement, contrasts);
-        update.nis_edges = nis_of_edges(belief.covariance, filter, layout, contrasts, update.alone);
+        update.nis_edges = near_at_hand(layout, update.alone, [&](auto& work) CREDENCE_INLINE_LAMBDA {
+            return nis_of_edges(belief.covariance, filter, layout, contrasts, work);
+        });
     }
 
     each(zero, layout.features(), [&](auto j) {
         const Sighting<Real>& sighting = sightings[j];
-        update.rows = update.rows + select(sighting.seen, Real(2), Real(0));
-        update.unseen = update.unseen + select(sighting.seen, Real(0), Real(1));
         if (!any(sighting.seen)) return;
         const auto [rows, innovation] = linearised(j, sighting);
         take_in(belief.covariance, layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,

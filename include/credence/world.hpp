@@ -26,11 +26,14 @@ struct WorldParameters {
 
 inline namespace CREDENCE_UNIT {
 
+/// What the robot draws at a pose.
+inline constexpr DrawKey robot_keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
+
 template <class Real, int feature_capacity>
 struct Truth {
     Real heading{};
     Rotation<Real> rotation;                     ///< R(heading); heading model only
-    Vector2<Real> position;
+    Vector2<Real> position{};
     Vector2<Real> centre[feature_capacity];
     Vector2<Real> feature[feature_capacity];
 };
@@ -55,10 +58,11 @@ void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world,
 /// The truth at pose 0: features about f_0, the robot at 0 (or drawn about it).
 template <class Real, int capacity, class Count, class Noise>
 void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, const Noise& noise) {
-    truth.heading = Real(world.sigma_initial_heading) * noise.normal(Source::odometry_heading, 0, 0).x;
+    Vector2<Real> draws[2];
+    draw_several(noise, robot_keys, 0, draws);
+    truth.heading = Real(world.sigma_initial_heading) * draws[1].x;
     truth.rotation = rotation(truth.heading);
-    truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position),
-                                noise.normal(Source::odometry_position, 0, 0));
+    truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position), draws[0]);
     each(zero, features, [&](auto j) { truth.centre[j] = broadcast<Real>(world.first_position[j]); });
     Vector2<Real> deformation[capacity];
     if (world.deformation == Deformation::jitter) draw_all(noise, Source::deformation, 0, features, deformation);
@@ -86,7 +90,7 @@ CREDENCE_FLAT void move_features(Truth<Real, capacity>& truth, const WorldParame
 template <class Real>
 struct Command {
     Real turn{};
-    Vector2<Real> move;
+    Vector2<Real> move{};
 };
 
 /// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
@@ -94,15 +98,14 @@ struct Command {
 template <class Layout, class Real, int capacity, class Noise>
 CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command,
                               int k, const Noise& noise) {
-    constexpr DrawKey keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
     Vector2<Real> move = command.move, draws[2];
     if constexpr (Layout::has_heading) {
-        draw_several(noise, keys, k, draws);
+        draw_several(noise, robot_keys, k, draws);
         move = rotate(truth.rotation, command.move);
         truth.heading = fma(Real(world.sigma_heading), draws[1].x, truth.heading + command.turn);
         truth.rotation = rotation(truth.heading);
     } else {
-        draws[0] = noise.normal(keys[0].source, k, keys[0].index);
+        draws[0] = noise.normal(robot_keys[0].source, k, robot_keys[0].index);
     }
     truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry), draws[0]);
 }
