@@ -47,7 +47,7 @@ struct ContrastRows {
         Vector2<Real> sum{column(start), column(start + one)};
         each(first + one, layout.features(), [&](auto j) {
             const auto f = Layout::feature(j);
-            // Written out, a product with 0 costs less than to look; it changes nothing.
+            // Written out, a product with 0 costs less than a look at the coefficient; it changes nothing finite.
             if (Layout::written_out || coefficient[j] != 0)
                 sum = add_scaled(sum, Real(coefficient[j]), Vector2<Real>{column(f), column(f + one)});
         });

@@ -65,7 +65,7 @@ struct Lane {
     V v;
     Lane() = default;
     Lane(V raw) : v(raw) {}
-    explicit Lane(double one) : v(one - V{}) {}
+    explicit Lane(double one) : v(one - V{}) {}  // unlike one + V{}, exact for -0: nothing is left to compute
     explicit Lane(int one) : Lane(static_cast<double>(one)) {}
 
     friend Lane operator+(Lane a, Lane b) { return a.v + b.v; }

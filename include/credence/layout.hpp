@@ -14,7 +14,7 @@ inline constexpr int any_count = 0;
 template <Process process, int compiled_features>
 struct Layout {
     static constexpr bool has_heading = process == Process::heading;
-    static constexpr bool written_out = compiled_features != any_count;
+    static constexpr bool written_out = compiled_features != any_count;  ///< loops over features are
     static constexpr Known<0> heading{};
     static constexpr Known<has_heading ? 1 : 0> position{};
     static constexpr Known<position + 2> pose_size{};
