@@ -27,9 +27,8 @@ without(include/credence/judge.hpp
   "    write(update.nis_features)" "    (void)0"
   "    write(update.nis_edges)" "    (void)0"
   "    write(update.unseen)" "    write(trace_P)"
-  "    each(zero, n, [&](auto i) { square[i] = error[i] * error[i]" "    each(zero, n, [&](auto) { (void)square"
-  "    each(zero, n, [&](auto i) { square[i] = Real(reported) * belief.covariance.entry[i][i]" "    each(zero, n, [&](auto) { (void)square"
-  "    add_by_block(layout, square, write)" "    (void)square"
+  "    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]" "    (void)([&](auto i) { return error[i] * error[i]"
+  "    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]" "    (void)([&](auto i) { return Real(reported) * belief.covariance.entry[i][i]"
   "    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
 without(include/credence/update.hpp
   "return nis_of_edges(belief.covariance, filter, layout, contrasts, work)" "return (void)work, Real(0)"

@@ -129,29 +129,27 @@ CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const La
     });
 }
 
-/// Squares of a state's components, added up by block: told(block, sum) in the order of Layout's blocks.
-template <class Layout, class Real, class Told>
-CREDENCE_INLINE void add_by_block(const Layout& layout, const Real* square, Told&& told) {
+/// square(i) of a state's components, added up by block: told(sum) in the order of Layout's blocks.
+template <class Real, class Layout, class Square, class Told>
+CREDENCE_INLINE void add_by_block(const Layout& layout, const Square& square, Told&& told) {
     constexpr auto r = Layout::position;
-    const Real position = square[r] + square[r + 1];
-    Real pose = position;
-    if constexpr (Layout::has_heading) pose = square[Layout::heading] + position;
-    Real features = Real(0);
-    each(zero, layout.features(), [&](auto j) {
+    const auto of_feature = [&](auto j) {
         const auto f = Layout::feature(j);
-        features = features + (square[f] + square[f + one]);
-    });
+        return square(f) + square(f + one);
+    };
+    const Real position = square(r) + square(r + one);
+    Real pose = position;
+    if constexpr (Layout::has_heading) pose = square(Layout::heading) + position;
+    Real features = Real(0);
+    each(zero, layout.features(), [&](auto j) { features = features + of_feature(j); });
     told(pose + features);
     told(pose);
     if constexpr (Layout::has_heading) {
-        told(square[Layout::heading]);
+        told(square(Layout::heading));
         told(position);
     }
     told(features);
-    each(zero, layout.features(), [&](auto j) {
-        const auto f = Layout::feature(j);
-        told(square[f] + square[f + one]);
-    });
+    each(zero, layout.features(), [&](auto j) { told(of_feature(j)); });
 }
 
 /// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
@@ -184,11 +182,8 @@ CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
     write(update.nis_features);
     write(update.nis_edges);
     write(update.unseen);
-    Real square[state_capacity];
-    each(zero, n, [&](auto i) { square[i] = error[i] * error[i]; });
-    add_by_block(layout, square, write);
-    each(zero, n, [&](auto i) { square[i] = Real(reported) * belief.covariance.entry[i][i]; });
-    add_by_block(layout, square, write);
+    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]; }, write);
+    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]; }, write);
     const Real inverse_root = Real(1 / __builtin_sqrt(reported));
     each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
     if constexpr (Layout::has_heading)
