@@ -41,23 +41,22 @@ CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const
                               const SensorParameters& sensor, const Layout& layout,
                               MeasurementElimination<Layout, Real>& work, VisibleSets<Real>& sets) {
     const Real N = believed_variance(filter, Real(sensor.sigma));
-    const auto price = [&](int set, auto& near) CREDENCE_INLINE_LAMBDA {
-        each(zero, layout.features(), [&](auto j) CREDENCE_INLINE_LAMBDA {
-            near.seen[j] = all_lanes<Real>();
-            each(j, layout.features(), [&](auto l) CREDENCE_INLINE_LAMBDA {
-                near.S[j][l] = space.A[j][l], near.C[j][l] = space.G[j][l];
+    near_at_hand(layout, work, [&](auto& near) CREDENCE_INLINE_LAMBDA {
+        for (int set = 0; set < 1 << layout.features(); ++set) {
+            each(zero, layout.features(), [&](auto j) CREDENCE_INLINE_LAMBDA {
+                near.seen[j] = all_lanes<Real>();
+                each(j, layout.features(), [&](auto l) CREDENCE_INLINE_LAMBDA {
+                    near.S[j][l] = space.A[j][l], near.C[j][l] = space.G[j][l];
+                });
+                near.S[j][j] = add_noise(near.S[j][j], N);
             });
-            near.S[j][j] = add_noise(near.S[j][j], N);
-        });
-        Real cost = space.prior.constant;
-        each(zero, layout.features(), [&](auto j) CREDENCE_INLINE_LAMBDA {
-            if (set >> j & 1) cost = cost - take_out(layout, j, near);
-        });
-        return cost;
-    };
-    for (int set = 0; set < 1 << layout.features(); ++set)
-        sets.cost[set] =
-            near_at_hand(layout, work, [&](auto& near) CREDENCE_INLINE_LAMBDA { return price(set, near); });
+            Real cost = space.prior.constant;
+            each(zero, layout.features(), [&](auto j) CREDENCE_INLINE_LAMBDA {
+                if (set >> j & 1) cost = cost - take_out(layout, j, near);
+            });
+            sets.cost[set] = cost;
+        }
+    });
 }
 
 /// Where some candidate sees the set.
