@@ -94,9 +94,14 @@ TEST_CASE("planner: every visible set is priced as the candidates that see it") 
                 VisibleSets<double>& sets = planner.work->sets;
                 gather_sets(planner.work->still, planner.view.control, planner.view.sensor, layout, sets);
                 price_sets(planner.work->space, planner.view.filter, planner.view.sensor, layout, *planner.room, sets);
-                for (int set = 0; set < 8; ++set)
-                    if (const int last = static_cast<int>(sets.last[set][0]); last >= 0)
-                        CHECK(relative(sets.cost[set], planner.plain(last)) < 1e-9);  // as above
+                unsigned seen_somewhere = 0;  // sets, as bits
+                for (int i = 0; i < planner.view.control.candidate_count; ++i) {
+                    int set = 0;
+                    for (int j = 0; j < 3; ++j) set |= sets.seeing[j][i] << j;
+                    seen_somewhere |= 1u << set;
+                    CHECK(relative(sets.cost[set], planner.plain(i)) < 1e-9);  // as above
+                }
+                for (int set = 0; set < 8; ++set) CHECK(sets.offered[set] == (seen_somewhere >> set & 1));
             });
 }
 

@@ -98,6 +98,7 @@ std::vector<Settings> kinds() {
                 all.push_back(more);
             };
             with({{"features.positions", "1 1"}});
+            with({{"features.positions", "1 1, 0.2 0.4, -0.5 1"}, {"planner.speeds", "7"}});  // more than a chunk in translation
             with({{"features.positions", "1 1, 0 1"}, {"edges.graph", "none"}});
             with({{"features.positions", "0.5 0.5, 0.9 0.8, 0.3 0.4, -1 0, 0 -1, 1 -1"}, {"edges.graph", "chain"}});
             with({{"features.positions", "0 1, 1 0, 0 -1, -1 0, 1 1, -1 1, 1 -1, 2 0"}, {"filter.edges", "0.5"}, {"planner.speeds", "7"}});
@@ -129,7 +130,8 @@ TEST_CASE("planner: ties are decided alike") {
     // Standing still is one move on six rays; in the translation model with constant noise all that see the same tie.
     for (const Settings& kind : {Settings{{"features.path", "static"}, {"sensor.noise", "ranged"}, {"features.step", "1"},
                                           {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"}},
-                                 {{"model.process", "translation"}, {"features.path", "circle"}}}) {
+                                 {{"model.process", "translation"}, {"features.path", "circle"}},
+                                 {{"model.process", "translation"}, {"features.path", "circle"}, {"planner.speeds", "8"}}}) {
         const Tally tally = compared(kind, 50000);
         CAPTURE(described(kind));
         CHECK(tally.ties > tally.choices / 20);

@@ -172,6 +172,22 @@ unsigned lane_bits(LaneMask<W> mask) {
     }
 }
 
+/// The mask that is true in the lanes of these bits.
+template <class Real>
+Mask<Real> mask_of_bits(unsigned bits) {
+    if constexpr (lanes<Real> == 1) {
+        return bits & 1;
+#if defined(__AVX512F__)
+    } else if constexpr (lanes<Real> == 8) {
+        return {static_cast<__mmask8>(bits)};
+#endif
+    } else {
+        Mask<Real> mask;
+        for (int i = 0; i < lanes<Real>; ++i) mask.m[i] = -static_cast<std::int64_t>(bits >> i & 1);
+        return mask;
+    }
+}
+
 /// In how many lanes a mask is true.
 inline int lane_count(bool mask) { return mask; }
 template <int W>
@@ -197,6 +213,19 @@ Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
     else
 #endif
     return mask.m ? yes.v : no.v;
+}
+
+/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, and what lies below `low`
+/// comes out above everything, so that one comparison does.
+template <int W>
+LaneMask<W> within(Lane<W> x, Lane<W> low, Lane<W> high) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return {_mm512_cmple_epu64_mask((__m512i)(bits_of(x) - bits_of(low)).v,
+                                        (__m512i)(bits_of(high) - bits_of(low)).v)};
+    else
+#endif
+        return both(x >= low, x <= high);
 }
 
 /// A pack from its doubles in memory, wherever they lie.

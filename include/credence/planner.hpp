@@ -72,12 +72,11 @@ template <class Layout, class Real>
 Choice<Real> choose_by_visible_sets(const ControlParameters& control, const FilterParameters& filter,
                                     const SensorParameters& sensor, const Layout& layout,
                                     PlannerWorkspace<Layout, Real>& work) {
-    const int set_count = 1 << layout.features();
     enter_measurement_space(work.still, filter, layout, work.space);
     gather_sets(work.still, control, sensor, layout, work.sets);
     price_sets(work.space, filter, sensor, layout, work.elimination, work.sets);
-    const Real best = least_cost(set_count, work.sets);
-    return {fetch_each(control, last_of_best(set_count, best, work.sets)), best};
+    const Real best = least_cost(1 << layout.features(), work.sets);
+    return {fetch_each(control, last_of_best(best, work.still, control, sensor, layout, work.sets)), best};
 }
 
 template <class Layout, class Real>

@@ -55,6 +55,8 @@ inline bool either(bool a, bool b) { return a || b; }
 inline bool negated(bool mask) { return !mask; }
 /// True where x is neither infinite nor NaN.
 inline bool finite(double x) { return x - x == 0.0; }
+/// low <= x <= high, of numbers that are not negative.
+inline bool within(double x, double low, double high) { return low <= x && x <= high; }
 inline double absolute(double x) { return __builtin_fabs(x); }
 
 /// The same object, of which the compiler forgets what it has read: what it would keep of large arrays does not fit the

@@ -77,12 +77,15 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
     Real most = Real(-std::numeric_limits<double>::infinity()), reference = Real(first);
     const Real price = price_of_moving(still, filter, layout, parameters.kappa);
     const Vector2<Real> position = point_at(still.mean, Layout::position);
+    // Copies, of which the compiler knows that no value written here changes them.
+    Vector2<Real> feature[Layout::feature_capacity];
+    each(zero, layout.features(), [&](auto j) { feature[j] = point_at(still.mean, Layout::feature(j)); });
     for (int i = 0; i < count; ++i) {
         const Vector2<Real> move = broadcast<Real>(control.candidates[first + i].move);
         const Vector2<Real> u = world_move<Layout>(heading, move), there = position + u;
         Real sum = Layout::has_heading ? -(price * squared_norm(u)) : Real(0);
         each(zero, layout.features(), [&](auto j) {
-            const Real squared = squared_range(there, point_at(still.mean, Layout::feature(j)));
+            const Real squared = squared_range(there, feature[j]);
             const Mask<Real> seen = in_range(sensor, squared);
             const Real value = select(seen, greatest_value<ranged>(parameters, squared), Real(0));
             if constexpr (ranged)

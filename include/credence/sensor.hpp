@@ -30,7 +30,7 @@ Real squared_range(const Vector2<Real>& from, const Vector2<Real>& to) {
 /// r_min <= q <= r_max, both ends included, of a squared range.
 template <class Real>
 Mask<Real> in_range(const SensorParameters& sensor, Real squared) {
-    return both(squared >= Real(sensor.squared_range_min), squared <= Real(sensor.squared_range_max));
+    return within(squared, Real(sensor.squared_range_min), Real(sensor.squared_range_max));
 }
 
 /// Noise that grows linearly from range_min on, not clamped above.

@@ -76,6 +76,10 @@ inline std::vector<World> noise_worlds() {
           {"filter.covariance", "4"},
           {"control.path", "circle"}}},
         {"other-candidates", {{"planner.speeds", "2"}, {"planner.turns", "-0.4, 0, 0.25"}, {"sensor.noise", "ranged"}}},
+        {"many-candidates-translation",
+         {{"model.process", "translation"}, {"features.path", "circle"}, {"planner.speeds", "7"}}},
+        {"five-features-translation",
+         {{"features.positions", five}, {"model.process", "translation"}, {"features.path", "circle"}}},
     };
 }
 
