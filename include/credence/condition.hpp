@@ -15,11 +15,38 @@
 namespace credence {
 inline namespace CREDENCE_UNIT {
 
+/// Where rows of H have entries: at the pose, or not, and at the features' components [first, last).
+template <bool pose, class First, class Last>
+struct Entries {
+    First first;
+    Last last;
+};
+
+/// use(i) for the components of the state where H has entries.
+template <class Layout, bool pose, class First, class Last, class Use>
+CREDENCE_INLINE void each_entry(const Layout&, const Entries<pose, First, Last>& entries, const Use& use) {
+    if constexpr (pose) each(zero, Layout::pose_size, use);
+    each(entries.first, entries.last, use);
+}
+
+/// use(i) for all others.
+template <class Layout, bool pose, class First, class Last, class Use>
+CREDENCE_INLINE void each_other(const Layout& layout, const Entries<pose, First, Last>& entries, const Use& use) {
+    if constexpr (!pose) each(zero, Layout::pose_size, use);
+    each(Layout::pose_size, entries.first, use);
+    each(entries.last, layout.size(), use);
+}
+
 /// Rows of the sighting of feature j. `lever` = (d_y, -d_x), what the heading moves: used where there is a heading.
 template <class Layout, class Real, class Index>
 struct SightingRows {
     Index j;
     Vector2<Real> lever;
+
+    auto entries() const {
+        const auto f = Layout::feature(j), end = f + two;
+        return Entries<true, decltype(f), decltype(end)>{f, end};
+    }
 
     /// H applied to a state-sized column, given as column(i).
     template <class Column>
@@ -40,6 +67,11 @@ struct ContrastRows {
     Layout layout;
     First first;                ///< feature of the first coefficient that is not 0: it is 1
     const double* coefficient;  ///< [M]
+
+    auto entries() const {
+        const auto f = Layout::feature(first), end = layout.size();
+        return Entries<false, decltype(f), decltype(end)>{f, end};
+    }
 
     template <class Column>
     Vector2<Real> operator()(const Column& column) const {
@@ -72,17 +104,26 @@ template <class Layout, class Rows, class Real, int capacity, class Gained>
 Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
                          Gained&& gained) {
     const auto n = layout.size();
+    const auto entries = rows.entries();
     Vector2<Real> W[capacity];
-    each(zero, n, [&](auto i) { W[i] = rows([&](auto s) { return P.at(i, s); }); });
+    const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA { W[i] = rows([&](auto s) { return P.at(i, s); }); };
+    // What S is made of comes first: the rest fills the time in which S is inverted.
+    each_entry(layout, entries, make_row);
     const Vector2<Real> HWx = rows([&](auto s) { return W[s].x; });
     const Vector2<Real> HWy = rows([&](auto s) { return W[s].y; });
     const Inverse2<Real> S_inverse = inverse(HWx.x + N, HWx.y, HWy.y + N, used);
+    each_other(layout, entries, make_row);
     auto& entry = read_anew(P).entry;
-    each(zero, n, [&](auto i) {
+    const auto update_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
         const Vector2<Real> K = times(S_inverse, W[i]);
         gained(i, K);
         each(i, n, [&](auto j) { entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, entry[i][j])); });
-    });
+    };
+    // As above for the next measurement's S: it wants the pose and the next feature.
+    const auto next = entries.first + two;
+    each(zero, Layout::pose_size, update_row);
+    each(next, n, update_row);
+    each(Layout::pose_size, next, update_row);
     return S_inverse;
 }
 

@@ -22,6 +22,10 @@ template <class Layout, class Real>
 struct EdgeRows {
     int from, to;  ///< indices of the features' first components
 
+    auto entries() const {
+        return from < to ? Entries<false, int, int>{from, to + 2} : Entries<false, int, int>{to, from + 2};
+    }
+
     template <class Column>
     Vector2<Real> operator()(const Column& column) const {
         return {column(to) - column(from), column(to + 1) - column(from + 1)};

@@ -182,9 +182,9 @@ Mask<Real> mask_of_bits(unsigned bits) {
         return {static_cast<__mmask8>(bits)};
 #endif
     } else {
-        Mask<Real> mask;
-        for (int i = 0; i < lanes<Real>; ++i) mask.m[i] = -static_cast<std::int64_t>(bits >> i & 1);
-        return mask;
+        typename LaneTypes<lanes<Real>>::Unsigned own;
+        for (int i = 0; i < lanes<Real>; ++i) own[i] = std::uint64_t{1} << i;
+        return {(own & std::uint64_t{bits}) != std::uint64_t{0}};
     }
 }
 
