@@ -29,6 +29,7 @@ struct Counted {
     friend Counted fnma(Counted a, Counted b, Counted c) { return counted(2, fnma(a.value, b.value, c.value)); }
     friend Counted sqrt(Counted x) { return counted(1, sqrt(x.value)); }
     friend Counted absolute(Counted x) { return absolute(x.value); }
+    friend bool within(Counted x, Counted low, Counted high) { return within(x.value, low.value, high.value); }
     friend bool finite(Counted x) { return finite(x.value); }
     friend Counted select(bool mask, Counted yes, Counted no) { return mask ? yes : no; }
     friend std::uint64_t bits_of(Counted x) { return bits_of(x.value); }
