@@ -1,0 +1,13 @@
+// Room 1: lane_masks.hpp for AVX-512, in a namespace of its own as the engine's units are.
+
+#include "lane_masks.hpp"
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+int wrong_masks_of_eight(const double* numbers, int count, double low, double high) {
+    return wrong_masks<8>(numbers, count, low, high);
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,62 @@
+// Room 1: packs of doubles. That whole trials are the same in every lane, the digest says.
+
+#include "catch.hpp"
+#include "lane_masks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#ifdef CREDENCE_LANE_MASKS_V4
+#include <credence/simulate.hpp>
+
+namespace credence::lane_masks_v4 {
+int wrong_masks_of_eight(const double* numbers, int count, double low, double high);
+}
+#endif
+
+using namespace credence;
+
+namespace {
+
+#ifdef CREDENCE_LANE_MASKS_V4
+bool runs_v4() {
+    const std::vector<Unit> units = runnable_units();
+    return std::any_of(units.begin(), units.end(), [](const Unit& unit) { return std::string(unit.name) == "v4"; });
+}
+#endif
+
+constexpr double infinite = std::numeric_limits<double>::infinity(), no_number = std::numeric_limits<double>::quiet_NaN();
+const std::vector<double> ends{0, std::numeric_limits<double>::denorm_min(), 0.01, 4, 1e300, infinite};
+
+/// Every end, its neighbours and what is no number, in every lane of eight.
+std::vector<double> numbers() {
+    std::vector<double> all{no_number, -no_number, 1, 1e-300, std::numeric_limits<double>::max()};
+    for (const double end : ends)
+        for (const double x : {end, std::nextafter(end, infinite), std::nextafter(end, 0.0)}) all.push_back(x);
+    std::vector<double> lanes;
+    for (std::size_t i = 0; i < 8 * all.size(); ++i) lanes.push_back(all[(i + i / 8) % all.size()]);
+    return lanes;
+}
+
+}  // namespace
+
+TEST_CASE("lanes: a pack is within bounds where its numbers are, ends included, and no NaN is") {
+    const std::vector<double> x = numbers();
+    const int count = static_cast<int>(x.size());
+    for (const double low : ends)
+        for (const double high : ends) {
+            if (high < low) continue;
+            CAPTURE(low, high);
+            CHECK(wrong_masks<1>(x.data(), count, low, high) == 0);
+            CHECK(wrong_masks<2>(x.data(), count, low, high) == 0);
+            CHECK(wrong_masks<4>(x.data(), count, low, high) == 0);
+            CHECK(wrong_masks<8>(x.data(), count, low, high) == 0);
+#ifdef CREDENCE_LANE_MASKS_V4
+            if (runs_v4())
+                CHECK(lane_masks_v4::wrong_masks_of_eight(x.data(), count, low, high) == 0);
+#endif
+        }
+}
