@@ -22,6 +22,7 @@ template <class Layout, class Real>
 struct EdgeRows {
     int from, to;  ///< indices of the features' first components
 
+    /// (Features between the two have entries 0.)
     auto entries() const {
         return from < to ? Entries<false, int, int>{from, to + 2} : Entries<false, int, int>{to, from + 2};
     }

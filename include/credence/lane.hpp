@@ -215,8 +215,8 @@ Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
     return mask.m ? yes.v : no.v;
 }
 
-/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, and what lies below `low`
-/// comes out above everything, so that one comparison does.
+/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, NaN last, and what lies below
+/// `low` comes out above everything, so that one comparison does.
 template <int W>
 LaneMask<W> within(Lane<W> x, Lane<W> low, Lane<W> high) {
 #if defined(__AVX512F__)

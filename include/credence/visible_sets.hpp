@@ -17,9 +17,8 @@ struct VisibleSets {
     static constexpr int capacity = 1 << largest_tabled_count;
     static constexpr int chunk = 128;  ///< candidates that are kept at a time
     static_assert(lanes<Real> <= 8);
-    unsigned char seeing[largest_tabled_count]
-                        [chunk];  ///< [M, candidate of the chunk] lanes that see feature j from it
-    unsigned offered[capacity];   ///< lanes in which some candidate sees the set
+    unsigned char seeing[largest_tabled_count][chunk];  ///< lanes that see feature j, by candidate of the chunk
+    unsigned offered[capacity];                         ///< lanes in which some candidate sees the set
     Real cost[capacity];
 };
 
@@ -43,13 +42,13 @@ CREDENCE_FLAT void look_from(const CandidateChunk& chunk, const Belief<Real, cap
                              VisibleSets<Real>& sets) {
     // Copies, of which the compiler knows that no byte written here changes them.
     const Vector2<Real> position = point_at(still.mean, Layout::position);
-    const Real nearest = Real(sensor.squared_range_min), farthest = Real(sensor.squared_range_max);
+    const SensorParameters eye = sensor;
     Vector2<Real> feature[largest_tabled_count];
     each(zero, layout.features(), [&](auto j) { feature[j] = point_at(still.mean, Layout::feature(j)); });
     for (int i = chunk.first; i < chunk.last; ++i) {
         const Vector2<Real> there = position + broadcast<Real>(control.candidates[i].move);
         each(zero, layout.features(), [&](auto j) {
-            const Mask<Real> seen = within(squared_range(there, feature[j]), nearest, farthest);
+            const Mask<Real> seen = in_range(eye, squared_range(there, feature[j]));
             sets.seeing[j][i - chunk.first] = static_cast<unsigned char>(lane_bits(seen));
         });
     }
@@ -58,12 +57,12 @@ CREDENCE_FLAT void look_from(const CandidateChunk& chunk, const Belief<Real, cap
         each(zero, layout.features(), [&](auto j) { sets.seeing[j][i] = sets.seeing[j][i - 1]; });
 }
 
-/// The lanes of a word's candidates, all together; and the same lanes for each of a word's candidates.
+/// The bytes of a word, all in one; and a word with the same byte for each of its candidates.
 inline unsigned any_of_word(std::uint64_t word) {
     for (int half = 32; half >= 8; half /= 2) word |= word >> half;
     return word & 0xff;
 }
-inline std::uint64_t all_of_word(unsigned lanes) { return lanes * std::uint64_t{0x0101010101010101}; }
+inline std::uint64_t all_of_word(unsigned byte) { return byte * std::uint64_t{0x0101010101010101}; }
 
 /// By set, the lanes in which the candidates of a word see just this set: that_see [2^M]. Feature j is bit j of a set.
 template <class Layout, class Real>
@@ -125,9 +124,7 @@ CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const
 
 /// Where some candidate sees the set.
 template <class Real>
-Mask<Real> offered(int set, const VisibleSets<Real>& sets) {
-    return mask_of_bits<Real>(sets.offered[set]);
-}
+Mask<Real> offered(int set, const VisibleSets<Real>& sets) { return mask_of_bits<Real>(sets.offered[set]); }
 
 /// The least cost of the sets that some candidate sees; infinity where there is none.
 template <class Real>
@@ -166,9 +163,9 @@ Real last_of_best(Real best, const Belief<Real, capacity>& still, const ControlP
     std::uint64_t good[VisibleSets<Real>::capacity];
     unsigned undecided = 0;
     for (int set = 0; set < 1 << layout.features(); ++set) {
-        const unsigned lanes = lane_bits(both(offered(set, sets), sets.cost[set] <= best * Real(1 + 1e-12)));
-        good[set] = all_of_word(lanes);
-        undecided |= lanes;
+        const unsigned here = lane_bits(both(offered(set, sets), sets.cost[set] <= best * Real(1 + 1e-12)));
+        good[set] = all_of_word(here);
+        undecided |= here;
     }
     constexpr int chunk_size = VisibleSets<Real>::chunk;
     const int last_first = (control.candidate_count - 1) / chunk_size * chunk_size;

@@ -83,6 +83,32 @@ inline std::vector<World> noise_worlds() {
     };
 }
 
+/// Arms beyond those of every world: the other estimators, and the controller that looks ahead.
+inline std::vector<World> arm_worlds() {
+    const std::string few = "-0.4, 0.25";
+    return {
+        {"estimators",
+         {{"arms.estimators", "ekf, ideal, fej, riekf, iekf"},
+          {"arms.controllers", "fixed"},
+          {"noise.heading", "0.02"},
+          {"features.path", "circle"},
+          {"scenario.poses", "6"}}},
+        {"horizon",
+         {{"arms.controllers", "horizon"},
+          {"planner.horizon", "3"},
+          {"planner.speeds", "1"},
+          {"planner.turns", few},
+          {"sensor.noise", "ranged"},
+          {"scenario.poses", "6"}}},
+        {"horizon-translation",
+         {{"arms.controllers", "horizon"},
+          {"model.process", "translation"},
+          {"features.path", "circle"},
+          {"planner.speeds", "1"},
+          {"scenario.poses", "5"}}},
+    };
+}
+
 /// Trials that fail or diverge beside others that do not.
 inline std::vector<World> fragile_worlds() {
     return {
