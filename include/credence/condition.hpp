@@ -22,6 +22,9 @@ struct Entries {
     Last last;
 };
 
+template <bool pose, class First, class Last>
+Entries<pose, First, Last> entries_at(First first, Last last) { return {first, last}; }
+
 /// use(i) for the components of the state where H has entries.
 template <class Layout, bool pose, class First, class Last, class Use>
 CREDENCE_INLINE void each_entry(const Layout&, const Entries<pose, First, Last>& entries, const Use& use) {
@@ -44,8 +47,8 @@ struct SightingRows {
     Vector2<Real> lever;
 
     auto entries() const {
-        const auto f = Layout::feature(j), end = f + two;
-        return Entries<true, decltype(f), decltype(end)>{f, end};
+        const auto f = Layout::feature(j);
+        return entries_at<true>(f, f + two);
     }
 
     /// H applied to a state-sized column, given as column(i).
@@ -68,10 +71,7 @@ struct ContrastRows {
     First first;                ///< feature of the first coefficient that is not 0: it is 1
     const double* coefficient;  ///< [M]
 
-    auto entries() const {
-        const auto f = Layout::feature(first), end = layout.size();
-        return Entries<false, decltype(f), decltype(end)>{f, end};
-    }
+    auto entries() const { return entries_at<false>(Layout::feature(first), layout.size()); }
 
     template <class Column>
     Vector2<Real> operator()(const Column& column) const {

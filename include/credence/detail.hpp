@@ -24,7 +24,7 @@ struct EdgeRows {
 
     /// (Features between the two have entries 0.)
     auto entries() const {
-        return from < to ? Entries<false, int, int>{from, to + 2} : Entries<false, int, int>{to, from + 2};
+        return from < to ? entries_at<false>(from, to + 2) : entries_at<false>(to, from + 2);
     }
 
     template <class Column>
