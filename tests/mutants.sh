@@ -30,7 +30,8 @@ nearest() {
   local whole="filter_oracle_test keys_test"  # whole trials; they see the engine through support.cpp only
   case "$1" in
     *sweep.cpp) echo sweep_test ;;
-    *elementary.hpp | *real.hpp) echo elementary_test ;;
+    *elementary.hpp) echo elementary_test ;;
+    *real.hpp) echo elementary_test sensor_test ;;
     *draws.hpp) echo draws_test draws_statistics_test ;;
     *world.hpp) echo world_test trial_test "$whole" ;;
     *sensor.hpp) echo sensor_test trial_test "$whole" ;;
@@ -49,7 +50,8 @@ nearest() {
     *estimator*.hpp | *ideal.hpp | *first_estimates.hpp | *right_invariant.hpp | *iterated.hpp)
       echo estimators_test landmarks_test ;;
     *trial.hpp) echo trial_test status_test "$whole" ;;
-    *lane.hpp | *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
+    *lane.hpp) echo lane_test block_test evidence_test ;;
+    *simulate_unit.cpp | *simulate_batch.hpp | *Makefile) echo block_test evidence_test ;;
   esac
 }
 
