@@ -51,8 +51,8 @@ struct BitsOf<Counted> {
 
 /// One after the other: from_bits gives doubles, of which Several would make no Counted.
 template <int count>
-void draw_several(const KeyedDraws<Counted>& noise, const DrawKey (&keys)[count], int pose, Vector2<Counted>* draws) {
-    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, pose, keys[i].index);
+void draw_several(const KeyedDraws<Counted>& noise, const DrawKey* keys, Vector2<Counted>* draws) {
+    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);
 }
 
 }  // namespace CREDENCE_UNIT

@@ -21,11 +21,13 @@ double first_lane(const Real& pack) {
 double normals(std::int64_t rounds) {
     const KeyedDraws<Real> draws(1, Bits<Real>{}, std::numeric_limits<double>::infinity());
     Real sum = Real(0);
-    constexpr int together = 3;  // as the trials draw them
-    Vector2<Real> three[together];
+    constexpr int together = 6;  // as the trials draw them
+    Vector2<Real> drawn[together];
     for (std::int64_t i = 0; i < rounds; i += together) {
-        draw_all(draws, Source::walk, static_cast<int>(i), together, three);
-        for (const Vector2<Real>& draw : three) sum = sum + (draw.x + draw.y);
+        DrawKey keys[together];
+        for (int j = 0; j < together; ++j) keys[j] = {Source::walk, static_cast<int>(i), j};
+        draw_all(draws, keys, Known<together>{}, drawn);
+        for (const Vector2<Real>& draw : drawn) sum = sum + (draw.x + draw.y);
     }
     return first_lane(sum);
 }
@@ -39,10 +41,14 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
     Sums<Real> sums;
     Outcome<Real> outcome;
     Real figures[room];
-    start_truth(work.truth, problem.world, layout.features(), draws);
-    look_first(work.truth, problem.sensor, layout.features(), draws, work.sightings);
+    WorldDraws<Layout, Real> drawn(layout);
+    const Vector2<Real>* measurement = drawn.template of_features<Source::measurement>();
+    drawn.draw(draws, 0);
+    start_truth(work.truth, problem.world, layout, drawn);
+    look_first(work.truth, problem.sensor, layout.features(), measurement, work.sightings);
     start_belief(work.belief, problem.filter, layout, work.sightings);
-    look(work.truth, problem.sensor, layout, 1, draws, work.sightings);
+    drawn.draw(draws, 1);
+    look(work.truth, problem.sensor, layout, 1, measurement, draws, work.sightings);
     const auto edge_measurement = [&](int e) {
         return measure_edge(work.truth, problem.sensor, problem.filter.edges[e], 1, e, draws);
     };

@@ -23,8 +23,10 @@ void add_coverage(FigureTotals& totals, const std::int32_t* covered, std::int64_
 }
 
 void add_cells(ArmResults& to, const ArmBlock& from, std::size_t trials, std::int64_t sign) {
-    for (std::size_t i = 0; i < from.cells.size(); ++i)
-        if (from.cells[i] != no_cell) to.cells[i / trials * shape_cells + from.cells[i]] += sign;
+    std::int64_t* counts = to.cells.data();  // of one step, [shape_cells]
+    for (const std::uint16_t *cell = from.cells.data(), *end = cell + from.cells.size(); cell != end; counts += shape_cells)
+        for (std::size_t trial = 0; trial < trials; ++trial, ++cell)
+            if (*cell != no_cell) counts[*cell] += sign;
 }
 
 void add_products(ProductTotals& to, const ArmBlock& from, double sign) {

@@ -50,6 +50,20 @@ double distance(const Vector2<double>& a, const Vector2<double>& b) { return std
 
 bool same(const Vector2<double>& a, const Vector2<double>& b) { return a.x == b.x && a.y == b.y; }
 
+/// Draws so many keys together, a number that the compiler knows or not, and compares each with the draw alone.
+template <class Count>
+void check_together(const KeyedDraws<double>& draws, Count count) {
+    CAPTURE(static_cast<int>(count));
+    std::vector<DrawKey> keys;
+    for (int i = 0; i < count; ++i) keys.push_back({all_sources[i % 8], 100 - 3 * i, 7 * i % 5});
+    const Vector2<double> none{never, never};
+    std::vector<Vector2<double>> together(keys.size() + 1, none);
+    draw_all(draws, keys.data(), count, together.data());
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        CHECK(same(together[i], draws.normal(keys[i].source, keys[i].pose, keys[i].index)));
+    CHECK(same(together.back(), none));
+}
+
 }  // namespace
 
 TEST_CASE("draws: philox gives Random123's published known answers") {
@@ -158,6 +172,17 @@ TEST_CASE("draws: the order of asking does not matter") {
     for (const auto& key : keys) {
         again.uniform(Source::detection, key.second, 0);
         CHECK(same(again.normal(key.first, key.second, 1), forwards[key]));
+    }
+}
+
+TEST_CASE("draws: several together are the bits of each alone, however many there are") {
+    for (const double truncate : {never, 1.0}) {
+        CAPTURE(truncate);
+        const KeyedDraws<double> draws(7, 11, truncate);
+        each(zero, Known<20>{}, [&](auto count) {
+            check_together(draws, count);
+            check_together(draws, int{count});
+        });
     }
 }
 

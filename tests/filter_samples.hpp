@@ -39,7 +39,8 @@ VectorXd mean_of(const Belief& belief, Eigen::Index n) {
 template <class Layout, class Truth, class Noise>
 Sighting<double> look_at(const Truth& truth, const SensorParameters& sensor, int k, int j, const Noise& noise) {
     Sighting<double> sightings[3];
-    look(truth, sensor, Layout(3), k, noise, sightings);
+    const WorldDraws<Layout, double> draws = draws_at<Layout>(noise, k);
+    look(truth, sensor, Layout(3), k, draws.template of_features<Source::measurement>(), noise, sightings);
     return sightings[j];
 }
 

@@ -32,6 +32,7 @@ nearest() {
     *sweep.cpp) echo sweep_test ;;
     *elementary.hpp) echo elementary_test ;;
     *real.hpp) echo elementary_test sensor_test ;;
+    *pose_draws.hpp) echo world_test trial_test "$whole" ;;
     *draws.hpp) echo draws_test draws_statistics_test ;;
     *world.hpp) echo world_test trial_test "$whole" ;;
     *sensor.hpp) echo sensor_test trial_test "$whole" ;;

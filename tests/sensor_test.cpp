@@ -129,7 +129,8 @@ TEST_CASE("sensor: the first sight is in the world frame, whatever the range and
     truth.rotation = rotation(1.1);
     const SensorParameters sensor = sensor_of({{"sensor.sigma", "0.5"}});
     Sighting<double> sights[3];
-    look_first(truth, sensor, 3, measurement_noise({2, -3}), sights);
+    const auto draws = draws_at<Heading>(measurement_noise({2, -3}), 0);
+    look_first(truth, sensor, 3, draws.of_features<Source::measurement>(), sights);
     for (int j = 0; j < 3; ++j) {
         CHECK(distance(sights[j].z, truth.feature[j].x + 1, truth.feature[j].y - 1.5) < rounding);
         CHECK(sights[j].sigma == 0.5);

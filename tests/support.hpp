@@ -4,8 +4,9 @@
 
 #include "oracle/oracle.hpp"
 
-#include <credence/draws.hpp>
 #include <credence/deformable.hpp>
+#include <credence/draws.hpp>
+#include <credence/world.hpp>
 
 #include <Eigen/Dense>
 
@@ -54,6 +55,13 @@ AnyNoise silent_noise();
 /// Another noise in which one draw is changed.
 AnyNoise with_draw(AnyNoise noise, Source source, int pose, int index, Vector2<double> draw);
 oracle::Noise for_oracle(const AnyNoise& noise);
+/// What three features and their robot draw at a pose.
+template <class Layout, class Noise>
+WorldDraws<Layout, double> draws_at(const Noise& noise, int pose) {
+    WorldDraws<Layout, double> draws(Layout(3));
+    draws.draw(noise, pose);
+    return draws;
+}
 
 /// What happened at one pose. At pose 0 only truth, mean and covariance are there.
 struct RunStep {

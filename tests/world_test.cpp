@@ -38,10 +38,12 @@ double distance(const Vector2<double>& a, double x, double y) { return std::hypo
 template <class Layout>
 Truth<double, 3> truth_at(const Problem& problem, int pose, const Command<double>& command, const AnyNoise& noise) {
     Truth<double, 3> truth;
-    start_truth(truth, problem.view().world, 3, noise);
+    const WorldParameters& world = problem.view().world;
+    start_truth(truth, world, Layout(3), draws_at<Layout>(noise, 0));
     for (int k = 1; k <= pose; ++k) {
-        move_features(truth, problem.view().world, 3, k, noise);
-        move_robot<Layout>(truth, problem.view().world, command, k, noise);
+        const auto draws = draws_at<Layout>(noise, k);
+        move_features(truth, world, Layout(3), k, draws);
+        move_robot(truth, world, command, draws);
     }
     return truth;
 }

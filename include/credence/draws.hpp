@@ -23,10 +23,10 @@ enum class Source : std::uint32_t {
     landmark_prior = 7,     ///< by landmark: what is believed of it before it is seen
 };
 
-/// What one of a pose's draws is for.
+/// What a draw is keyed by, beside the trial.
 struct DrawKey {
     Source source;
-    int index;
+    int pose, index;
 };
 
 inline namespace CREDENCE_UNIT {
@@ -96,28 +96,24 @@ public:
           truncate_(truncate) {}
 
     Vector2<Real> normal(Source source, int pose, int index) const {
-        Vector2<Real> draw = box_muller<Real>(block(source, pose, index, 0));
-        if (truncates_) redraw(draw, source, pose, index);
+        const DrawKey key{source, pose, index};
+        Vector2<Real> draw = box_muller<Real>(philox(counter_of(key, 0), keys_));
+        if (truncates_) redraw(draw, key);
         return draw;
     }
 
-    /// The same for several draws of one pose, step by step together.
+    /// The same for several draws, step by step together. `keys` [count], `draws` [count].
     template <int count>
-    void normals(const DrawKey (&keys)[count], int pose, Vector2<Real>* draws) const {
+    void normals(const DrawKey* keys, Vector2<Real>* draws) const {
         using Together = Several<Real, count>;
-        PhiloxBlock<Bits<Together>> counter;
-        each(zero, Known<count>{}, [&](auto i) {
-            const PhiloxBlock<Bits<Real>> own = counter_of(keys[i].source, pose, keys[i].index, 0);
-            each(zero, Known<4>{}, [&](auto word) { counter.word[word].part[i] = own.word[word]; });
-        });
-        const Vector2<Together> together = box_muller<Together>(philox(counter, keys_));
+        const Vector2<Together> together = box_muller<Together>(random_words<count>(keys));
         each(zero, Known<count>{}, [&](auto i) { draws[i] = {together.x.part[i], together.y.part[i]}; });
         if (truncates_)
-            for (int i = 0; i < count; ++i) redraw(draws[i], keys[i].source, pose, keys[i].index);
+            for (int i = 0; i < count; ++i) redraw(draws[i], keys[i]);
     }
 
     Real uniform(Source source, int pose, int index) const {
-        const PhiloxBlock<Bits<Real>> random = block(source, pose, index, 0);
+        const PhiloxBlock<Bits<Real>> random = philox(counter_of({source, pose, index}, 0), keys_);
         return in_one_to_two<Real>(random.word[1], random.word[0]) - Real(1);
     }
 
@@ -127,28 +123,47 @@ private:
     static constexpr double largest_draw = 9;
 
     /// Draws again what lies beyond the truncation. Kept out of the way of those who do not truncate.
-    [[gnu::noinline]] void redraw(Vector2<Real>& draw, Source source, int pose, int index) const {
+    [[gnu::noinline]] void redraw(Vector2<Real>& draw, const DrawKey& key) const {
         // Each component is redrawn by itself; the attempt's number is part of the key [model.md, Conventions].
         for (std::uint32_t again = 1; again < attempts; ++again) {
             const Mask<Real> redraw_x = absolute(draw.x) > truncate_, redraw_y = absolute(draw.y) > truncate_;
             if (!any(either(redraw_x, redraw_y))) break;
-            const Vector2<Real> next = box_muller<Real>(block(source, pose, index, again));
+            const Vector2<Real> next = box_muller<Real>(philox(counter_of(key, again), keys_));
             draw = {select(redraw_x, next.x, draw.x), select(redraw_y, next.y, draw.y)};
         }
     }
 
     /// Counter: trial (64 bits), pose (32), then attempt (12), source (4) and index (16).
-    PhiloxBlock<Bits<Real>> counter_of(Source source, int pose, int index, std::uint32_t attempt_number) const {
-        const std::uint64_t what = std::uint64_t{attempt_number} << 20 |
-                                   std::uint64_t{static_cast<std::uint32_t>(source)} << 16 |
-                                   static_cast<std::uint64_t>(index);
+    PhiloxBlock<Bits<Real>> counter_of(const DrawKey& key, std::uint32_t attempt) const {
+        const std::uint64_t what = std::uint64_t{attempt} << 20 |
+                                   std::uint64_t{static_cast<std::uint32_t>(key.source)} << 16 |
+                                   static_cast<std::uint64_t>(key.index);
         const Bits<Real> none{};
-        return {
-            {trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(pose), none + what}};
+        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(key.pose),
+                 none + what}};
     }
 
-    PhiloxBlock<Bits<Real>> block(Source source, int pose, int index, std::uint32_t attempt_number) const {
-        return philox(counter_of(source, pose, index, attempt_number), keys_);
+    /// The words of several draws, as many at a time as the registers hold: 32 of 64 bytes, of others 16.
+    template <int count>
+    CREDENCE_INLINE PhiloxBlock<Several<Bits<Real>, count>> random_words(const DrawKey* keys) const {
+        constexpr int held = sizeof(Real) == 64 ? 6 : 3;
+        PhiloxBlock<Several<Bits<Real>, count>> random;
+        if constexpr (count > held) {
+            const auto first = random_words<held>(keys);
+            const auto rest = random_words<count - held>(keys + held);
+            each(zero, Known<4>{}, [&](auto word) {
+                each(zero, Known<held>{}, [&](auto i) { random.word[word].part[i] = first.word[word].part[i]; });
+                each(Known<held>{}, Known<count>{},
+                     [&](auto i) { random.word[word].part[i] = rest.word[word].part[i - held]; });
+            });
+            return random;
+        } else {
+            each(zero, Known<count>{}, [&](auto i) {
+                const PhiloxBlock<Bits<Real>> own = counter_of(keys[i], 0);
+                each(zero, Known<4>{}, [&](auto word) { random.word[word].part[i] = own.word[word]; });
+            });
+            return philox(random, keys_);
+        }
     }
 
     PhiloxKeys keys_;
@@ -157,29 +172,35 @@ private:
     Real truncate_;
 };
 
-/// Several draws of one pose, from any source of noise.
-template <class Noise, int count, class Real>
-void draw_several(const Noise& noise, const DrawKey (&keys)[count], int pose, Vector2<Real>* draws) {
-    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, pose, keys[i].index);
+/// So many draws, from any source of noise. `keys` [count], `draws` [count].
+template <int count, class Noise, class Real>
+void draw_several(const Noise& noise, const DrawKey* keys, Vector2<Real>* draws) {
+    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);
 }
 
 /// Keyed draws, together; one copy of the code for all who draw.
-template <class Real, int count>
-[[gnu::noinline]] CREDENCE_FLAT void draw_several(const KeyedDraws<Real>& noise, const DrawKey (&keys)[count], int pose,
+template <int count, class Real>
+[[gnu::noinline]] CREDENCE_FLAT void draw_several(const KeyedDraws<Real>& noise, const DrawKey* keys,
                                                   Vector2<Real>* draws) {
-    noise.normals(keys, pose, draws);
+    noise.template normals<count>(keys, draws);
 }
 
-/// Draws of one source and pose for features 0 ... count - 1.
+/// Draws of all keys, six together: fewer leave time unfilled, more do not fit what a processor looks ahead. `keys`
+/// [count], `draws` [count].
 template <class Noise, class Count, class Real>
-void draw_all(const Noise& noise, Source source, int pose, Count count, Vector2<Real>* draws) {
-    constexpr int group = 3;  // what fits the registers
+void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real>* draws) {
+    constexpr int most = 6;
     int i = 0;
-    for (; i + group <= count; i += group) {
-        const DrawKey keys[group]{{source, i}, {source, i + 1}, {source, i + 2}};
-        draw_several(noise, keys, pose, draws + i);
+    const auto in_groups = [&](auto group) CREDENCE_INLINE_LAMBDA {
+        for (; i + group <= count; i += group) draw_several<group>(noise, keys + i, draws + i);
+    };
+    in_groups(Known<most>{});
+    if constexpr (std::is_same_v<Count, int>) {
+        in_groups(Known<most / 2>{});
+        in_groups(one);
+    } else if constexpr (count % most != 0) {
+        in_groups(Known<count % most>{});
     }
-    for (; i < count; ++i) draws[i] = noise.normal(source, pose, i);
 }
 
 }  // namespace CREDENCE_UNIT

@@ -20,13 +20,15 @@ void initialise_landmarks(const LandmarkView& problem, const Layout& layout, int
 /// Pose 0, which is known: landmarks in sight are initialised, of the others there is a prior.
 template <class Layout, class Real, class Estimating, class Noise>
 void start_trial(const LandmarkView& problem, const Layout& layout, const Noise& noise,
-                 CommonWorkspace<Layout, Real, Estimating>& work) {
+                 LandmarkDraws<Layout, Real>& draws, CommonWorkspace<Layout, Real, Estimating>& work) {
     const int features = layout.features();
     start_truth(work.truth, problem.world, features);
     for (int j = 0; j < features; ++j) work.sightings[j] = drawn_prior(work.truth, problem.world, j, noise);
     start_belief(work.belief, problem.filter, layout, work.sightings);
     work.estimator.start(layout, work.belief, work.truth);
-    look(work.truth, problem.sensor, layout, 0, noise, work.sightings);
+    draws.draw(noise, 0);
+    look(work.truth, problem.sensor, layout, 0, draws.template of_features<Source::measurement>(), noise,
+         work.sightings);
     initialise_landmarks(problem, layout, 0, work);
 }
 
@@ -42,19 +44,21 @@ void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observ
     const auto no_edge = [](int) { return Vector2<Real>{}; };
     Sums<Real> sums;
     Outcome<Real> outcome;
-    start_trial(problem, layout, noise, work);
+    LandmarkDraws<Layout, Real> draws(layout);
+    start_trial(problem, layout, noise, draws, work);
     observer.started(layout, truth, belief);
 
     for (int k = 1; k < problem.poses; ++k) {
         // The robot moves on along its loop, and its filter is told so.
         stand_at(truth, problem.world, k);
-        const Command<Real> told = told_motion<Real>(problem.world, k, noise);
+        draws.draw(noise, k);
+        const Command<Real> told = told_motion(problem.world, k, draws);
 
         // Predict.
         estimator.predict(belief, problem.filter, layout, told, truth, k);
 
         // See.
-        look(truth, problem.sensor, layout, k, noise, sightings);
+        look(truth, problem.sensor, layout, k, draws.template of_features<Source::measurement>(), noise, sightings);
         const int first_sights = set_aside_first_sights(problem.world, layout.features(), k, sightings);
         const auto linearised = estimator.linearised(belief, layout, truth);
         observer.predicted(k, layout, truth, told, belief, sightings, no_edge, linearised);

@@ -28,6 +28,10 @@ struct LandmarkParameters {
 
 inline namespace CREDENCE_UNIT {
 
+/// What is drawn at a pose of this world.
+template <class Layout, class Real>
+using LandmarkDraws = PoseDraws<Layout, Real, Source::measurement>;
+
 /// The true robot at pose k.
 template <class Real, int capacity>
 void stand_at(Truth<Real, capacity>& truth, const LandmarkParameters& world, int k) {
@@ -44,13 +48,12 @@ void start_truth(Truth<Real, capacity>& truth, const LandmarkParameters& world, 
 }
 
 /// What the filter is told of the motion to pose k: omega - sigma_head eps, v - sigma_odom eps (body frame).
-template <class Real, class Noise>
-CREDENCE_FLAT Command<Real> told_motion(const LandmarkParameters& world, int k, const Noise& noise) {
-    Vector2<Real> draws[2];
-    draw_several(noise, robot_keys, k, draws);
+template <class Layout, class Real>
+CREDENCE_FLAT Command<Real> told_motion(const LandmarkParameters& world, int k,
+                                        const LandmarkDraws<Layout, Real>& draws) {
     const Control& motion = world.motion[k - 1];
-    return {fnma(Real(world.sigma_heading), draws[1].x, Real(motion.turn)),
-            add_scaled(broadcast<Real>(motion.move), Real(-world.sigma_odometry), draws[0])};
+    return {fnma(Real(world.sigma_heading), draws.heading(), Real(motion.turn)),
+            add_scaled(broadcast<Real>(motion.move), Real(-world.sigma_odometry), draws.position())};
 }
 
 /// What is believed of landmark j before it is seen: a place drawn about the true one, world frame.

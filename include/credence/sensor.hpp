@@ -55,13 +55,11 @@ struct Sighting {
     Real sigma{};     ///< true standard deviation of each axis
 };
 
-/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas for every feature. The draws are consumed whether or not a
-/// feature is in sight. `sightings` [M].
+/// z_j = R(theta)' (p_j - r) + sigma_feat(q) eps^meas for every feature, in sight or not. `measurement` [M] are the
+/// draws; `sightings` [M].
 template <class Layout, class Real, int capacity, class Noise>
 CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParameters& sensor, const Layout& layout, int k,
-                        const Noise& noise, Sighting<Real>* sightings) {
-    Vector2<Real> measurement[capacity];
-    draw_all(noise, Source::measurement, k, layout.features(), measurement);
+                        const Vector2<Real>* measurement, const Noise& noise, Sighting<Real>* sightings) {
     each(zero, layout.features(), [&](auto j) {
         const Real squared = squared_range(truth.position, truth.feature[j]);
         Sighting<Real>& sighting = sightings[j];
@@ -77,12 +75,10 @@ CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParamete
 }
 
 /// The first estimate of every feature, in the world frame, made whatever its range: p_{0,j} + sigma_feat(q_{0,j})
-/// eps^meas_{0,j}. `sightings` [M].
-template <class Real, int capacity, class Count, class Noise>
-void look_first(const Truth<Real, capacity>& truth, const SensorParameters& sensor, Count features, const Noise& noise,
-                Sighting<Real>* sightings) {
-    Vector2<Real> measurement[capacity];
-    draw_all(noise, Source::measurement, 0, features, measurement);
+/// eps^meas_{0,j}; `measurement` [M] are the draws. `sightings` [M].
+template <class Real, int capacity, class Count>
+void look_first(const Truth<Real, capacity>& truth, const SensorParameters& sensor, Count features,
+                const Vector2<Real>* measurement, Sighting<Real>* sightings) {
     each(zero, features, [&](auto j) {
         const Real sigma = sigma_at(sensor, squared_range(truth.position, truth.feature[j]));
         sightings[j] = {Mask<Real>{}, add_scaled(truth.feature[j], sigma, measurement[j]), sigma};

@@ -33,8 +33,11 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     Outcome<Real> outcome;
 
     // Pose 0: every feature is initialised, whatever its range.
-    start_truth(truth, problem.world, features, noise);
-    look_first(truth, problem.sensor, features, noise, sightings);
+    WorldDraws<Layout, Real> draws(layout);
+    const Vector2<Real>* measurement = draws.template of_features<Source::measurement>();
+    draws.draw(noise, 0);
+    start_truth(truth, problem.world, layout, draws);
+    look_first(truth, problem.sensor, features, measurement, sightings);
     start_belief(belief, problem.filter, layout, sightings);
     Real error[Layout::capacity];
     estimation_error(belief, truth, layout, error);
@@ -53,14 +56,15 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         }
 
         // The world moves on.
-        move_features(truth, problem.world, features, k, noise);
-        move_robot<Layout>(truth, problem.world, command, k, noise);
+        draws.draw(noise, k);
+        move_features(truth, problem.world, layout, k, draws);
+        move_robot(truth, problem.world, command, draws);
 
         // Predict.
         estimator.predict(belief, problem.filter, layout, command, truth, k);
 
         // See.
-        look(truth, problem.sensor, layout, k, noise, sightings);
+        look(truth, problem.sensor, layout, k, measurement, noise, sightings);
         const auto edge_measurement = [&](int e) {
             return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
         };

@@ -5,8 +5,7 @@
 //   r   robot position, theta  heading; t_k  known translation of the features from pose k to k + 1
 //   All in the world frame, in length units and radians.
 
-#include <credence/draws.hpp>
-#include <credence/layout.hpp>
+#include <credence/pose_draws.hpp>
 
 namespace credence {
 
@@ -26,8 +25,9 @@ struct WorldParameters {
 
 inline namespace CREDENCE_UNIT {
 
-/// What the robot draws at a pose.
-inline constexpr DrawKey robot_keys[]{{Source::odometry_position, 0}, {Source::odometry_heading, 0}};
+/// What is drawn at a pose of this world.
+template <class Layout, class Real>
+using WorldDraws = PoseDraws<Layout, Real, Source::walk, Source::deformation, Source::measurement>;
 
 template <class Real, int feature_capacity>
 struct Truth {
@@ -44,11 +44,12 @@ Vector2<Real> broadcast(const Point& point) {
 }
 
 /// p_{k,j} = c_{k,j} + o_{k,j} + sigma_def eps^def_{k,j}; where deformation walks, the draw is in c already.
-/// `deformation` [M] are the draws of pose k.
-template <class Real, int capacity, class Count>
-void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, int k,
-                     const Vector2<Real>* deformation) {
-    each(zero, features, [&](auto j) {
+/// `draws` are pose k's.
+template <class Layout, class Real, int capacity>
+void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, const Layout& layout, int k,
+                     const WorldDraws<Layout, Real>& draws) {
+    const Vector2<Real>* deformation = draws.template of_features<Source::deformation>();
+    each(zero, layout.features(), [&](auto j) {
         truth.feature[j] = truth.centre[j] + broadcast<Real>(world.sway_at(k, j));
         if (world.deformation == Deformation::jitter)
             truth.feature[j] = add_scaled(truth.feature[j], Real(world.sigma_deformation), deformation[j]);
@@ -56,34 +57,31 @@ void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world,
 }
 
 /// The truth at pose 0: features about f_0, the robot at 0 (or drawn about it).
-template <class Real, int capacity, class Count, class Noise>
-void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, const Noise& noise) {
-    Vector2<Real> draws[2];
-    draw_several(noise, robot_keys, 0, draws);
-    truth.heading = Real(world.sigma_initial_heading) * draws[1].x;
+template <class Layout, class Real, int capacity>
+void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, const Layout& layout,
+                 const WorldDraws<Layout, Real>& draws) {
+    truth.heading = Real(0);
+    if constexpr (Layout::has_heading) truth.heading = Real(world.sigma_initial_heading) * draws.heading();
     truth.rotation = rotation(truth.heading);
-    truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position), draws[0]);
-    each(zero, features, [&](auto j) { truth.centre[j] = broadcast<Real>(world.first_position[j]); });
-    Vector2<Real> deformation[capacity];
-    if (world.deformation == Deformation::jitter) draw_all(noise, Source::deformation, 0, features, deformation);
-    deform_features(truth, world, features, 0, deformation);
+    truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position), draws.position());
+    each(zero, layout.features(), [&](auto j) { truth.centre[j] = broadcast<Real>(world.first_position[j]); });
+    deform_features(truth, world, layout, 0, draws);
 }
 
 /// Features from pose k - 1 to k: c_k = c_{k-1} + t_{k-1} + sigma_walk eps^walk_{k-1} (+ sigma_def eps^def_k where
 /// deformation walks).
-template <class Real, int capacity, class Count, class Noise>
-CREDENCE_FLAT void move_features(Truth<Real, capacity>& truth, const WorldParameters& world, Count features, int k,
-                                 const Noise& noise) {
-    Vector2<Real> walk[capacity], deformation[capacity];
-    draw_all(noise, Source::walk, k - 1, features, walk);
-    draw_all(noise, Source::deformation, k, features, deformation);
-    each(zero, features, [&](auto j) {
+template <class Layout, class Real, int capacity>
+CREDENCE_FLAT void move_features(Truth<Real, capacity>& truth, const WorldParameters& world, const Layout& layout,
+                                 int k, const WorldDraws<Layout, Real>& draws) {
+    const Vector2<Real>* walk = draws.template of_features<Source::walk>();
+    const Vector2<Real>* deformation = draws.template of_features<Source::deformation>();
+    each(zero, layout.features(), [&](auto j) {
         const Vector2<Real> centre = truth.centre[j] + broadcast<Real>(world.translation[k - 1]);
         truth.centre[j] = add_scaled(centre, Real(world.sigma_walk), walk[j]);
         if (world.deformation == Deformation::walk)
             truth.centre[j] = add_scaled(truth.centre[j], Real(world.sigma_deformation), deformation[j]);
     });
-    deform_features(truth, world, features, k, deformation);
+    deform_features(truth, world, layout, k, draws);
 }
 
 /// A control of one step: turn in radians; move in length units, body frame (heading model) or world frame.
@@ -95,19 +93,16 @@ struct Command {
 
 /// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
 /// sigma_odom eps.
-template <class Layout, class Real, int capacity, class Noise>
+template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command,
-                              int k, const Noise& noise) {
-    Vector2<Real> move = command.move, draws[2];
+                              const WorldDraws<Layout, Real>& draws) {
+    Vector2<Real> move = command.move;
     if constexpr (Layout::has_heading) {
-        draw_several(noise, robot_keys, k, draws);
         move = rotate(truth.rotation, command.move);
-        truth.heading = fma(Real(world.sigma_heading), draws[1].x, truth.heading + command.turn);
+        truth.heading = fma(Real(world.sigma_heading), draws.heading(), truth.heading + command.turn);
         truth.rotation = rotation(truth.heading);
-    } else {
-        draws[0] = noise.normal(robot_keys[0].source, k, robot_keys[0].index);
     }
-    truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry), draws[0]);
+    truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry), draws.position());
 }
 
 }  // namespace CREDENCE_UNIT
