@@ -3,10 +3,11 @@
 //
 //   P, u, a, d0, H0 as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: what the fresh
 //   heading noise does to sighting j; sigma^2 its variance
-//   B_j = P H0_j' [n, 2], A_jl = H0_j B_l, G_jl = B_j' B_l [2, 2]: the same for all candidates of a step
+//   B_j = P H0_j' [n, 2], w_j its row of the heading, A_jl = H0_j B_l, G_jl = B_j' B_l - w_j w_l' [2, 2]: the same for
+//   all candidates of a step
 // trace(P+) = trace(T P T') + sigma^2 - trace(S^-1 C), with
-//   S_jl = A_jl + sigma^2 g_j g_l' + N_j I (j = l),  C_jl = G_jl + w_j c_l' + c_j w_l' + sigma^4 g_j g_l',
-//   w_j the heading's row of B_j, c_j = a . (the position's rows of B_j) + |a|^2 w_j / 2 + sigma^2 g_j.
+//   S_jl = A_jl + sigma^2 g_j g_l' + N_j I (j = l),  C_jl = G_jl + v_j v_l' + w_j c_l' + c_j w_l',
+//   v_j = w_j + sigma^2 g_j, c_j = a . (the position's rows of B_j) + |a|^2 w_j / 2.
 // S and C are eliminated together, sighting by sighting.
 
 #include <credence/turned_trace.hpp>
@@ -15,6 +16,11 @@
 
 namespace credence {
 inline namespace CREDENCE_UNIT {
+
+template <class Real>
+Vector2<Real> scaled(Real factor, const Vector2<Real>& v) {
+    return {factor * v.x, factor * v.y};
+}
 
 template <class Real>
 struct Matrix2 {
@@ -105,7 +111,7 @@ template <class Layout, class Real>
 struct MeasurementElimination {
     static constexpr int capacity = Layout::feature_capacity;
     Block2<Layout, Real> S[capacity][capacity], C[capacity][capacity];
-    Vector2<Real> g[capacity], c[capacity];
+    Vector2<Real> g[capacity], v[capacity], c[capacity];
     Mask<Real> seen[capacity];
 };
 
@@ -133,7 +139,7 @@ CREDENCE_FLAT void enter_measurement_space(const Belief<Real, capacity>& still, 
             const Vector2<Real> y = rows([&](auto s) { return space.B[l][s].y; });
             set_block(space.A[j][l], Matrix2<Real>{x.x, y.x, x.y, y.y});
             Matrix2<Real> sum{Real(0), Real(0), Real(0), Real(0)};
-            each(zero, n, [&](auto i) { sum = add_outer(sum, space.B[j][i], space.B[l][i]); });
+            each(Layout::position, n, [&](auto i) { sum = add_outer(sum, space.B[j][i], space.B[l][i]); });
             set_block(space.G[j][l], sum);
         });
     });
@@ -154,24 +160,20 @@ CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space,
         N[j] = believed_variance(filter, sigma_at(sensor, squared));
         if constexpr (Layout::has_heading) {
             work.g[j] = {d.y, -d.x};
-            work.c[j] = {variance * d.y, -(variance * d.x)};
-            work.c[j] = add_scaled(work.c[j], half_squared, space.w[j]);
+            work.v[j] = space.w[j] + scaled(variance, work.g[j]);
+            work.c[j] = scaled(half_squared, space.w[j]);
             work.c[j] = add_scaled(add_scaled(work.c[j], a.x, space.x[j]), a.y, space.y[j]);
         }
     });
     each(zero, layout.features(), [&](auto j) {
-        Vector2<Real> scaled, twice;
-        if constexpr (Layout::has_heading) {
-            scaled = {variance * work.g[j].x, variance * work.g[j].y};
-            // w_j c_l' + sigma^4 g_j g_l' + c_j w_l'
-            twice = {variance * scaled.x, variance * scaled.y};
-        }
+        Vector2<Real> noise;
+        if constexpr (Layout::has_heading) noise = scaled(variance, work.g[j]);
         each(j, layout.features(), [&](auto l) {
             work.S[j][l] = space.A[j][l];
             work.C[j][l] = space.G[j][l];
             if constexpr (Layout::has_heading) {
-                work.S[j][l] = add_outer(work.S[j][l], scaled, work.g[l]);
-                work.C[j][l] = add_outer(work.C[j][l], twice, work.g[l]);
+                work.S[j][l] = add_outer(work.S[j][l], noise, work.g[l]);
+                work.C[j][l] = add_outer(work.C[j][l], work.v[j], work.v[l]);
                 work.C[j][l] = add_outer(work.C[j][l], space.w[j], work.c[l]);
                 work.C[j][l] = add_outer(work.C[j][l], work.c[j], space.w[l]);
             }
