@@ -59,34 +59,38 @@ void store_columns(const std::vector<Column>& declared, const std::vector<double
     }
 }
 
-/// What a unit fills, eight trials next to each other.
+/// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
 struct Octets {
-    std::size_t trials, padded, steps, figures, blocks, components, lags;
+    std::size_t trials = 0, padded = 0, steps = 0, components = 0;
+    bool detail = false;
     std::vector<double> columns, sums, square_sums, run_square_sums, nees;
     std::vector<std::int32_t> covered;
     std::vector<double> errors, product_sums, product_square_sums, product_counts;
 
-    Octets(const SimulationShape& shape, std::size_t count, bool detail)
-        : trials(count),
-          padded((count + octet - 1) / octet * octet),
-          steps(static_cast<std::size_t>(shape.poses - 1)),
-          figures(static_cast<std::size_t>(shape.figure_count)),
-          blocks(static_cast<std::size_t>(shape.block_count)),
-          components(static_cast<std::size_t>(shape.state_size)),
-          lags(static_cast<std::size_t>(lag_count(shape.poses))),
-          columns(padded * static_cast<std::size_t>(shape.column_count)),
-          sums(figures * steps * octet),
-          square_sums(sums.size()),
-          run_square_sums(figures * octet),
-          nees(steps * padded),
-          covered(blocks * steps * coverage_level_count) {
-        if (!detail) return;
+    void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
+        const auto figures = static_cast<std::size_t>(shape.figure_count);
+        const auto blocks = static_cast<std::size_t>(shape.block_count);
+        trials = count;
+        padded = (count + octet - 1) / octet * octet;
+        steps = static_cast<std::size_t>(shape.poses - 1);
+        components = static_cast<std::size_t>(shape.state_size);
+        detail = detailed;
+        columns.resize(padded * static_cast<std::size_t>(shape.column_count));
+        nees.resize(steps * padded);
+        sums.assign(figures * steps * octet, 0);
+        square_sums.assign(sums.size(), 0);
+        run_square_sums.assign(figures * octet, 0);
+        covered.assign(blocks * steps * coverage_level_count, 0);
+        if (!detail) {
+            errors = {};  // much room, and seldom wanted
+            return;
+        }
         errors.resize(components * steps * padded);
-        for (auto* products : {&product_sums, &product_square_sums, &product_counts}) products->resize(lags * octet);
+        for (auto* products : {&product_sums, &product_square_sums, &product_counts})
+            products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
     }
 
     Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
-        const bool detail = !errors.empty();
         Batch batch{root_seed, first_trial, static_cast<int>(trials)};
         batch.columns = columns.data();
         batch.sums = sums.data();
@@ -115,9 +119,11 @@ std::vector<bool> failed_trials(const std::vector<Column>& declared, const ArmBl
 /// The cell of every NEES.
 void store_cells(const Octets& from, const EquiprobableCells& cells, const std::vector<bool>& failed, ArmBlock& arm) {
     arm.cells.resize(from.steps * from.trials);
+    const EquiprobableCells::Search search = cells.search();
+    std::uint16_t* next = arm.cells.data();
     for (std::size_t k = 0; k < from.steps; ++k)
         for (std::size_t trial = 0; trial < from.trials; ++trial)
-            arm.cells[k * from.trials + trial] = static_cast<std::uint16_t>(cells.cell(from.nees[k * from.padded + trial]));
+            *next++ = static_cast<std::uint16_t>(search.cell(from.nees[k * from.padded + trial]));
     for (std::size_t trial = 0; trial < from.trials; ++trial)
         if (failed[trial])
             for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
@@ -142,15 +148,16 @@ void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
                  std::uint64_t root_seed, std::int64_t index, int trials) {
     const SimulationShape& shape = simulation.shape();
-    Octets octets(shape, static_cast<std::size_t>(trials), detailed(shape, index));
+    thread_local Octets octets;
     thread_local WorkRoom room;
+    octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
     void* workspace = room.of_size(simulation.workspace_size(a));
     simulation.simulate(a, octets.batch(root_seed, index * block_size, workspace));
     ArmBlock arm;
     arm.sums = added_up(octets.sums);
     arm.square_sums = added_up(octets.square_sums);
     arm.run_square_sums = added_up(octets.run_square_sums);
-    arm.covered = std::move(octets.covered);
+    arm.covered = octets.covered;
     store_columns(columns, octets.columns, octets.trials, arm);
     const std::vector<bool> failed = failed_trials(columns, arm, octets.trials);
     if (shape_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);

@@ -3,9 +3,12 @@
 #include "catch.hpp"
 #include "lane_masks.hpp"
 
+#include <credence/screening.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -59,4 +62,40 @@ TEST_CASE("lanes: a pack is within bounds where its numbers are, ends included, 
                 CHECK(lane_masks_v4::wrong_masks_of_eight(x.data(), count, low, high) == 0);
 #endif
         }
+}
+
+TEST_CASE("lanes: eight rows of bits become eight columns") {
+    std::mt19937_64 random(3);
+    for (int sample = 0; sample < 100; ++sample) {
+        const std::uint64_t rows = random(), columns = transposed_bits(rows);
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j) REQUIRE((rows >> (8 * i + j) & 1) == (columns >> (8 * j + i) & 1));
+    }
+}
+
+TEST_CASE("lanes: each lane takes the candidates that are left in it, in order, and no other") {
+    using Real = Lane<4>;
+    using StateLayout = Layout<Process::heading, 3>;
+    std::mt19937 random(4);
+    for (const int count : {1, 7, 8, 9, 64, 65, 127, 128}) {
+        CAPTURE(count);
+        constexpr int first = 256;
+        std::vector<Control> candidates(first + 128);
+        for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].turn = static_cast<double>(i);
+        ControlParameters control;
+        control.candidates = candidates.data();
+        ScreeningWorkspace<StateLayout, Real> work;
+        std::vector<double> expected[4], taken[4];
+        for (int i = 0; i < (count + 7) / 8 * 8; ++i) {
+            work.left[i] = static_cast<std::uint8_t>(i < count ? random() % 16 : 0);
+            for (int lane = 0; lane < 4; ++lane)
+                if (work.left[i] >> lane & 1) expected[lane].push_back(first + i);
+        }
+        queue_left(count, work);
+        Command<Real> command;
+        for (Mask<Real> offered; any(offered = take_queued(control, first, work, command));)
+            for (int lane = 0; lane < 4; ++lane)
+                if (lane_bits(offered) >> lane & 1) taken[lane].push_back(lane_of(command.turn, lane));
+        for (int lane = 0; lane < 4; ++lane) CHECK(taken[lane] == expected[lane]);
+    }
 }

@@ -21,14 +21,23 @@ class EquiprobableCells {
 public:
     explicit EquiprobableCells(int degrees);
 
-    /// The cell of a value, 0 ... shape_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) / cells)).
-    int cell(double value) const {
-        if (!(value < limit_)) return shape_cells - 1;
-        int cell = value > 0 ? first_[static_cast<std::size_t>(value * scale_)] : 0;
-        cell += value >= upper_[static_cast<std::size_t>(cell)];  // mostly all, and no branch to guess
-        while (value >= upper_[static_cast<std::size_t>(cell)]) ++cell;
-        return cell;
-    }
+    /// The search for a value's cell, apart from the vectors it reads: loops that write keep it in registers.
+    struct Search {
+        const double* upper;
+        const std::uint16_t* first;
+        double limit, scale;
+
+        /// The cell of a value, 0 ... shape_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) / cells)).
+        int cell(double value) const {
+            if (!(value < limit)) return shape_cells - 1;
+            int cell = value > 0 ? first[static_cast<int>(value * scale)] : 0;
+            cell += value >= upper[cell];  // mostly all, and no branch to guess
+            while (value >= upper[cell]) ++cell;
+            return cell;
+        }
+    };
+    Search search() const { return {upper_.data(), first_.data(), limit_, scale_}; }
+    int cell(double value) const { return search().cell(value); }
     /// Upper bounds of the cells, the last one infinite.
     const std::vector<double>& upper() const { return upper_; }
 

@@ -58,11 +58,8 @@ Choice<Real> choose_by_screening(const ControlParameters& control, const FilterP
                        layout, parameters.kappa, screening);
         const Real threshold = smaller(cost(command), smaller(choice.best, limit)) * Real(1 + 1e-9);
         screen<ranged>(tangent, threshold, control, layout, parameters, first, count, screening);
-        for (int turn = 0;; ++turn) {
-            const Mask<Real> offered = fetch_queued(control, screening, turn, command);
-            if (!any(offered)) break;
+        for (Mask<Real> offered; any(offered = take_queued(control, first, screening, command));)
             choice.offer(command, cost(command), offered);
-        }
     }
     return choice;
 }

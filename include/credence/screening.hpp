@@ -22,8 +22,8 @@ struct ScreeningWorkspace {
     Real value[screening_chunk][Layout::feature_capacity];       ///< v_j of each candidate, where the noise is ranged
     Mask<Real> seen[screening_chunk][Layout::feature_capacity];  ///< where it is constant: whether v_j is not 0
     Symmetric<Real, Layout::capacity> covariance;                ///< of the reference
-    int queue[lanes<Real>][screening_chunk];                     ///< each lane's candidates that are left, in order
-    int queued[lanes<Real>];
+    std::uint8_t left[screening_chunk];                          ///< the lanes in which each candidate is left, as bits
+    std::uint64_t queue[lanes<Real>][screening_chunk / 64];      ///< the candidates that are left in each lane, as bits
 };
 
 /// kappa: with fresh feature noise q, and at most lambda for the largest eigenvalue of the edge graph's Laplacian,
@@ -186,34 +186,63 @@ CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const
     return tangent;
 }
 
-/// Queues, lane by lane and in order, the candidates first ... first + count - 1 whose bound does not lie above
-/// `threshold`.
+/// Eight rows of eight bits, a byte each, with rows and columns exchanged [Warren, Hacker's Delight, 2nd edition, 7-3].
+inline std::uint64_t transposed_bits(std::uint64_t rows) {
+    const auto exchange = [&](int distance, std::uint64_t which) {
+        const std::uint64_t different = (rows ^ (rows >> distance)) & which;
+        rows ^= different ^ (different << distance);
+    };
+    exchange(7, 0x00aa00aa00aa00aau);
+    exchange(14, 0x0000cccc0000ccccu);
+    exchange(28, 0x00000000f0f0f0f0u);
+    return rows;
+}
+
+/// Queues in each lane those of `count` candidates that are left in it. `left` goes on to a whole eight, with nothing.
+template <class Layout, class Real>
+void queue_left(int count, ScreeningWorkspace<Layout, Real>& work) {
+    for (auto& queue : work.queue)
+        for (std::uint64_t& word : queue) word = 0;
+    for (int i = 0; i < count; i += 8) {
+        std::uint64_t candidates = 0;
+        for (int next = 0; next < 8; ++next) candidates |= std::uint64_t{work.left[i + next]} << (8 * next);
+        if (candidates == 0) continue;
+        const std::uint64_t of_lanes = transposed_bits(candidates);
+        for (int lane = 0; lane < lanes<Real>; ++lane)
+            work.queue[lane][i / 64] |= (of_lanes >> (8 * lane) & 0xff) << (i % 64);
+    }
+}
+
+/// Queues, in each lane, the candidates first ... first + count - 1 whose bound does not lie above `threshold`.
 template <bool ranged, class Layout, class Real>
 CREDENCE_FLAT void screen(const Tangent<Layout, Real>& tangent, Real threshold, const ControlParameters& control,
                           const Layout& layout, const ValueParameters& parameters, int first, int count,
                           ScreeningWorkspace<Layout, Real>& work) {
-    for (int lane = 0; lane < lanes<Real>; ++lane) work.queued[lane] = 0;
+    static_assert(lanes<Real> <= 8);
     for (int i = 0; i < count; ++i) {
         const Real bound = tangent.bound(control.candidates[first + i].move, layout,
                                          [&](auto j) { return value_of<ranged>(work, parameters, i, j); });
-        for (unsigned left = lane_bits(negated(bound > threshold)); left != 0; left &= left - 1) {
-            const int lane = __builtin_ctz(left);
-            work.queue[lane][work.queued[lane]++] = first + i;
-        }
+        work.left[i] = static_cast<std::uint8_t>(lane_bits(negated(bound > threshold)));
     }
+    for (int i = count; i % 8 != 0; ++i) work.left[i] = 0;
+    queue_left(count, work);
 }
 
-/// The queued candidates number `turn`, one for each lane; which lanes have one.
+/// Takes the first candidate, counted from `first`, out of each lane's queue; which lanes had one.
 template <class Layout, class Real>
-Mask<Real> fetch_queued(const ControlParameters& control, const ScreeningWorkspace<Layout, Real>& work, int turn,
-                        Command<Real>& command) {
-    Real has_one = Real(0);
+Mask<Real> take_queued(const ControlParameters& control, int first, ScreeningWorkspace<Layout, Real>& work,
+                       Command<Real>& command) {
+    static_assert(screening_chunk == 128, "two words a queue");
+    unsigned offered = 0;
     for (int lane = 0; lane < lanes<Real>; ++lane) {
-        if (turn >= work.queued[lane]) continue;
-        fetch(control, work.queue[lane][turn], lane, command);
-        set_lane(has_one, lane, 1);
+        const int start = work.queue[lane][0] != 0 ? 0 : 64;
+        std::uint64_t& queue = work.queue[lane][start / 64];
+        if (queue == 0) continue;
+        fetch(control, first + start + __builtin_ctzll(queue), lane, command);
+        queue &= queue - 1;
+        offered |= 1u << lane;
     }
-    return has_one > Real(0);
+    return mask_of_bits<Real>(offered);
 }
 
 }  // namespace CREDENCE_UNIT
