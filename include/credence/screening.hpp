@@ -198,11 +198,12 @@ inline std::uint64_t transposed_bits(std::uint64_t rows) {
     return rows;
 }
 
-/// Queues in each lane those of `count` candidates that are left in it. `left` goes on to a whole eight, with nothing.
+/// Queues in each lane those of `count` candidates that are left in it.
 template <class Layout, class Real>
 void queue_left(int count, ScreeningWorkspace<Layout, Real>& work) {
     for (auto& queue : work.queue)
         for (std::uint64_t& word : queue) word = 0;
+    for (int i = count; i % 8 != 0; ++i) work.left[i] = 0;
     for (int i = 0; i < count; i += 8) {
         std::uint64_t candidates = 0;
         for (int next = 0; next < 8; ++next) candidates |= std::uint64_t{work.left[i + next]} << (8 * next);
@@ -224,7 +225,6 @@ CREDENCE_FLAT void screen(const Tangent<Layout, Real>& tangent, Real threshold, 
                                          [&](auto j) { return value_of<ranged>(work, parameters, i, j); });
         work.left[i] = static_cast<std::uint8_t>(lane_bits(negated(bound > threshold)));
     }
-    for (int i = count; i % 8 != 0; ++i) work.left[i] = 0;
     queue_left(count, work);
 }
 
