@@ -225,6 +225,9 @@ void Problem::fill_control() {
     view_.control.fixed = fixed_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
+    for (const Control& candidate : candidates_)
+        view_.control.squared_reach =
+            std::max(view_.control.squared_reach, squared(candidate.move.x) + squared(candidate.move.y));
     view_.control.horizon = *scenario_.planner.horizon;
 }
 

@@ -36,7 +36,7 @@ public:
                               [&](int, double cost) {
                                   within = cost < best * (1 - 1e-12) ? 1 : within + (cost <= best * (1 + 1e-12));
                                   best = std::min(best, cost);
-                              });
+                              }).command;
         tally_.candidates += view_.control.candidate_count;
         tally_.ties += within > 1;
         ++tally_.choices;

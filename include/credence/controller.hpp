@@ -12,6 +12,7 @@ struct ControlParameters {
     const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
     const Control* candidates = nullptr;  ///< in the order in which ties are decided
     int candidate_count = 0;
+    double squared_reach = 0;             ///< of the candidate that moves farthest
     int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
 };
 
@@ -85,10 +86,18 @@ struct Choice {
     }
 };
 
-/// Greedy control from pose k - 1 to k by the plain form, given the belief at pose k - 1. `costs(i, cost)` is told
-/// every candidate's cost.
+/// The first choice in some lanes, the second in the others.
+template <class Real>
+Choice<Real> chosen(Mask<Real> first, const Choice<Real>& a, const Choice<Real>& b) {
+    return {{select(first, a.command.turn, b.command.turn),
+             {select(first, a.command.move.x, b.command.move.x), select(first, a.command.move.y, b.command.move.y)}},
+            select(first, a.best, b.best)};
+}
+
+/// Greedy control from pose k - 1 to k by the plain form, given the belief at pose k - 1. `costs(i, cost)` receives every
+/// candidate's cost. `base` and `next` are room to work in.
 template <class Layout, class Real, int capacity, class Costs>
-Command<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlParameters& control,
+Choice<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlParameters& control,
                            const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
                            int k, Belief<Real, capacity>& base, Belief<Real, capacity>& next, Costs&& costs) {
     prepare_candidates(belief, filter, layout, k, base);
@@ -99,7 +108,7 @@ Command<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlPa
         costs(i, cost);
         choice.offer(candidate, cost);
     }
-    return choice.command;
+    return choice;
 }
 
 }  // namespace CREDENCE_UNIT

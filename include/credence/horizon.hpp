@@ -53,9 +53,8 @@ template <class Layout, class Real, int capacity>
 Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit) {
     if (steps == 1) {
-        auto& last = outlook.last_step;
-        prepare_still(belief, outlook.filter, outlook.layout, k, last.still);
-        return choose(outlook.control, outlook.filter, outlook.sensor, outlook.layout, limit, last).best;
+        const auto& [control, filter, sensor, layout, last_step] = outlook;
+        return choose(belief, control, filter, sensor, layout, k, limit, last_step).best;
     }
     Real least = without_limit<Real>();
     look_ahead(outlook, belief, k, steps, ahead, [&] { return smaller(least, limit); },

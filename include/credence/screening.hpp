@@ -56,6 +56,12 @@ Real greatest_value(const ValueParameters& parameters, Real squared) {
     return Real(1 + 1e-12) / fma(sigma, sigma, Real(parameters.kappa));
 }
 
+/// The largest v_j that a sighting can have.
+inline double largest_sighting_value(const ValueParameters& parameters, const SensorParameters& sensor) {
+    if (sensor.noise == RangeNoise::constant) return parameters.constant;
+    return 1 / (parameters.near * parameters.near + parameters.kappa);
+}
+
 /// What a move costs the reference, in units of v per |u|^2: a move lets the heading's variance into the position's.
 /// How much of trace(P) one v is worth is guessed: any reference will do, a good one leaves fewer candidates to decide.
 template <class Layout, class Real, int capacity>
