@@ -23,11 +23,21 @@ enum class Source : std::uint32_t {
     landmark_prior = 7,     ///< by landmark: what is believed of it before it is seen
 };
 
-/// What a draw is keyed by, beside the trial.
+/// What a draw is keyed by, beside the trial. Its index takes 16 bits.
 struct DrawKey {
     Source source;
     int pose, index;
 };
+
+/// How many sources a key can tell apart.
+constexpr int source_count = 16;
+
+/// The largest index of draws that are never truncated.
+constexpr int largest_wide_index = (1 << 27) - 1;
+
+/// The index of a key whose draw is never truncated, from one up to largest_wide_index: the attempt of such a draw is 0,
+/// so that the bits above the sixteenth have room where the attempt is in others. Below 65536 it is the index itself.
+constexpr int wide_index(int index) { return (index & 0xffff) | (index >> 16) << 20; }
 
 inline namespace CREDENCE_UNIT {
 

@@ -27,8 +27,9 @@ public:
     /// K
     virtual int poses() const = 0;
 
-    /// Two independent standard normal draws, keyed by source (0 to 15), pose (0 to 2^32 - 1) and index (0 to 65535):
-    /// never by the order of calls, and the same under every arm. A draw that is not needed need not be asked for.
+    /// Two independent standard normal draws, keyed by source (0 to 15), pose (from 0) and index (0 to 2^27 - 1): never by
+    /// the order of calls, and the same under every arm. A draw that is not needed need not be asked for. A key beyond
+    /// these ends the run with std::logic_error.
     virtual Eigen::Vector2d normal(int source, int pose, int index = 0) const = 0;
     /// Uniform on [0, 1), keyed likewise. Do not ask for both kinds under one key.
     virtual double uniform(int source, int pose, int index = 0) const = 0;
