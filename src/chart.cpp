@@ -26,21 +26,31 @@ std::string attribute(const std::string& name, double value) { return attribute(
 
 bool known(ChartPoint point) { return !std::isnan(point.x) && !std::isnan(point.y); }
 
-/// The outline of a mark about the origin.
+constexpr std::size_t colours = 6, distinct = 2 * colours;
+
+bool hollow(std::size_t series) { return series % distinct >= colours; }
+
+/// The outline of a mark about the origin; a colour's second series has another shape than its first.
 std::string outline(std::size_t series) {
-    switch (series % 4) {
+    switch ((series + (hollow(series) ? colours / 2 : 0)) % colours) {
         case 1:
             return "M0-4.4L4.4 0 0 4.4-4.4 0Z";
         case 2:
             return "M-3-3H3V3H-3Z";
         case 3:
             return "M0-4L4 3H-4Z";
+        case 4:
+            return "M0 4L4-3H-4Z";
+        case 5:
+            return "M-1.4-4H1.4V-1.4H4V1.4H1.4V4H-1.4V1.4H-4V-1.4H-1.4Z";
         default:
             return "M-3.2 0a3.2 3.2 0 1 0 6.4 0a3.2 3.2 0 1 0-6.4 0Z";
     }
 }
 
 }  // namespace
+
+std::string series_class(std::size_t series) { return "s" + std::to_string(series % distinct); }
 
 void Svg::add(const std::string& shape, const std::string& attributes, const std::string& hover) {
     body_ += "<" + shape + attributes;
@@ -84,7 +94,7 @@ void Svg::box(ChartPoint corner, ChartPoint opposite, const std::string& classes
 void Svg::mark(ChartPoint at, std::size_t series, const std::string& hover, const std::string& classes) {
     if (!known(at)) return;
     add("path",
-        attribute("class", "mark " + (classes.empty() ? "s" + std::to_string(series % 4) : classes)) +
+        attribute("class", "mark " + (classes.empty() ? series_class(series) + (hollow(series) ? " hollow" : "") : classes)) +
             attribute("transform", "translate(" + pair(at) + ")") + attribute("d", outline(series)),
         hover);
 }
@@ -97,11 +107,19 @@ void Svg::text(ChartPoint at, Anchor anchor, const std::string& text, const std:
 
 Html Svg::html(const std::string& id, const std::string& title, const std::string& description) const {
     const std::string safe = escaped(id).text();
-    return Html::trusted("<svg viewBox=\"0 0 " + coordinate(width_) + " " + coordinate(height_) + "\" role=\"img\"" +
+    return Html::trusted("<svg" + view_box() + " role=\"img\"" +
                          attribute("aria-labelledby", safe + "-t " + safe + "-d") + ">\n<title" +
                          attribute("id", safe + "-t") + ">" + escaped(title).text() + "</title>\n<desc" +
                          attribute("id", safe + "-d") + ">" + escaped(description).text() + "</desc>\n" + body_ +
                          "</svg>\n");
+}
+
+Html Svg::sign(const std::string& classes) const {
+    return Html::trusted("<svg" + attribute("class", classes) + view_box() + " aria-hidden=\"true\">" + body_ + "</svg>");
+}
+
+std::string Svg::view_box() const {
+    return attribute("viewBox", "0 0 " + coordinate(width_) + " " + coordinate(height_));
 }
 
 void Axes::draw(Svg& svg) const {

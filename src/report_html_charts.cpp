@@ -96,11 +96,13 @@ Html no_distributions(Keep keep) {
 }
 
 Html legend(const std::vector<std::string>& names) {
-    const char* const shapes[] = {"●", "◆", "■", "▲"};
     Html items;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        items += " <span><span aria-hidden=\"true\" class=\"k"_html + escaped(std::to_string(i % 4)) + "\">"_html +
-                 escaped(shapes[i % 4]) + "</span> "_html + escaped(names[i]) + "</span>"_html;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        Svg key(36, 12);
+        key.line({0, 6}, {36, 6}, "line " + series_class(i));
+        key.mark({18, 6}, i, {});
+        items += " <span>"_html + key.sign("key") + " "_html + escaped(names[i]) + "</span>"_html;
+    }
     return element("p", items, "class=\"legend\""_html) + "\n"_html;
 }
 
@@ -133,7 +135,7 @@ Html equivalence_chart(const Part& part) {
         const double y = rows.y(row, arm);
         const std::string says = part.arms[arm]->arm + ", " + block.block + ": NEES/dim " +
                                  short_number(block.run.mean) + interval_text(interval);
-        svg.line({x(interval.low), y}, {x(interval.high), y}, "whisker s" + std::to_string(arm % 4), says);
+        svg.line({x(interval.low), y}, {x(interval.high), y}, "whisker " + series_class(arm), says);
         svg.mark({x(block.run.mean), y}, arm, says);
         described += says + ". ";
     });

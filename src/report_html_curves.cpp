@@ -57,7 +57,7 @@ private:
 
     /// A line through the means with its band; of values that are no numbers, or of a single one, marks and whiskers.
     void draw_curve(std::size_t number, const std::vector<Dot>& dots) {
-        const std::string series = std::to_string(number % 4);
+        const std::string series = series_class(number);
         std::vector<ChartPoint> middle, upper, lower;
         for (const Dot& dot : dots) {
             const double x = across(dot.place);
@@ -67,12 +67,12 @@ private:
         }
         const bool curved = has_numbers() && dots.size() > 1;
         if (curved) {
-            svg_.area(upper, lower, "spread s" + series);
-            svg_.path(middle, "line s" + series);
+            svg_.area(upper, lower, "spread " + series);
+            svg_.path(middle, "line " + series);
         }
         for (std::size_t i = 0; i < dots.size(); ++i) {
             const std::string says = sentence(all_.names[number], dots[i]);
-            if (!curved) svg_.line(lower[i], upper[i], "whisker s" + series, says);
+            if (!curved) svg_.line(lower[i], upper[i], "whisker " + series, says);
             svg_.mark(middle[i], number, says);
             described_ += says + ". ";
         }

@@ -81,9 +81,8 @@ void draw_published(Svg& svg, const Scale& x, const FigureReport& figure, double
 std::string draw_sample(Svg& svg, const Scale& x, const Sample& sample, double foot) {
     const FigureReport& figure = *sample.figure;
     const Summary& s = figure.summary;
-    const std::string series = std::to_string(sample.number % 4);
     svg.text({left, foot - bar - 5}, Anchor::start, sample.arm, "label row");
-    draw_bars(svg, x, *figure.histogram, foot, "bar s" + series, sample.arm);
+    draw_bars(svg, x, *figure.histogram, foot, "bar " + series_class(sample.number), sample.arm);
     svg.text({x.to, foot - bar - 5}, Anchor::end, "highest bar " + percent_text(largest_share(*figure.histogram)));
     draw_published(svg, x, figure, foot);
     svg.line({x(s.median), foot + 1}, {x(s.median), foot - 9}, "median",

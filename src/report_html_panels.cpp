@@ -74,15 +74,20 @@ std::string hover(const Series& series, std::size_t k) {
            short_number(ratio.simultaneous_band[k].low) + " to " + short_number(ratio.simultaneous_band[k].high) + ")";
 }
 
-void draw_series(Svg& svg, const Axes& axes, const Series& series) {
+/// A line and its marks: of the series at `place` among more than two, marks at steps of its own, so that none hides
+/// another's, and at the last.
+void draw_series(Svg& svg, const Axes& axes, const Series& series, std::size_t place, std::size_t among) {
     const std::vector<double>& values = series.ratio->ratio;
     const auto at = [&](std::size_t k) {
         return ChartPoint{axes.x(static_cast<double>(k) + 1), std::isnan(values[k]) ? values[k] : axes.y(values[k])};
     };
     std::vector<ChartPoint> line;
     for (const std::size_t k : thinned_line(values, most_line_points)) line.push_back(at(k));
-    svg.path(line, "line s" + std::to_string(series.number % 4));
-    for (const std::size_t k : thinned(values.size(), most_marks)) svg.mark(at(k), series.number, hover(series, k));
+    svg.path(line, "line " + series_class(series.number));
+    const std::vector<std::size_t> places = thinned(values.size(), most_marks);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (among <= 2 || i % among == place || i + 1 == places.size())
+            svg.mark(at(places[i]), series.number, hover(series, places[i]));
 }
 
 std::string description(const Panel& panel, const std::string& measure) {
@@ -109,7 +114,8 @@ Html panels_html(const Part& part, const std::vector<Panel>& panels, const std::
         draw_bands(svg, axes, panels[i]);
         axes.draw(svg);
         svg.line({left, y(1)}, {right, y(1)}, "ideal");
-        for (const Series& series : panels[i].series) draw_series(svg, axes, series);
+        const std::vector<Series>& series = panels[i].series;
+        for (std::size_t s = 0; s < series.size(); ++s) draw_series(svg, axes, series[s], s, series.size());
         html +=
             chart(panels[i].name, svg.html(part.id(what + std::to_string(i)),
                                            part.scenario.name + ": " + measure + " of " + panels[i].name + " by step",
@@ -184,7 +190,7 @@ Html whiteness_chart(const Part& part) {
         for (const Whiteness& lag : lags) {
             const std::string says = "lag " + std::to_string(lag.lag) + ": " + short_number(lag.scaled) +
                                      " (white within ± " + short_number(lag.bound) + ")";
-            svg.line({x(lag.lag), axes.y(0)}, {x(lag.lag), axes.y(lag.scaled)}, "line s" + std::to_string(i % 4));
+            svg.line({x(lag.lag), axes.y(0)}, {x(lag.lag), axes.y(lag.scaled)}, "line " + series_class(i));
             svg.mark({x(lag.lag), axes.y(lag.scaled)}, i, part.arms[i]->arm + ", " + says);
             described += says + ". ";
         }

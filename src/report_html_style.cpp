@@ -1,5 +1,6 @@
 // What the page looks like. Colours: Okabe and Ito's, made darker (on light) or lighter (on dark) until text in them
-// has a contrast of 4.5 : 1; arms differ by the shape of their marks and the dash of their lines as well.
+// has a contrast of 4.5 : 1, the last two of arms, which no text has, of 3 : 1; arms differ by the shape of their marks and the
+// dash of their lines as well.
 
 #include "report_html.hpp"
 
@@ -9,11 +10,11 @@ namespace {
 
 constexpr char text[] =
     R"(:root { --paper: #fff; --ink: #1b1f24; --soft: #57606a; --line: #d0d7de; --panel: #f6f8fa; --link: #0a5a9c;
-  --s0: #00629f; --s1: #b34700; --s2: #00734f; --s3: #9a3f78; --band: #b6bec8; --joint: #dde2e8; --margin: #cfe8dc;
+  --s0: #00629f; --s1: #b34700; --s2: #00734f; --s3: #9a3f78; --s4: #b37a00; --s5: #3a8fc2; --band: #b6bec8; --joint: #dde2e8; --margin: #cfe8dc;
   --consistent: #00694a; --optimistic: #a84300; --pessimistic: #005a94; --mixed: #8f3a6e; --undecided: #57606a; }
 @media screen and (prefers-color-scheme: dark) {
   :root { --paper: #14181d; --ink: #e6eaef; --soft: #a3adb8; --line: #3a424c; --panel: #1c2229; --link: #7cbcf0;
-    --s0: #6ab7ec; --s1: #f09a5c; --s2: #4cc79a; --s3: #e39ac6; --band: #535d69; --joint: #323a44; --margin: #1f4a3a;
+    --s0: #6ab7ec; --s1: #f09a5c; --s2: #4cc79a; --s3: #e39ac6; --s4: #f4d47c; --s5: #c4e3f7; --band: #535d69; --joint: #323a44; --margin: #1f4a3a;
     --consistent: #4cc79a; --optimistic: #f5a36a; --pessimistic: #7cbcf0; --mixed: #e39ac6; --undecided: #a3adb8; }
 }
 * { box-sizing: border-box; }
@@ -75,22 +76,19 @@ svg { display: block; width: 100%; height: auto;
 .axis { stroke: var(--soft); fill: none; } .grid { stroke: var(--line); stroke-width: .6; }
 .ideal { stroke: var(--ink); stroke-width: 1; stroke-dasharray: 1 2.5; } .margin { fill: var(--margin); }
 .band { fill: var(--band); fill-opacity: .75; } .joint { fill: var(--joint); }
-.mark { stroke: var(--paper); stroke-width: .8; } .line, .whisker { fill: none; stroke-width: 1.5; }
-  .whisker { stroke-width: 2.2; stroke: var(--ink); }
-.mark:hover { stroke: var(--ink); stroke-width: 1.5; }
-.line.s0, .whisker.s0 { stroke: var(--s0); } .line.s1, .whisker.s1 { stroke: var(--s1); }
-  .line.s1 { stroke-dasharray: 5 2.5; }
-.line.s2, .whisker.s2 { stroke: var(--s2); } .line.s3, .whisker.s3 { stroke: var(--s3); }
-  .line.s2 { stroke-dasharray: 2 2; }
-.mark.s0, .bar.s0 { fill: var(--s0); } .mark.s1, .bar.s1 { fill: var(--s1); } .mark.s2, .bar.s2 { fill: var(--s2); }
-  .mark.s3, .bar.s3 { fill: var(--s3); }
-.mark.pair { fill: var(--ink); }
-.bar { fill-opacity: .8; } .bar:hover { fill-opacity: 1; } .pair { fill: var(--soft); }
-.spread { fill-opacity: .22; } .spread.s0 { fill: var(--s0); } .spread.s1 { fill: var(--s1); }
-  .spread.s2 { fill: var(--s2); } .spread.s3 { fill: var(--s3); }
+.s0, .s6 { --own: var(--s0); } .s1, .s7 { --own: var(--s1); } .s2, .s8 { --own: var(--s2); }
+.s3, .s9 { --own: var(--s3); } .s4, .s10 { --own: var(--s4); } .s5, .s11 { --own: var(--s5); }
+.line, .whisker { fill: none; stroke: var(--own, var(--ink)); stroke-width: 1.5; } .whisker { stroke-width: 2.2; }
+.line:is(.s1, .s10) { stroke-dasharray: 5 2.5; } .line:is(.s2, .s11) { stroke-dasharray: 2 2; }
+.line:is(.s3, .s6) { stroke-dasharray: 9 2 2 2; } .line:is(.s4, .s7) { stroke-dasharray: 12 3; }
+.line:is(.s5, .s8) { stroke-dasharray: 6 2 1.5 2 1.5 2; }
+.mark, .bar, .spread { fill: var(--own); } .mark { stroke: var(--paper); stroke-width: .8; }
+.mark.hollow { fill: var(--paper); stroke: var(--own); stroke-width: 1.6; }
+.mark:hover { stroke: var(--ink); stroke-width: 1.5; } .mark.pair { fill: var(--ink); }
+.bar { fill-opacity: .8; } .bar:hover { fill-opacity: 1; } .pair { fill: var(--soft); } .spread { fill-opacity: .22; }
+.key { display: inline-block; width: 36px; vertical-align: -.1em; }
 .median { stroke: var(--ink); stroke-width: 2; } .published { stroke: var(--ink); stroke-width: 1.5;
   stroke-dasharray: 4 2; }
-.k0 { color: var(--s0); } .k1 { color: var(--s1); } .k2 { color: var(--s2); } .k3 { color: var(--s3); }
 @media (max-width: 44rem) { .verdicts li { grid-template-columns: 1fr; gap: 0; } h1 { font-size: 1.45rem; } }
 @media print {
   @page { margin: 14mm; }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 using namespace credence;
 using Catch::Contains;
@@ -103,12 +104,27 @@ TEST_CASE("chart: a drawing has its words, its marks, and gaps where there is no
     Svg svg(100, 50);
     svg.path({{0, 1}, {1, 2}, {2, none}, {3, 4.126}}, "line");
     svg.mark({none, 1}, 0, "nowhere");
-    svg.mark({5, 5}, 6, "here");
+    svg.mark({5, 5}, 14, "here");
     const std::string text = svg.html("id", "title", "described").text();
     CHECK_THAT(text, Contains("d=\"M0 1L1 2M3 4.13\""));
     CHECK_THAT(text, !Contains("nowhere") && Contains("<title>here</title>") && Contains("mark s2"));
     CHECK_THAT(
         text, Contains("role=\"img\" aria-labelledby=\"id-t id-d\"") && Contains("<desc id=\"id-d\">described</desc>"));
+}
+
+TEST_CASE("chart: twelve series differ in class and in mark, and those of one colour in shape and filling") {
+    std::set<std::string> classes, marks;
+    for (std::size_t series = 0; series < 12; ++series) {
+        classes.insert(series_class(series));
+        Svg svg(10, 10);
+        svg.mark({5, 5}, series, {}, series < 6 ? "filled" : "hollow");
+        marks.insert(svg.sign("").text());
+        Svg own(10, 10);
+        own.mark({5, 5}, series, {});
+        CHECK((own.sign("").text().find("hollow") != std::string::npos) == (series >= 6));
+    }
+    CHECK(classes.size() == 12);
+    CHECK(marks.size() == 12);
 }
 
 TEST_CASE("histogram: every value is counted once, whole numbers have bins of their own, 0 is an edge") {

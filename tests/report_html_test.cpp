@@ -127,8 +127,8 @@ TEST_CASE("page: every chart has marks with their values, and words for who does
     const std::string page = page_of(small_report());
     // The verdict's picture and coverage; NEES of 6 blocks; NIS of 3 groups; whiteness of 2 arms; 3 distributions; 6
     // differences.
-    CHECK(count_of(page, "<svg ") == 2 + 6 + 3 + 2 + 3 + 6);
-    for (auto at = page.find("<svg "); at != std::string::npos; at = page.find("<svg ", at + 1)) {
+    CHECK(count_of(page, "<svg viewBox") == 2 + 6 + 3 + 2 + 3 + 6);
+    for (auto at = page.find("<svg viewBox"); at != std::string::npos; at = page.find("<svg viewBox", at + 1)) {
         const std::string svg = page.substr(at, page.find("</svg>", at) - at);
         CHECK(count_of(svg, "class=\"mark") + count_of(svg, "class=\"bar") >= 4);
         CHECK(count_of(svg, "role=\"img\" aria-labelledby=") == 1);

@@ -50,6 +50,10 @@ struct ChartPoint {
 
 enum class Anchor { start, middle, end };
 
+/// The class of a series by its number, s0 ... s11: colour and dash of its lines. The first six have a colour each; the
+/// second six have these once more, with other dashes and hollow marks.
+std::string series_class(std::size_t series);
+
 /// One drawing. `classes` name what the style sheet knows; a `hover` text shows where the pointer rests.
 class Svg {
 public:
@@ -61,16 +65,19 @@ public:
     /// Between two lines of as many points, left to right.
     void area(const std::vector<ChartPoint>& upper, const std::vector<ChartPoint>& lower, const std::string& classes);
     void box(ChartPoint corner, ChartPoint opposite, const std::string& classes, const std::string& hover = {});
-    /// A mark of a series, by its number: circle, diamond, square or triangle, of class s0 ... s3 if of no other.
+    /// A mark of a series, by its number: one of six shapes, filled or hollow, of the series' class if of no other.
     void mark(ChartPoint at, std::size_t series, const std::string& hover, const std::string& classes = {});
     void text(ChartPoint at, Anchor anchor, const std::string& text, const std::string& classes = "label");
     /// With `title` and `description` as its text alternative; `id` is unique on the page.
     Html html(const std::string& id, const std::string& title, const std::string& description) const;
+    /// As a sign beside words that say the same; of class `classes`.
+    Html sign(const std::string& classes) const;
 
     double width() const { return width_; }
     double height() const { return height_; }
 
 private:
+    std::string view_box() const;
     void add(const std::string& shape, const std::string& attributes, const std::string& hover);
 
     double width_, height_;

@@ -3,7 +3,7 @@
   const text = (node) => node.textContent.trim().replace(/\s+/g, " ");
 
   // Charts whose marks, or whose letters, lie beyond their drawing; and those without marks or words.
-  const charts = () => [...document.querySelectorAll("svg")].map((svg) => {
+  const charts = () => [...document.querySelectorAll("figure svg")].map((svg) => {
     const frame = svg.getBoundingClientRect(), faults = [];
     const inside = (node) => {
       const box = node.getBoundingClientRect(), slack = 1;
@@ -71,7 +71,8 @@
   // Colours of marks against the paper: 3 : 1 [WCAG 2.1, 1.4.11].
   const paleMarks = () => [...new Set([...document.querySelectorAll(
     ".mark, .line, .whisker, .published, .median")].map((mark) => {
-    const style = getComputedStyle(mark), front = mark.classList.contains("mark") ? style.fill : style.stroke;
+    const style = getComputedStyle(mark),
+          front = mark.matches(".mark:not(.hollow)") ? style.fill : style.stroke;
     const [a, b] = [luminance(front), luminance(behind(mark))].sort((x, y) => y - x);
     return (a + 0.05) / (b + 0.05) < 3 ? mark.getAttribute("class") + " " + front : "";
   }))].filter((text) => text !== "");
