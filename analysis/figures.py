@@ -89,4 +89,7 @@ def main(study_file, traces, output):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        print("usage: figures.py STUDY.h5 TRACES OUTPUT", file=sys.stderr)
+        sys.exit(2)
     main(*sys.argv[1:])

@@ -8,6 +8,7 @@
 #include <hdf5_hl.h>
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <vector>
 
@@ -25,6 +26,10 @@ bool write_record(const char* path, hsize_t trials, hsize_t steps, hsize_t n, co
 
 /// An example: a random walk in the plane, measured at every step, and the Kalman filter that knows it.
 int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("usage: write_record RECORD.h5\n", stderr);
+        return 2;
+    }
     const hsize_t trials = 10000, steps = 20, n = 2;
     const double q = 0.1, r = 0.5;
     std::mt19937_64 engine(1);
@@ -44,5 +49,5 @@ int main(int argc, char** argv) {
             covariances.insert(covariances.end(), {P, 0, 0, P});
         }
     }
-    return argc == 2 && write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x 0:1, y 1:2") ? 0 : 1;
+    return write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x 0:1, y 1:2") ? 0 : 1;
 }

@@ -18,6 +18,10 @@ function write_record(path, e, P, blocks)
   ncwriteatt(path, "/", "blocks", blocks);
 end
 
+if numel(argv()) != 1
+  fputs(stderr, "usage: octave write_record.m RECORD.h5\n");
+  exit(2);
+end
 pkg load netcdf
 randn("seed", 1);
 trials = 2000; steps = 10; L = [1 0 0; 0.5 2 0; 0.3 0.1 0.7];   % an example: errors drawn from N(0, L L')

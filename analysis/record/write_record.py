@@ -7,6 +7,10 @@ Copy `write_record` into your own script. The example below it is a constant-vel
 """
 import sys
 
+if __name__ == "__main__" and len(sys.argv) != 2:  # said before anything that may not be installed is imported
+    print("usage: write_record.py RECORD.h5", file=sys.stderr)
+    sys.exit(2)
+
 import h5py
 import numpy as np
 
