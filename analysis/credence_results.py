@@ -130,10 +130,13 @@ def mean_with_interval(arm, name, minus=None):
     return np.array([means.mean, means.low, means.high])
 
 
-def as_dataset(file, grid, columns=("trace_P", "pose_error", "nees_ratio", "nis_ratio")):
-    """The grid as an xarray.Dataset: COLUMN, COLUMN_low and COLUMN_high over the swept keys and the arms. Needs xarray."""
+def as_dataset(file, grid, columns=("trace_P", "pose_error", "squared_error", "nees_ratio", "nis_ratio")):
+    """The grid as an xarray.Dataset: COLUMN, COLUMN_low and COLUMN_high over the swept keys and the arms, of those columns
+    that the world has. Needs xarray."""
     import xarray
 
+    first = next(iter(file[next(name for name in grid.names.flat if name)].values()))
+    columns = [name for name in columns if has_column(first, name)]
     arm_names = list(dict.fromkeys(arm for name in grid.names.flat if name for arm in file[name]))
     variables = {}
     for name in columns:
@@ -180,6 +183,11 @@ def column(arm, name):
     if "_FillValue" in arm[name].attrs:
         values[values == arm[name].attrs["_FillValue"][0]] = np.nan
     return values
+
+
+def has_column(arm, name):
+    """Whether the world of an arm has that column, with a number for each trial or as a total."""
+    return name in (arm if keeps_trials(arm) else text(arm["column"], "column_names").split())
 
 
 def units(arm, name):

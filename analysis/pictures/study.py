@@ -21,29 +21,31 @@ def title(figure, scenario, what=""):
 
 def _per_step(axis, scenario, figure, label):
     """A ratio that is 1 for a consistent filter, with its interval (shade of the arm's colour) and classical band."""
-    for index, (arm, group) in enumerate(scenario.items()):
+    for index, group in enumerate(scenario.values()):
         degrees = results.degrees(group, figure)
-        measured, line = degrees > 0, style.arm_style(index)
+        measured, line = degrees > 0, style.arm_line(index, len(scenario), int((degrees > 0).sum()))
         step, means = group["step"][:][measured], results.per_step(group, figure)
         scale = int(group.attrs["counted_trials"]) / degrees[measured]  # from a mean over trials to one over degrees
         axis.fill_between(step, *results.chi_square_band(degrees[measured]), color=style.BAND, linewidth=0, zorder=0,
                           label=None if index else "95 % band of a consistent filter")
         axis.fill_between(step, means.low[measured] * scale, means.high[measured] * scale, color=line["color"],
                           alpha=0.25, linewidth=0)
-        axis.plot(step, means.mean[measured] * scale, label=arm, marker=style.ARM_MARKERS[index % 6], **line)
+        axis.plot(step, means.mean[measured] * scale, **line)
     axis.axhline(1, color=style.GREY, linewidth=0.6, zorder=0.5)
     style.step_axis(axis, group["step"][:])
     axis.set_ylabel(label)
 
 
 def consistency(scenario, width=style.PAGE):
-    """NEES and NIS per step with their bands."""
-    figure, (left, right) = style.panels(2, 68, width)
-    _per_step(left, scenario, "nees", "NEES / state dimension")
-    _per_step(right, scenario, "nis", "NIS / measurement rows")
-    arms, labels = left.get_legend_handles_labels()
-    style.legend_above(left, handles=arms[1:], labels=labels[1:])
-    style.legend_above(right, handles=arms[:1], labels=labels[:1])
+    """NEES and, of filters that have innovations, NIS per step with their bands."""
+    first = next(iter(scenario.values()))
+    ratios = [("nees", "NEES / state dimension"), ("nis", "NIS / measurement rows")]
+    ratios = [(figure, label) for figure, label in ratios if figure in results.figures(first, figure)]
+    figure, axes = style.panels(len(ratios), 68, width)
+    for axis, (name, label) in zip(np.atleast_1d(axes), ratios):
+        _per_step(axis, scenario, name, label)
+    style.legend_above(np.atleast_1d(axes)[0])
+    style.arms_below(figure, scenario)
     title(figure, scenario, "; shades: 95 % intervals of the means")
     return figure
 
@@ -65,7 +67,7 @@ def draw_distribution(axis, scenario, name, label, runs=None):
         if values.size == 0:
             continue
         axis.plot(np.r_[values[0], values], 100 * np.arange(values.size + 1) / values.size, drawstyle="steps-post",
-                  label=arm, rasterized=values.size > 20000, **style.arm_style(index))
+                  label=arm, rasterized=values.size > 20000, **style.arm_style(index, len(scenario)))
         for what, marker, given in marks:
             if arm in given:
                 place = percentile(values, given[arm])
@@ -76,83 +78,100 @@ def draw_distribution(axis, scenario, name, label, runs=None):
     axis.set_xlabel(label + style.unit_text(results.units(next(iter(scenario.values())), name)))
     axis.set_ylabel("trials at or below [%]")
     axis.set_ylim(0, 100)
-    if name == "trace_P" and 0 < lowest < highest:
+    if name in ("trace_P", "squared_error") and 0 < lowest < highest:
         style.logarithmic(axis.xaxis, lowest / 1.1, highest * 1.1)
 
 
+# What is drawn of trials, with its name in words: what the scenario's world has of it.
+TRIAL_FIGURES = {"trace_P": "trace(P) at the last pose", "unseen": "features unseen, summed over the poses",
+                 "squared_error": "squared error, summed over the steps"}
+DIFFERENCES = {"trace_P": "trace(P)", "unseen": "unseen", "pose_error": "pose error", "squared_error": "squared error"}
+
+
+def _of_world(scenario, words):
+    """Those columns that the arms of a scenario have."""
+    first = next(iter(scenario.values()))
+    return {name: label for name, label in words.items() if results.has_column(first, name)}
+
+
 def distributions(scenario, width=style.PAGE):
-    """Distributions of trace(P) and unseen per arm, with the published single run marked."""
-    figure, (left, right) = style.panels(2, 84, width)
-    draw_distribution(left, scenario, "trace_P", "trace(P) at the last pose")
-    draw_distribution(right, scenario, "unseen", "features unseen, summed over the poses")
-    for axis in (left, right):
-        style.legend_above(axis, columns=1)
+    """Distributions of trace(P) and of what else the world counts, with the published single run marked."""
+    drawn = _of_world(scenario, TRIAL_FIGURES)
+    figure, axes = style.panels(len(drawn), 74, width)
+    for axis, (name, label) in zip(axes, drawn.items()):
+        draw_distribution(axis, scenario, name, label)
+        runs = [(handle, text) for handle, text in zip(*axis.get_legend_handles_labels()) if text not in scenario]
+        if runs:
+            style.legend_above(axis, columns=1, handles=[handle for handle, _ in runs], labels=[text for _, text in runs])
+    handles, labels = axes[0].get_legend_handles_labels()
+    style.legend_below(figure, *zip(*[(handle, text) for handle, text in zip(handles, labels) if text in scenario]))
     title(figure, scenario, "; in brackets the share of trials below" if results.published(scenario, "trace_P") else "")
     return figure
 
 
 def pairs(scenario):
     """(planned, fixed) arms of the same estimator."""
-    return [(arm, "fixed." + arm.split(".", 1)[1]) for arm in scenario
-            if not arm.startswith("fixed.") and "fixed." + arm.split(".", 1)[1] in scenario]
+    named = [(arm, "fixed." + arm.partition(".")[2]) for arm in scenario]
+    return [(arm, fixed) for arm, fixed in named if arm != fixed and fixed in scenario]
 
 
 def _draw_difference(axis, scenario, name, label):
     """The share of trials at or below each difference of planned and fixed, and the mean with its interval. The curve
     crosses 0 at the share of trials in which the planned path has less."""
     reach = scale = 0.0
-    for index, (planned, fixed) in enumerate(pairs(scenario)):
+    paired = pairs(scenario)
+    for index, (planned, fixed) in enumerate(paired):
         difference = results.column(scenario[planned], name) - results.column(scenario[fixed], name)
         difference = np.sort(difference[~np.isnan(difference)])
         if difference.size < 2:
             continue
-        line, mean = style.arm_style(index + 2) | {"linestyle": "-"}, difference.mean()
+        line, mean = _pair_style(index, len(paired)), difference.mean()
         half = stats.t.ppf(0.975, difference.size - 1) * difference.std(ddof=1) / np.sqrt(difference.size)
         axis.plot(difference, 100 * np.arange(1, difference.size + 1) / difference.size, drawstyle="steps-post", **line,
-                  label=f"{planned} \N{MINUS SIGN} {fixed}" if len(pairs(scenario)) > 1 else None)
+                  label=f"{style.with_half_width(mean, half)}; {100 * np.mean(difference < 0):.0f} % < 0")
         axis.axvspan(mean - half, mean + half, color=line["color"], alpha=0.3, linewidth=0)
-        axis.axvline(mean, color=line["color"], linewidth=0.8, label=style.with_half_width("mean", mean, half))
-        axis.plot([], [], " ", label=f"below 0 in {100 * np.mean(difference < 0):.0f} %")
+        axis.axvline(mean, color=line["color"], linewidth=0.8)
         reach = max(reach, np.quantile(np.abs(difference), 0.999))
         scale = max(scale, np.median(np.abs(difference)))
     axis.axvline(0, color="black", linewidth=0.6)
     if name != "unseen" and scale > 0:
         style.root_axis(axis, scale, reach)
-    unit = results.units(next(iter(scenario.values())), name)
-    axis.set(xlabel=label + style.unit_text(unit), ylabel="trials at or below [%]", ylim=(0, 100))
+    unit = style.unit_text(results.units(next(iter(scenario.values())), name)).replace(" ", "\n", 1)
+    axis.set(xlabel=f"difference of {label}{unit}", ylabel="trials at or below [%]", ylim=(0, 100))
+
+
+def _pair_style(index, count):
+    """Pairs have other colours than the first two arms, and the only one a line without dashes."""
+    return style.arm_style(index + 2, count + 2) | ({"linestyle": "-"} if count == 1 else {})
 
 
 def paired(scenario, width=style.PAGE):
-    """Paired differences planned - fixed of trace(P), unseen and pose error; None where no arms pair."""
-    if not pairs(scenario):
+    """Paired differences planned - fixed of what the world counts by trial; None where no arms pair."""
+    if not (names := [f"{planned} \N{MINUS SIGN} {fixed}" for planned, fixed in pairs(scenario)]):
         return None
-    figure, axes = style.panels(3, 74, width)
-    for axis, name, label in zip(axes, ("trace_P", "unseen", "pose_error"),
-                                 ("difference of trace(P)", "difference of unseen", "difference of pose error")):
+    drawn = _of_world(scenario, DIFFERENCES)
+    figure, axes = style.panels(len(drawn), 66 + 4 * len(names), width)
+    for axis, (name, label) in zip(axes, drawn.items()):
         _draw_difference(axis, scenario, name, label)
-        style.legend_above(axis, columns=1)
-    names = ", ".join(f"{planned} \N{MINUS SIGN} {fixed}" for planned, fixed in pairs(scenario))
-    title(figure, scenario, f"; {names}, trial by trial")
+        style.legend_above(axis, columns=1, fontsize=7, handlelength=1.4, handletextpad=0.5)
+    if len(names) > 1:
+        keys = [style.plt.Line2D([], [], **_pair_style(index, len(names))) for index in range(len(names))]
+        style.legend_below(figure, keys, names)
+    what = names[0] if len(names) == 1 else "planned \N{MINUS SIGN} fixed"
+    title(figure, scenario, f"; {what}, trial by trial; above: means, and trials below 0")
     return figure
 
 
-def _draw_coverage(axis, scenario):
-    """Shares of trials whose NEES lies below a quantile of chi-square, per step, beside what they should be. All of the
-    trials, or none, are drawn at the edge: the axis ends before 0 and 1."""
-    least = 0.5
-    for index, (arm, group) in enumerate(scenario.items()):
-        shares = np.clip(group["nees_covered"][:] / int(group.attrs["counted_trials"]), 0.001, 0.9995)
-        least = min(least, shares.min())
-        for column in range(shares.shape[1]):
-            axis.plot(group["step"][:], shares[:, column], label=None if column else arm, **style.arm_style(index))
-    for level in group["level"][:]:
-        axis.axhline(level, color=style.GREY, linewidth=0.8, zorder=0)
-    ticks = np.array([0.001, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 0.999])
-    axis.set_yscale("logit")
-    axis.set_yticks(ticks, [f"{100 * tick:g}" for tick in ticks])
-    axis.minorticks_off()
+def _draw_coverage(axis, scenario, column):
+    """The share of trials whose NEES lies below one quantile of chi-square, per step, beside what it should be."""
+    for index, group in enumerate(scenario.values()):
+        shares = 100 * group["nees_covered"][:, column] / int(group.attrs["counted_trials"])
+        axis.plot(group["step"][:], shares, **style.arm_line(index, len(scenario), shares.size))
+    level = 100 * group["level"][column]
+    axis.axhline(level, color=style.GREY, linewidth=0.8, zorder=0)
     style.step_axis(axis, group["step"][:])
-    axis.set(ylabel="NEES below a quantile of χ² [% of trials]", ylim=(0.85 * least, 0.9996))
+    axis.xaxis.get_major_locator().set_params(nbins=4)
+    axis.set_title(f"{level:g} % quantile")
 
 
 def _draw_blocks_coverage(axis, scenario, level=0.95):
@@ -162,7 +181,7 @@ def _draw_blocks_coverage(axis, scenario, level=0.95):
         at = int(np.argmin(np.abs(group["level"][:] - level)))
         shares = [100 * group[f"{f}_covered"][:, at].mean() / int(group.attrs["counted_trials"]) for f in figures]
         axis.plot(shares, np.arange(len(figures)) + style.aside(index, len(scenario)), linestyle="none",
-                  marker=style.ARM_MARKERS[index % 6], markersize=4.5, color=style.arm_style(index)["color"])
+                  markersize=4, **style.arm_mark(index))
     axis.axvline(100 * level, color=style.GREY, linewidth=0.8, zorder=0)
     axis.set_yticks(range(len(figures)), [results.text(group[f"{f}_total"], "part_of") for f in figures])
     axis.set_ylim(len(figures) - 0.5, -0.5)
@@ -174,18 +193,29 @@ def _draw_shape(axis, scenario, bins=32):
     for index, group in enumerate(scenario.values()):
         if "nees_cells" in group:
             counts = group["nees_cells"][:].sum(axis=0).reshape(bins, -1).sum(axis=1)
-            axis.stairs(counts * bins / counts.sum(), np.linspace(0, 1, bins + 1), **style.arm_style(index))
+            axis.stairs(counts * bins / counts.sum(), np.linspace(0, 1, bins + 1),
+                        **style.arm_style(index, len(scenario)))
     axis.axhline(1, color=style.GREY, linewidth=0.6, zorder=0)
     axis.set(xlabel="share of χ² below NEES\n(all steps)", ylabel="density", xlim=(0, 1), ylim=(0, None))
 
 
 def coverage(scenario, width=style.PAGE):
-    """Coverage of NEES by step and by block, and the shape of its distribution."""
-    blocks = len(results.figures(next(iter(scenario.values())), "nees"))
-    figure, axes = style.panels(3, max(74, 34 + 3.6 * blocks), width)
-    _draw_coverage(axes[0], scenario)
-    _draw_blocks_coverage(axes[1], scenario)
-    _draw_shape(axes[2], scenario)
-    style.legend_above(axes[0])
+    """Coverage of NEES by step, a panel for each quantile; coverage by block; and the shape of its distribution."""
+    first = next(iter(scenario.values()))
+    levels, blocks = first["level"].size, len(results.figures(first, "nees"))
+    across = levels if width >= style.PAGE else 2
+    rows = -(-levels // across)  # of levels; below them block and shape, side by side or one below the other
+    below = min(200, max(62, 26 + max(3.6, 1.2 * len(scenario)) * blocks))
+    heights = [54] * rows + [below] * (1 if width >= style.PAGE else 2)
+    figure = style.plt.figure(figsize=(width / 25.4, (8 + sum(heights)) / 25.4))
+    grid = figure.add_gridspec(len(heights), across, height_ratios=heights)
+    by_level = [figure.add_subplot(grid[level // across, level % across]) for level in range(levels)]
+    for level, axis in enumerate(by_level):
+        _draw_coverage(axis, scenario, level)
+    by_level[0].set_ylabel("NEES below a quantile of χ²\n[% of trials]")
+    half = across // 2 if len(heights) == rows + 1 else across
+    _draw_blocks_coverage(figure.add_subplot(grid[rows, :half]), scenario)
+    _draw_shape(figure.add_subplot(grid[-1, across - half:]), scenario)
+    style.arms_below(figure, scenario)
     title(figure, scenario, "; grey: a consistent filter")
     return figure

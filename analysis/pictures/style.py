@@ -16,6 +16,7 @@ GREY, BAND = "#6E6E6E", "#D9D9D9"
 ARM_COLOURS = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY]  # [Okabe and Ito 2008]
 ARM_LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
 ARM_MARKERS = ["o", "s", "^", "D", "v", "P"]
+POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7.5,
@@ -44,10 +45,32 @@ def headline(figure, words):
     figure.suptitle(textwrap.fill(words, letters), x=0.01, ha="left", fontsize=8)
 
 
-def arm_style(index):
-    """How the arm of that place in its scenario is drawn in every picture."""
-    place = index % len(ARM_COLOURS)
-    return {"color": ARM_COLOURS[place], "linestyle": ARM_LINES[place]}
+def _shifted(index):
+    """The place of an arm's dashes and mark: the second six arms have the colours of the first with other dashes and
+    marks."""
+    return (index + 3 * (index // len(ARM_COLOURS))) % len(ARM_COLOURS)
+
+
+def arm_style(index, count=1):
+    """How the line of the arm of that place among `count` is drawn in every picture. Twelve arms differ. Later ones are
+    thinner, so that lines which coincide are all seen."""
+    thicker = min(0.4, 1.2 / count) * (count - 1 - index) if count > 2 else 0
+    return {"color": ARM_COLOURS[index % len(ARM_COLOURS)], "linestyle": ARM_LINES[_shifted(index)],
+            "linewidth": plt.rcParams["lines.linewidth"] + max(0, thicker)}
+
+
+def arm_mark(index):
+    """How the marks of the arm of that place in its scenario are drawn in every picture: hollow those of the second six."""
+    colour = ARM_COLOURS[index % len(ARM_COLOURS)]
+    hollow = index // len(ARM_COLOURS) % 2 == 1
+    return {"marker": ARM_MARKERS[_shifted(index)], "color": colour, "markerfacecolor": "white" if hollow else colour}
+
+
+def arm_line(index, count, points):
+    """A line with marks: about twenty, where there are more points than that, each arm's at points of its own where there
+    are more than two arms."""
+    every = max(count if count > 2 else 1, points // 20)
+    return arm_style(index, count) | arm_mark(index) | {"markevery": (index * every // max(count, 1) % every, every)}
 
 
 def unit_text(unit):
@@ -55,10 +78,13 @@ def unit_text(unit):
     return "" if unit == "1" else f" [{unit.replace('^2', '²')}]"
 
 
-def with_half_width(name, mean, half):
-    """`name 0.263 ± 0.023`: as many digits as two of the half-width need."""
-    digits = max(0, 1 - int(np.floor(np.log10(half)))) if half > 0 else 4
-    return f"{name} {mean:.{digits}f} ± {half:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+def with_half_width(mean, half):
+    """`0.263 ± 0.023`: as many digits as two of the half-width need; small ones as `(2.63 ± 0.23)·10⁻⁴`."""
+    power = int(np.floor(np.log10(max(abs(mean), half)))) if half > 0 else 0
+    scale = power if power < -2 else 0
+    digits = max(0, 1 - int(np.floor(np.log10(half))) + scale) if half > 0 else 4
+    value = f"{mean / 10.0**scale:.{digits}f} ± {half / 10.0**scale:.{digits}f}".replace("-", "\N{MINUS SIGN}")
+    return f"({value})·10{str(scale).translate(POWERS)}" if scale else value
 
 
 def step_axis(axis, steps, label="step"):
@@ -89,7 +115,7 @@ def root_axis(axis, scale, reach):
 
 def aside(index, count):
     """How far beside its place the arm is drawn, so that arms do not hide one another."""
-    return (index - (count - 1) / 2) * 0.5 / max(count, 2)
+    return (index - (count - 1) / 2) * (0.5 / 2 if count <= 2 else 0.8 / count)
 
 
 def legend_above(axis, columns=2, **entries):
@@ -98,6 +124,22 @@ def legend_above(axis, columns=2, **entries):
         return None
     return axis.legend(loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=columns, borderaxespad=0.2,
                        columnspacing=1.2, **entries)
+
+
+def legend_below(figure, handles, labels):
+    """A legend of the whole figure in a strip below its panels, by which the figure grows."""
+    width, height = figure.get_size_inches() * 25.4
+    columns = max(1, min(len(labels), int(width / (14 + 1.5 * max(map(len, labels))))))
+    strip = 2 + 4.2 * -(-len(labels) // columns)
+    figure.set_figheight((height + strip) / 25.4)
+    figure.get_layout_engine().set(rect=(0, strip / (height + strip), 1, height / (height + strip)))
+    figure.legend(handles, labels, loc="lower left", ncols=columns, borderaxespad=0.3, columnspacing=1.4)
+
+
+def arms_below(figure, arms):
+    """The legend of the arms: line and mark of each."""
+    keys = [plt.Line2D([], [], **arm_style(index) | arm_mark(index)) for index in range(len(arms))]
+    legend_below(figure, keys, list(arms))
 
 
 def legend_right(axis):

@@ -43,14 +43,14 @@ def _short(value):
 def _draw(axis, x, curves, numbers):
     """`curves` {name: [mean, low, high] along x}: lines with bands over numbers, else marks with whiskers."""
     for index, (name, values) in enumerate(curves.items()):
-        line, marker = style.arm_style(index), style.ARM_MARKERS[index % 6]
+        line, marker = style.arm_line(index, len(curves), x.size), style.arm_mark(index)
         mean, low, high = values.T
         if numbers and x.size > 1:
             axis.fill_between(x, low, high, color=line["color"], alpha=0.25, linewidth=0)
-            axis.plot(x, mean, label=name, marker=marker, **line)
+            axis.plot(x, mean, label=name, **line)
         else:
             axis.errorbar(x + style.aside(index, len(curves)) * (not numbers), mean, yerr=np.abs([mean - low, high - mean]),
-                          fmt=marker, color=line["color"], elinewidth=1.1, label=name)
+                          linestyle="none", elinewidth=1.1, label=name, **marker)
 
 
 def _x_axis(axis, grid):

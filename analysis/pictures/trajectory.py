@@ -31,9 +31,10 @@ def positions(arm, name):
 
 def arm_colour(arm):
     """The colour that the arm has in the pictures of the study: that of its place among the scenario's arms."""
-    controllers = results.setting(arm.parent, "arms", "controllers").replace(" ", "").split(",")
-    controller = arm.name.rsplit("/", 1)[1].split(".")[0]
-    return style.ARM_COLOURS[controllers.index(controller) % len(style.ARM_COLOURS)]
+    controllers, estimators = (results.setting(arm.parent, "arms", key).replace(" ", "").split(",") or [""]
+                               for key in ("controllers", "estimators"))
+    names = [f"{controller or 'fixed'}.{estimator}" for controller in controllers for estimator in estimators]
+    return style.arm_style(names.index(arm.name.rsplit("/", 1)[1]))["color"]
 
 
 def _ellipses(axis, centres, covariances, scale, colour, **drawn):

@@ -9,6 +9,8 @@ import numpy as np
 from . import study, style
 
 
+MOST_GAPS = 30  # steps with a white gap between them; of more, the gaps would be all that is seen
+MOST_ACROSS = 5  # arms side by side
 SIGNS = {"optimistic": "▲", "pessimistic": "▼", "mixed": "◆"}
 
 
@@ -53,10 +55,9 @@ def _draw_overall(axis, parts):
         mean = np.array([block["nees_ratio"] for block in blocks], dtype=float)
         bounds = np.array([block["ci95"] for block in blocks], dtype=float).T
         axis.errorbar(mean, np.arange(len(blocks)) + style.aside(index, len(parts)),
-                      xerr=np.nan_to_num(np.abs(bounds - mean)), fmt=style.ARM_MARKERS[index % 6],
-                      color=style.arm_style(index)["color"], elinewidth=1.1,
-                      label=f"{part['arm']}: {part['verdict']}")
-    axis.set_xlabel("NEES / dimension, all steps, with 95 % interval")
+                      xerr=np.nan_to_num(np.abs(bounds - mean)), linestyle="none", elinewidth=1.1,
+                      label=f"{part['arm']}: {part['verdict']}", **style.arm_mark(index))
+    axis.set_xlabel("NEES / dimension,\nall steps, with 95 % interval")
 
 
 def _ratios(part):
@@ -66,9 +67,11 @@ def _ratios(part):
 def _draw_steps(axis, part, reach):
     """NEES/dim by block and step: blue below 1 (pessimistic), red above it (optimistic)."""
     ratios = _ratios(part)
+    gaps = {"edgecolors": "white", "linewidth": 0.3} if ratios.shape[1] <= MOST_GAPS else {"rasterized": True}
     image = axis.pcolormesh(np.arange(ratios.shape[1] + 1) + 0.5, np.arange(ratios.shape[0] + 1) - 0.5, np.log2(ratios),
-                            cmap="RdBu_r", vmin=-reach, vmax=reach, edgecolors="white", linewidth=0.3)
+                            cmap="RdBu_r", vmin=-reach, vmax=reach, **gaps)
     style.step_axis(axis, np.arange(1, ratios.shape[1] + 1))
+    axis.xaxis.get_major_locator().set_params(nbins=3)
     axis.set_title(part["arm"])
     for row, block in enumerate(part["blocks"]):
         if called := _called(part, block["block"]):
@@ -84,21 +87,38 @@ def _colour_bar(figure, image, axes, reach):
     bar.set_label("NEES / dimension: blue is pessimistic, red optimistic")
 
 
+def _panels(arms, blocks):
+    """The figure, its panel over all steps, and one by step for each arm, in rows; every row names the blocks."""
+    across = min(arms, MOST_ACROSS)
+    rows = -(-arms // across)
+    height = max(8, 1.5 * arms) if blocks <= 10 else max(4, min(8, 1.5 * arms))  # of a block
+    first = 14 + height * max(4, blocks)
+    heights = [first] + [14 + min(height, 5) * max(4, blocks)] * (rows - 1)
+    figure = style.plt.figure(figsize=(style.PAGE / 25.4, (22 + sum(heights)) / 25.4))
+    grid = figure.add_gridspec(rows, 1 + across, height_ratios=heights, width_ratios=[1.6] + [1] * across)
+    overall = figure.add_subplot(grid[0, 0])
+    by_step = []
+    for arm in range(arms):
+        row, column = divmod(arm, across)
+        axis = figure.add_subplot(grid[row, 1 + column], sharey=overall)
+        axis.tick_params(labelleft=row > 0 and column == 0)
+        by_step.append(axis)
+    return figure, overall, by_step
+
+
 def blocks(scenario, report):
     """Verdicts by block of the state, over all steps and at each; as wide as a page."""
     parts = [report[scenario.name[1:], arm] for arm in scenario]
     names = [block["block"] for block in parts[0]["blocks"]]
-    height = 36 + 8 * max(4, min(len(names), 24))
-    figure, axes = style.new_figure(style.PAGE, height, ncols=1 + len(parts), sharey=True,
-                                    width_ratios=[1.6] + [1] * len(parts))
-    _draw_overall(axes[0], parts)
-    style.legend_above(axes[0], columns=1)
+    figure, overall, by_step = _panels(len(parts), len(names))
+    _draw_overall(overall, parts)
     reach = max([0.25] + [np.abs(np.log2(ratios[ratios > 0])).max(initial=0) for ratios in map(_ratios, parts)])
     reach = min(reach, 2)  # a factor of 4 is the darkest
-    for axis, part in zip(axes[1:], parts):
+    for axis, part in zip(by_step, parts):
         image = _draw_steps(axis, part, reach)
-    _colour_bar(figure, image, axes[1:], reach)
-    axes[0].set_yticks(range(len(names)), names)
-    axes[0].set_ylim(len(names) - 0.5, -0.5)
+    _colour_bar(figure, image, by_step, reach)
+    overall.set_yticks(range(len(names)), names)
+    overall.set_ylim(len(names) - 0.5, -0.5)
+    style.legend_below(figure, *overall.get_legend_handles_labels())
     study.title(figure, scenario, "; ▼ found pessimistic, ▲ optimistic, ◆ both")
     return figure

@@ -2,7 +2,8 @@
 
     analysis_test.py CREDENCE STUDY.h5 REPORT.json TRACE.h5 FOLDER [OCTAVE.tsv PICTURE.svg]
 
-FOLDER, where the pictures go, has kf-circle-constant-ARM.h5 of a trial for the figure of the README.
+FOLDER, where the pictures go, has kf-circle-constant-ARM.h5 of a trial for the figure of the README, and the studies
+own.h5, of the tracker, arms.h5, of ten arms, and steps.h5, of 600 steps.
 """
 import json
 import math
@@ -59,7 +60,7 @@ def check_module(study_file, report):
 
 
 # Picture: panels, and the curves, patches and collections that each must have at least.
-PANELS = {"consistency": (2, 2), "distributions": (2, 2), "paired": (3, 1), "coverage": (3, 2), "blocks": (4, 1),
+PANELS = {"consistency": (2, 2), "distributions": (2, 2), "paired": (3, 1), "coverage": (6, 1), "blocks": (4, 1),
           "path": (1, 6), "judged": (6, 1), "figure": (5, 0)}
 seen = {}
 
@@ -89,6 +90,58 @@ def look_through_and_save(figure, folder, stem, vector="pdf"):
     look_through(figure, stem)
     seen[stem] = saved(figure, folder, stem, vector)
     return seen[stem]
+
+
+def every_picture(credence, file, folder):
+    """{stem: figure} of a study, without files; each of them is looked through."""
+    drawn = {}
+
+    def look_at(figure, _, stem, vector):
+        look_through(figure, stem)
+        drawn[stem.rsplit("-", 1)[1]] = figure
+        return []
+
+    style.save, before = look_at, style.save
+    assert plot.main([str(file), "-o", str(folder), "--credence", credence]) == 0
+    style.save = before
+    return drawn
+
+
+def check_own_world(credence, folder):
+    """A world of one's own has other columns: what it has is drawn."""
+    PANELS["blocks"] = (4, 1)
+    assert set(every_picture(credence, folder / "own.h5", folder)) == {"consistency", "distributions", "coverage", "blocks"}
+
+
+def check_ten_arms(credence, folder):
+    """Twelve arms differ in line, and in mark; every arm is in the legends of the pictures, once; no two share a line."""
+    for drawn in (lambda i: str(style.arm_style(i)["color"]) + str(style.arm_style(i)["linestyle"]),
+                  lambda i: str(style.arm_mark(i))):
+        assert len({drawn(i) for i in range(12)}) == 12
+    PANELS["blocks"] = (12, 1)
+    pictures = every_picture(credence, folder / "arms.h5", folder)
+    for name in ("consistency", "distributions", "coverage", "blocks", "paired"):
+        (legend,) = pictures[name].legends
+        entries = [text.get_text().split(":")[0] for text in legend.get_texts()]
+        assert len(entries) == len(set(entries)) and len(entries) == {"paired": 5, "blocks": 11}.get(name, 10), entries
+    levels = [axis for axis in pictures["coverage"].axes if axis.get_title(loc="left")]
+    assert [axis.get_title(loc="left") for axis in levels] == [f"{level} % quantile" for level in (50, 90, 95, 99)]
+    for axis in levels:
+        assert len(axis.lines) == 11, "an arm's line, and the level"
+
+
+def check_many_steps(credence, folder):
+    """The map of NEES by step has the colours of its values: their mean is that of the picture."""
+    PANELS["blocks"] = (7, 1)
+    figure = every_picture(credence, folder / "steps.h5", folder)["blocks"]
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba()) / 255
+    for axis in figure.axes[1:6]:
+        (cells,) = [one for one in axis.collections if one.get_array() is not None]
+        expected = cells.to_rgba(cells.get_array()).reshape(-1, 4).mean(axis=0)
+        box = axis.get_window_extent()
+        shown = pixels[int(len(pixels) - box.y1) + 1:int(len(pixels) - box.y0) - 1, int(box.x0) + 1:int(box.x1) - 1]
+        np.testing.assert_allclose(shown.reshape(-1, 4).mean(axis=0), expected, atol=0.05, err_msg=axis.get_title(loc="left"))
 
 
 def hidden_labels(figure):
@@ -159,6 +212,9 @@ def main(credence, study_file, report_file, trace_file, folder, *octave):
     check_module(study_file, report)
     check_pictures(credence, study_file, trace_file, folder)
     check_refusals(credence, study_file, folder)
+    check_own_world(credence, pathlib.Path(folder))
+    check_ten_arms(credence, pathlib.Path(folder))
+    check_many_steps(credence, pathlib.Path(folder))
     if octave:
         check_octave(study_file, *octave)
     print(f"analysis: {len(report)} arms as in the JSON, {len(seen)} pictures looked through"

@@ -21,6 +21,12 @@ for arm in fixed.kf greedy.kf; do
 done
 "$credence" run experiments/seed/ekf-circle-ranged.ini --set scenario.name=base --sweep noise.heading=0.01,0.1 \
   --sweep sensor.noise=constant,ranged --trials 60 --quiet -o "$work/swept.h5"
+# A world of one's own; ten arms; many steps.
+cmake --build build --target tracker >"$work/tracker.log" 2>&1 || { tail -n 30 "$work/tracker.log"; exit 1; }
+build/tests/tracker run experiments/own_filter/tracker.ini --trials 300 --quiet -o "$work/pictures/own.h5"
+"$credence" run experiments/seed/ekf-circle-ranged.ini --set arms.estimators=ekf,ideal,fej,riekf,iekf --trials 60 --quiet \
+  -o "$work/pictures/arms.h5"
+"$credence" run experiments/estimators/landmarks.ini --trials 30 --quiet -o "$work/pictures/steps.h5"
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
