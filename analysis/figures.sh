@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
-# Makes docs/figures: the document's Figures 1 to 4 from trial 0 of seed 1 (not a picked one), each beside the 10,000
+# Makes docs/figures, or the folder named, by default figures/ where this is installed: the document's Figures 1 to 4 from trial 0 of seed 1 (not a picked one), each beside the 10,000
 # trials that it is one of. Needs python3-h5py, python3-scipy and python3-matplotlib. The same program and matplotlib
 # make the same bytes.
 set -euo pipefail
-cd "$(dirname "$0")/.."
-credence=${CREDENCE:-build/credence}
-output=${1:-docs/figures}
+root=$(cd "$(dirname "$0")/.." && pwd)
+if [ -d "$root/docs" ]; then
+  built=$root/build/credence output=${1:-$root/docs/figures}
+else  # installed: share/credence of a prefix
+  built=$root/../../bin/credence output=${1:-figures}
+fi
+credence=${CREDENCE:-$built}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$credence" run experiments/seed/kf-*.ini --trials 10000 --seed 1 --quiet -o "$work/seed.h5"
+"$credence" run "$root"/experiments/seed/kf-*.ini --trials 10000 --seed 1 --quiet -o "$work/seed.h5"
 for scenario in kf-{straight,circle}-{constant,ranged}; do
   for arm in fixed.kf greedy.kf; do
     "$credence" replay "$work/seed.h5" --scenario $scenario --arm $arm --trial 0 -o "$work/$scenario-$arm.h5"
   done
 done
-"${PYTHON:-python3}" analysis/figures.py "$work/seed.h5" "$work" "$output"
+"${PYTHON:-python3}" "$root/analysis/figures.py" "$work/seed.h5" "$work" "$output"

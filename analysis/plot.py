@@ -34,7 +34,7 @@ def parse_arguments(arguments):
     parser.add_argument("--ellipses", choices=tuple(trajectory.ELLIPSES), default="95",
                         help="ellipses of a trajectory: 95 %% (default) or 1-sigma")
     parser.add_argument("--credence", metavar="PATH", help="the program, which says the verdicts "
-                        "(default: build/credence, or that on the PATH)")
+                        "(default: build/credence, that installed with this script, or that on the PATH)")
     return parser.parse_args(arguments)
 
 

@@ -4,14 +4,13 @@ include(CMakePackageConfigHelpers)
 set(CREDENCE_DATA ${CMAKE_INSTALL_DATADIR}/credence)
 set(CREDENCE_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/credence)
 
-# The manual page and the completion are what the program says of itself.
+# The manual page and the completion are what the program says of itself. They are written when they are installed: what
+# was built may have been the program alone.
 set(pages ${PROJECT_BINARY_DIR}/pages)
-add_custom_command(OUTPUT ${pages}/credence.1 ${pages}/credence
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}
-  COMMAND credence manual > ${pages}/credence.1
-  COMMAND credence completion bash > ${pages}/credence
-  DEPENDS credence COMMENT "Writing the manual page and the completion")
-add_custom_target(credence_pages ALL DEPENDS ${pages}/credence.1 ${pages}/credence)
+install(CODE "file(MAKE_DIRECTORY \"${pages}\")
+execute_process(COMMAND \"$<TARGET_FILE:credence>\" manual OUTPUT_FILE \"${pages}/credence.1\" COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND \"$<TARGET_FILE:credence>\" completion bash OUTPUT_FILE \"${pages}/credence\"
+  COMMAND_ERROR_IS_FATAL ANY)" COMPONENT runtime)
 install(TARGETS credence RUNTIME COMPONENT runtime)
 install(FILES ${pages}/credence.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
 install(FILES ${pages}/credence DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
@@ -33,6 +32,7 @@ install(FILES ${PROJECT_BINARY_DIR}/credence-config.cmake ${PROJECT_BINARY_DIR}/
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png")
-install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples FILES_MATCHING PATTERN "*.ini" PATTERN "own_filter/*")
+install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples
+  FILES_MATCHING PATTERN "*.ini" PATTERN "own_filter/*")
 install(DIRECTORY analysis DESTINATION ${CREDENCE_DATA} COMPONENT examples
   PATTERN "__pycache__" EXCLUDE PATTERN "*.h5" EXCLUDE)

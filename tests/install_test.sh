@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# install_test.sh BUILD SOURCE: what is installed works, and somebody else's project builds on it.
+# install_test.sh BUILD SOURCE: what is installed works, and somebody else's project builds on it: docs/own-filter.md's.
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+rm -rf "$build/pages"  # a build of the program alone has none
 cmake --install "$build" --prefix "$work/usr" >"$work/log" || { cat "$work/log"; exit 1; }
 cd "$work"
 
@@ -26,16 +27,44 @@ if grep -nE -- '-Werror|-Wall|-fsanitize|-march' "$package"/*.cmake; then echo "
 
 cmake -S "$source/tests/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/usr" >"$work/log" 2>&1 &&
   cmake --build consumer >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-cmake -S "$source/experiments/own_filter" -B own_filter -DCMAKE_PREFIX_PATH="$work/usr" >"$work/log" 2>&1 &&
-  cmake --build own_filter >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-own_filter/tracker run "$source/experiments/own_filter/tracker.ini" --trials 4000 --quiet -o tracker.h5
+
+# The installed example, in a folder of the user's, beside what comes next.
+mkdir example
+(cd example && bash ../usr/share/credence/experiments/own_filter/run.sh 2000) >example/said 2>&1 &
+example=$!
+
+# docs/own-filter.md, word for word, in an empty folder: its files, and its commands. ~/credence is what it installs.
+page=usr/share/doc/credence/docs/own-filter.md
+# block PATTERN: the fenced block of the page that has a line of that pattern.
+block() {
+  awk -v pattern="$1" '/^```/ { if (inside && found) { printf "%s", text; exit } inside = !inside; found = 0; text = ""; next }
+    inside { text = text $0 "\n"; if ($0 ~ pattern) found = 1 }' "$page"
+}
+ln -s usr credence
+mkdir own_filter
+cp usr/share/credence/experiments/own_filter/tracker.hpp own_filter
+block '^int main' >own_filter/main.cpp
+block '^add_executable' >own_filter/CMakeLists.txt
+block '^# tracker.ini' >own_filter/tracker.ini
+{ block '^cmake -S . -B build'; block '^build/tracker run'; } >own_filter/commands
+(cd own_filter && HOME=$work bash -e ./commands) >log 2>&1 || { cat log; exit 1; }
+grep -q 'no CMAKE_BUILD_TYPE is given; Release is taken' log || { echo "no build type is taken"; exit 1; }
+grep -rqs -e ' -O3 ' own_filter/build/CMakeFiles/tracker.dir own_filter/build/build.ninja ||
+  { echo "the tracker is not optimised"; exit 1; }
+cmake -S own_filter -B debug -DCMAKE_PREFIX_PATH="$work/usr" -DCMAKE_BUILD_TYPE=Debug >log 2>&1 || { cat log; exit 1; }
+if grep -q 'Release is taken' log; then echo "the user's build type is not kept"; exit 1; fi
+wait $example || { cat example/said; exit 1; }
+grep -q 'exit code 1, as it should be' example/said || { cat example/said; exit 1; }
+[ -s example/results/tracker.h5 ] || { echo "the example leaves no results"; exit 1; }
+
+mv own_filter/tracker.h5 own_filter/build/tracker .
 # The program without that world says the same of the file, word for word.
-own_filter/tracker report tracker.h5 --format json >own.json
+./tracker report tracker.h5 --format json >own.json
 $credence report tracker.h5 --format json >other.json
 cmp own.json other.json
 verdicts=$(grep -o '"verdict": *"[a-z]*"' own.json | tr -d ' "' | sort | uniq | tr '\n' ' ')
 [ "$verdicts" = "verdict:consistent verdict:optimistic " ] || { echo "the verdicts are $verdicts"; exit 1; }
-if $credence run --resume "$source/experiments/own_filter/tracker.ini" -o tracker.h5 2>refusal; then exit 1; fi
+if $credence run --resume own_filter/tracker.ini -o tracker.h5 2>refusal; then exit 1; fi
 grep -q 'scenario.world=tracker (this program has no such world)' refusal
 
 consumer/mean >means

@@ -19,11 +19,13 @@ class NoReport(Exception):
 
 
 def find_credence(asked=None):
-    """The program: the one asked for, that of this checkout's build, or that on the PATH; None where there is none."""
+    """The program: the one asked for, that of this checkout's build, that which this folder was installed with, or that on
+    the PATH; None where there is none."""
     if asked:
         return asked
-    built = pathlib.Path(__file__).resolve().parents[2] / "build" / "credence"
-    return str(built) if built.exists() else shutil.which("credence")
+    above = pathlib.Path(__file__).resolve().parents
+    built = [path for path in (above[2] / "build" / "credence", above[4] / "bin" / "credence") if path.is_file()]
+    return str(built[0]) if built else shutil.which("credence")
 
 
 def read_report(credence, path):

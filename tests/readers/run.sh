@@ -50,6 +50,9 @@ if /usr/bin/python3 -c 'import h5py, scipy, matplotlib' 2>/dev/null; then
     "$work/pictures" "${said[@]}" | tail -n 1
   /usr/bin/python3 $readers/sweep_test.py "$credence" "$work/swept.h5" "$work/pictures" >"$work/sweep.log" || { cat "$work/sweep.log"; exit 1; }
   grep SKIPPED "$work/sweep.log" || true
+  cmake --install build --prefix "$work/usr" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
+  (cd "$work" && PYTHON=/usr/bin/python3 bash usr/share/credence/analysis/figures.sh) >"$work/figures.log" 2>&1 &&
+    [ -s "$work/figures/figure-4.png" ] || { cat "$work/figures.log"; exit 1; }
 else
   echo "SKIPPED: python3-matplotlib is not installed"
 fi
