@@ -7,4 +7,4 @@ cd "$(dirname "$0")/.."
 source experiments/study.sh
 build_program
 mkdir -p results
-build/credence run experiments/seed/*.ini -o results/seed.h5 --resume "$@"
+"$credence" run experiments/seed/*.ini -o results/seed.h5 --resume "$@"

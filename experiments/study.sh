@@ -2,8 +2,11 @@
 
 source experiments/setup.sh
 
-# Installs and builds what is missing of the program.
+credence=${CREDENCE:-build/credence}
+
+# Installs and builds what is missing of the program, unless CREDENCE names one.
 build_program() {
+  [ -z "${CREDENCE:-}" ] || return 0
   install_missing $build_packages
   local tests=()
   [ -f build/CMakeCache.txt ] || tests=(-DCREDENCE_TESTS=OFF)  # the tests need more packages: tests/run.sh turns them on
@@ -19,8 +22,8 @@ study() {
     case $setting in --*) settings+=("$setting") ;; *) settings+=(--set "$setting") ;; esac
   done
   mkdir -p "$(dirname "$stem")"
-  build/credence run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume --quiet
-  build/credence report "$stem.h5" --format csv >"$stem.csv"
+  "$credence" run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume --quiet
+  "$credence" report "$stem.h5" --format csv >"$stem.csv"
 }
 
 # interval FILE.csv ARM FIGURE [SCENARIO]: `mean ± half-width` of a figure, with two digits of the half-width; of the

@@ -4,7 +4,7 @@
 # the joint 95 % band). Searched on steps of 0.05 %, by halving: for one seed NEES scales with 1/P exactly, so what finds
 # one factor finds a larger one too. Prints the table of docs/statistics.md; about four minutes on 2 cores.
 #
-#   bash experiments/consistency/power.sh          (CREDENCE=PROGRAM: takes that one, and builds nothing)
+#   bash experiments/consistency/power.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 scenario=experiments/consistency/matched-linear.ini
@@ -56,11 +56,9 @@ if [ "${1:-}" = search ]; then
   exit
 fi
 
-if [ -z "${CREDENCE:-}" ]; then
-  source experiments/study.sh
-  build_program >&2
-fi
-export program=${CREDENCE:-build/credence} folder OMP_NUM_THREADS=1  # searches run beside each other
+source experiments/study.sh
+build_program >&2
+export program=$credence folder OMP_NUM_THREADS=1  # searches run beside each other
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -73,9 +71,9 @@ for trials in 100000 10000 1000; do
 done | xargs -P "$(nproc)" -L 1 bash experiments/consistency/power.sh search >"$folder/found"
 
 cell() { awk -v judge="$1" -v side="$2" -v trials="$3" '$1 == judge && $2 == side && $3 == trials { print $4 }' "$folder/found"; }
-echo '| trials | verdict `pessimistic`: P times | verdict `optimistic`: P times | band of ANEES: P times, above 1 | below 1 |'
+echo '| trials | pessimistic: P × | optimistic: P × | ANEES joint band above 1 | below 1 |'
 echo '|---|---|---|---|---|'
 for trials in 1000 10000 100000; do
-  echo "| $trials | $(cell verdict pessimistic $trials) | $(cell verdict optimistic $trials) |" \
+  echo "| $(sed 's/...$/,&/' <<<$trials) | $(cell verdict pessimistic $trials) | $(cell verdict optimistic $trials) |" \
     "$(cell band pessimistic $trials) | $(cell band optimistic $trials) |"
 done
