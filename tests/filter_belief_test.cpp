@@ -51,8 +51,9 @@ TEST_CASE("filter: update keeps the covariance symmetric and positive definite, 
     }
 }
 
-TEST_CASE("filter: starts at 0 with features where they were first seen") {
-    const Scenario scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"},
+TEST_CASE("filter: starts at 0 with features where they were first seen, of the factors only that of the measurement counts") {
+    const Scenario scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"}, {"filter.heading", "3"},
+                                             {"filter.odometry", "3"}, {"filter.features", "3"}, {"filter.edges", "3"},
                                              {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
     const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 4));
     const RunStep& start = run.steps.front();
