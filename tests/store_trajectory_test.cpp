@@ -130,6 +130,26 @@ TEST_CASE("store: a trajectory is in its file as it was") {
     CHECK(values<std::int32_t>(group, "edge_to", {3}) == std::vector<std::int32_t>{1, 2, 2});
 }
 
+TEST_CASE("store: a trajectory has the sigma of a feature's range also where it was not seen, and no measurement there") {
+    const TemporaryFolder folder;
+    Scenario ranged = scenario("one");
+    ranged.sensor.noise = RangeNoise::ranged;
+    ranged.sensor.range_max = 0.6;
+    write_trajectories(folder / "trace.h5", {replay_trial(Problem(ranged), {Controller::fixed}, 1, 0)}, {});
+    const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "one", "fixed.ekf");
+    const auto truth = values(group, "truth", {4, 9}), sigma = values(group, "measurement_sigma", {4, 3}),
+               z = values(group, "measurement", {4, 3, 2});
+    const auto seen = values<std::int8_t>(group, "seen", {4, 3});
+    CHECK(std::count(seen.begin() + 3, seen.end(), 0) > 0);
+    for (std::size_t k = 1; k < 4; ++k)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const double *at = truth.data() + 9 * k, *feature = at + 3 + 2 * j;
+            const double q = std::hypot(feature[0] - at[1], feature[1] - at[2]);
+            CHECK(sigma[3 * k + j] == Approx(0.01 + 0.08 * std::max(0.0, q - 0.1) / 0.5).epsilon(1e-12));
+            CHECK(std::isnan(z[6 * k + 2 * j]) == (seen[3 * k + j] == 0));
+        }
+}
+
 TEST_CASE("store: a trajectory has nothing but NaN and -1 where no step led to") {
     const TemporaryFolder folder;
     const Trajectory trajectory = replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0);
