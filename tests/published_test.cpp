@@ -2,6 +2,7 @@
 // outside the project; CREDENCE_SHARED_DATA is their folder, an absolute path.
 
 #include "catch.hpp"
+#include "store_study.hpp"
 #include "support.hpp"
 
 #include <credence/store.hpp>
@@ -67,6 +68,18 @@ TEST_CASE("published: the table of results, trace(P) to all its digits and the u
         CHECK(four_decimals(run.columns[column_trace_P]) == cell.trace_P);
         CHECK(run.columns[column_unseen] == cell.unseen);
     }
+}
+
+TEST_CASE("published: docs/model.md has the same figures") {
+    const std::string page = bytes_of(CREDENCE_SOURCE "/docs/model.md");
+    const auto text = [](const Cell& cell) { return std::string(cell.trace_P) + " / " + std::to_string(cell.unseen) + " |"; };
+    for (std::size_t i = 0; i < std::size(cells); i += 2) {
+        const std::string noise = cells[i].noise == std::string("constant") ? "constant σ_feat" : cells[i].noise;
+        const std::string row = std::string("\n| ") + cells[i].path + ", " + noise + " | " + text(cells[i]) + " " + text(cells[i + 1]);
+        CAPTURE(row);
+        CHECK(page.find(row) != std::string::npos);
+    }
+    CHECK(page.find("pose error: straight 0.1629, circle 0.1460") != std::string::npos);
 }
 
 TEST_CASE("published: pose errors of the heading model") {
