@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "ranks.hpp"
+#include "streams.hpp"
 #include "version.hpp"
 
 #include <credence/error.hpp>
@@ -103,6 +104,7 @@ std::vector<const cli::Command*> cli::all_commands() {
 }
 
 int program(int argc, char** argv) {
+    cli::hold_standard_streams();
     // At the process's end HDF5 would close what is open, and crash over what a damaged file kept it from closing. What
     // credence writes is closed, and checked, long before.
     H5dont_atexit();
