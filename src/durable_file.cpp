@@ -6,10 +6,12 @@
 #include "byte_file.hpp"
 #include "system_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
 
@@ -17,24 +19,36 @@ namespace credence {
 
 namespace {
 
-const std::string suffix = ".partial";
+const std::string suffix = ".credence-partial";
+
+/// Gives the file aside its name, unless another file is there than may be replaced. Returns 0 or an error of the system.
+int put_in_place(const std::string& aside, const Output& output) {
+    const std::optional<FileIdentity> now = identity_of(output.target);
+    if (now && output.there && now != output.there)
+        fail_to_write(output.path, "another program changed or replaced it in the meantime", EEXIST);
+    if (now && output.there) return rename(aside.c_str(), output.target.c_str()) == 0 ? 0 : errno;
+    const int error = rename_to_free_name(aside, output.target);
+    if (error == EEXIST) fail_to_write(output.path, "a file of that name appeared in the meantime", EEXIST);
+    return error;
+}
 
 /// Writes aside and renames. The lock is held beyond the renaming, so that nobody writes into the finished file.
-void write_and_rename(const std::string& target, const std::function<int(int descriptor)>& write) {
-    const std::string path = target + suffix;
-    const Descriptor file = open_locked(path, target);
-    int error = ftruncate(file.get(), 0) == 0 ? 0 : errno;
+void write_and_rename(const Output& output, const std::function<int(int descriptor)>& write) {
+    const std::string path = output.target + suffix;
+    const Descriptor file = open_new_locked(path, output.path);
+    int error = 0;
     try {
-        if (error == 0) error = write(file.get());
+        take_owner_and_permissions(file, output.target);
+        error = write(file.get());
+        if (error == 0 && fsync(file.get()) != 0) error = errno;
+        if (error == 0) error = put_in_place(path, output);
     } catch (...) {
         unlink(path.c_str());
         throw;
     }
-    if (error == 0 && fsync(file.get()) != 0) error = errno;
-    if (error == 0 && rename(path.c_str(), target.c_str()) != 0) error = errno;
     if (error == 0) return;
     unlink(path.c_str());
-    fail_to_write(target, error);
+    fail_to_write(output.path, error);
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
@@ -43,30 +57,40 @@ void write_and_rename(const std::string& target, const std::function<int(int des
 
 }  // namespace
 
-void write_durably(const std::string& path, const std::function<int(int descriptor)>& write) {
-    namespace fs = std::filesystem;
-    std::error_code trouble;
-    // Renaming onto a link would replace the link; onto a device, the device.
-    const fs::path target = fs::is_symlink(path, trouble) ? fs::weakly_canonical(path, trouble) : fs::path(path);
-    const fs::file_status status = fs::status(target, trouble);
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        fail_to_write(path, "there is something that is not a file", EEXIST);
-    const FileSizeSignalIgnored ignored;
-    write_and_rename(target.string(), write);
-    sync_folder(folder_of(target), path);
+std::optional<FileIdentity> identity_of(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    return FileIdentity{status.st_dev, status.st_ino, status.st_size,
+                        status.st_mtim.tv_sec * std::int64_t{1'000'000'000} + status.st_mtim.tv_nsec};
 }
 
-void write_text_file(const std::string& path, const std::string& text) {
-    write_durably(path, [&](int descriptor) {
+// Renaming onto a link would replace the link.
+Output::Output(const std::string& path) : path(path), target(followed(path).string()), there(identity_of(path)) {}
+
+void write_durably(const Output& output, const std::function<int(int descriptor)>& write) {
+    namespace fs = std::filesystem;
+    std::error_code trouble;
+    // Renaming onto a device would replace the device.
+    const fs::file_status status = fs::symlink_status(output.target, trouble);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        fail_to_write(output.path, "there is something that is not a file", EEXIST);
+    const FileSizeSignalIgnored ignored;
+    write_and_rename(output, write);
+    sync_folder(folder_of(output.target), output.path);
+}
+
+void write_text_file(const Output& output, const std::string& text) {
+    write_durably(output, [&](int descriptor) {
         ByteFile bytes(descriptor);
         bytes.write(0, text.data(), text.size());
         return bytes.error();
     });
 }
 
-void check_output(const std::string& path, bool overwrite, const std::string& way_out) {
+Output check_output(const std::string& path, bool overwrite, const std::string& way_out) {
     namespace fs = std::filesystem;
-    const fs::path target(path), folder = folder_of(target);
+    Output output(path);
+    const fs::path target(output.target), folder = folder_of(target);
     std::error_code trouble;
     if (target.filename().empty()) refuse(path, "it names no file", "Give the name of a file");
     if (target.filename().string().size() + suffix.size() > NAME_MAX)
@@ -79,11 +103,11 @@ void check_output(const std::string& path, bool overwrite, const std::string& wa
     if (const fs::file_status own = fs::symlink_status(aside, trouble); fs::exists(own) && !fs::is_regular_file(own))
         refuse(path, aside.filename().string() + " is in the way of writing it", "Remove that, or give another name");
     const fs::file_status status = fs::status(target, trouble);
-    if (fs::is_symlink(target, trouble) && !fs::exists(status) && fs::weakly_canonical(target, trouble).empty())
-        refuse(path, "it is a link that leads nowhere", "Give another name");
-    if (!fs::exists(status)) return;
+    if (fs::is_symlink(target, trouble)) refuse(path, "its links lead in a circle", "Give another name");
+    if (!fs::exists(status)) return output;
     if (!fs::is_regular_file(status)) refuse(path, "there is something that is not a file", "Give another name");
     if (!overwrite) refuse(path, "it is there already", way_out);
+    return output;
 }
 
 }  // namespace credence

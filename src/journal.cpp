@@ -9,18 +9,23 @@
 
 namespace credence {
 
-Journal::Journal(const std::string& path) : file_(path) {
+Journal::Journal(const std::string& path, mode_t mode) : file_(path, mode) {
     const std::optional<FoundHeader> found = find_header(file_);
     if (!found) return;
     header_ = found->header;
     header_size_ = found->size;
     asked_ = header_->trials;
+    const std::string bytes = file_.read(0, header_size_);
+    seal_ = checksum(bytes.data(), bytes.size());
 }
 
 void Journal::begin(const JournalHeader& header, Study& study) {
     keep_columns_of(study);
     file_.cut(0);
-    file_.append(header_bytes(header));
+    const std::string bytes = header_bytes(header);
+    file_.append(bytes);
+    header_size_ = static_cast<std::int64_t>(bytes.size());
+    seal_ = checksum(bytes.data(), bytes.size());
     sync_folder(folder_of(file_.path()), file_.path());
     header_ = header;
     asked_ = header.trials;
@@ -80,6 +85,8 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     for (const std::int64_t block : kept.pending) kept.counted += trials_in_block(study.trials, block);
     start.counted = kept.counted;
     start.shard = shard_;
+    start.release = release_;
+    note_computed(computed_by_, release_, scenario, kept.pending);
     batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, keep, kept.pending_values.bytes(), totals.bytes());
     batch_.append(record_tail_size, '\0');
     ends_.push_back(batch_.size());
@@ -105,12 +112,28 @@ void Journal::commit() {
         const std::size_t size = end - begin - record_tail_size;
         const std::uint32_t crc = checksum(batch_.data() + begin, size);
         std::memcpy(batch_.data() + begin + size, &crc, sizeof crc);
+        seal_ = seal_with(seal_, crc);
         begin = end;
     }
     if (!batch_.empty()) file_.append(batch_);
     batch_.clear();
     ends_.clear();
     committing_ = false;
+}
+
+void Journal::check_unchanged() const {
+    std::int64_t end = 0;
+    try {
+        const std::string header = file_.read(0, header_size_);
+        std::uint32_t seal = checksum(header.data(), header.size());
+        end = scan_records(file_, header_size_, layouts(),
+                           [&](const FoundRecord& record) { seal = seal_with(seal, record.checksum); });
+        if (end == file_.size() && seal == seal_) return;
+    } catch (const BadBytes&) {  // whole records, but not this study's
+    } catch (const InputError&) {  // it ends too early
+    }
+    throw Failure("cannot read back " + file_.path() + " (another program changed it, or the disk damaged it). What is " +
+                  "damaged is to be computed again.");
 }
 
 void Journal::finished(const Study& study) {

@@ -46,13 +46,14 @@ struct JournalScenario {
     std::int64_t asked = 0;           ///< trials that the study was asked for at the last totals
     std::int64_t counted = 0;         ///< trials in the last totals
     std::optional<std::string> totals;  ///< their bytes; none: no record is of this scenario
+    Provenance computed_by;             ///< of this scenario alone
 };
 
 class Journal : public BlockKeeper {
 public:
-    /// Opens the journal at `path`, or makes it, and locks it. Throws InputError where another program holds it, or it is
+    /// Opens the journal at `path`, or makes it with these permissions, and locks it. Throws InputError where another program holds it, or it is
     /// no journal of this version.
-    explicit Journal(const std::string& path);
+    explicit Journal(const std::string& path, mode_t mode = 0666);
 
     /// The study that it belongs to; nothing where it is new, or was torn before anything could be committed.
     const std::optional<JournalHeader>& header() const { return header_; }
@@ -65,11 +66,18 @@ public:
     /// Bytes of the torn tail that load() cut.
     std::int64_t torn() const { return torn_; }
     void remove() { file_.remove(); }
+    /// Throws Failure unless the file is what was read from it when it was opened and written since, byte by byte.
+    void check_unchanged() const;
+    /// Which release computed which blocks of the study.
+    const Provenance& computed_by() const { return computed_by_; }
 
     /// Blocks that make a commit due; 0: half a second, and more where there is little to commit.
     void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
-    /// What the run works on, for whoever follows it.
-    void works_on(const Shard& shard) { shard_ = shard; }
+    /// What the run works on, and the release that computes it, for the records from here on.
+    void works_on(const Shard& shard, const std::string& release) {
+        shard_ = shard;
+        release_ = release;
+    }
 
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
@@ -97,6 +105,7 @@ private:
     };
 
     void keep_columns_of(Study& study);
+    std::vector<BlockLayout> layouts() const;
     bool keeps_trials() const { return kept_.empty() || kept_.front().layout.keep() == Keep::trials; }
     std::vector<JournalScenario> scan(const Study& study);
     void put_record(std::size_t scenario, const Study& study);
@@ -107,7 +116,10 @@ private:
     JournalFile file_;
     std::optional<JournalHeader> header_;
     std::int64_t asked_ = 0, torn_ = 0, commit_every_ = 0, header_size_ = 0;
+    std::uint32_t seal_ = 0;  ///< checksum of the header and of the checksums of all records
     Shard shard_;
+    std::string release_ = unknown_release;
+    Provenance computed_by_;
     std::vector<Kept> kept_;
 
     std::string batch_;              ///< records to be committed, their checksums still missing

@@ -28,6 +28,8 @@ private:
 
 /// From here on the study's columns, where they are kept, are read from where the journal has them.
 void Journal::keep_columns_of(Study& study) {
+    kept_.clear();
+    computed_by_ = study.computed_by;
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         ScenarioResults& results = study.scenarios[s];
         Kept kept{BlockLayout(results), kept_types(results), {}, {}, results.trials, {}, {}, {}};

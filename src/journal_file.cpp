@@ -55,7 +55,7 @@ std::string JournalBytes::read(std::int64_t position, std::int64_t size) const {
     return bytes;
 }
 
-JournalFile::JournalFile(const std::string& path) : JournalBytes(path, open_locked(path, path)) {}
+JournalFile::JournalFile(const std::string& path, mode_t mode) : JournalBytes(path, open_locked(path, path, mode)) {}
 
 void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) const {
     auto to = static_cast<char*>(bytes);
@@ -72,6 +72,9 @@ void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) co
 }
 
 void JournalFile::append(const std::string& bytes) {
+    if (const std::int64_t there = status_of(file_, path_).st_size; there != size_)
+        throw Failure("cannot write " + path_ + " (another program changed it: it has " + std::to_string(there) +
+                      " bytes, " + std::to_string(size_) + " were written). Keep other programs from it.");
     const FileSizeSignalIgnored ignored;
     ByteFile file(file_.get());
     file.write(static_cast<std::uint64_t>(size_), bytes.data(), bytes.size());
@@ -94,6 +97,7 @@ void JournalFile::cut(std::int64_t size) {
 }
 
 void JournalFile::remove() {
+    if (!same_file(file_, path_)) return;
     if (unlink(path_.c_str()) != 0 && errno != ENOENT)
         throw Failure("cannot remove " + path_ + " (" + words_for(errno) + "). The results are written; remove it.");
     sync_folder(folder_of(path_), path_);

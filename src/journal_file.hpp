@@ -35,15 +35,16 @@ protected:
 /// A file that is only ever appended to, locked against a second writer while it is open.
 class JournalFile : public JournalBytes {
 public:
-    /// Opens it, or makes it. Throws InputError where another program holds it, Failure where the system refuses.
-    explicit JournalFile(const std::string& path);
+    /// Opens it, or makes it with these permissions. Throws InputError where another program holds it, Failure where the system refuses.
+    JournalFile(const std::string& path, mode_t mode);
 
     /// Appends and syncs: when it returns the bytes are on the disk. Throws Failure where the system refuses; then what
-    /// had been there before is there still, and nothing else.
+    /// had been there before is there still, and nothing else. Throws it too where another program cut or lengthened the
+    /// file; then nothing is written.
     void append(const std::string& bytes);
     /// Leaves the first `size` bytes.
     void cut(std::int64_t size);
-    /// Removes it. Throws Failure.
+    /// Removes it, unless its name leads to another file by now. Throws Failure.
     void remove();
 };
 

@@ -12,7 +12,7 @@ namespace credence {
 namespace {
 
 const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 2, aggregates_version = 3;  ///< of one that keeps trials, or none
+constexpr std::uint32_t journal_version = 4, aggregates_version = 5;  ///< of one that keeps trials, or none
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
@@ -25,6 +25,9 @@ std::string header_bytes(const JournalHeader& header) {
     ByteWriter body;
     body.put(static_cast<std::int32_t>(schema_version));
     body.put(static_cast<std::uint8_t>(header.base));
+    body.put(header.base_file.inode);
+    body.put(header.base_file.size);
+    body.put(header.base_file.written);
     body.put(header.trials);
     put_shard(body, header.shard);
     body.put(header.study.root_seed);
@@ -68,6 +71,9 @@ JournalHeader read_header(const std::string& start, const std::string& path, std
     const auto base = body.get<std::uint8_t>();
     if (base > static_cast<std::uint8_t>(JournalBase::replaced)) throw BadBytes("an unknown kind of base");
     header.base = static_cast<JournalBase>(base);
+    header.base_file.inode = body.get<std::uint64_t>();
+    header.base_file.size = body.get<std::int64_t>();
+    header.base_file.written = body.get<std::int64_t>();
     header.trials = body.get<std::int64_t>();
     if (header.trials < 0 || header.trials > most_trials) throw BadBytes("an impossible number of trials");
     header.shard = get_shard(body);

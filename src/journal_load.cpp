@@ -11,18 +11,30 @@
 
 namespace credence {
 
+std::vector<BlockLayout> Journal::layouts() const {
+    std::vector<BlockLayout> layouts;
+    for (const Kept& kept : kept_) layouts.push_back(kept.layout);
+    return layouts;
+}
+
 /// Reads all records up to a torn one, which is cut with what is behind it.
 std::vector<JournalScenario> Journal::scan(const Study& study) {
     std::vector<JournalScenario> found(study.scenarios.size());
-    std::vector<BlockLayout> layouts;
-    for (const Kept& kept : kept_) layouts.push_back(kept.layout);
+    const std::vector<BlockLayout> layouts = this->layouts();
     const std::int64_t end = scan_records(file_, header_size_, layouts, [&](const FoundRecord& record) {
+        seal_ = seal_with(seal_, record.checksum);
         JournalScenario& scenario = found[record.scenario];
-        for (std::size_t b = 0; b < record.places.size(); ++b)
+        BlockRanges blocks;
+        for (std::size_t b = 0; b < record.places.size(); ++b) {
+            blocks.add(record.start.blocks[b].index);
             scenario.placed.put(record.start.blocks[b].index,
                                 {record.start.blocks[b].trials, record.places[b], false});
-        for (const BlockRange& range : record.start.ranges)
+        }
+        for (const BlockRange& range : record.start.ranges) {
+            blocks.add(range);
             scenario.placed.put(range, record.start.trials, layouts[record.scenario]);
+        }
+        note_computed(scenario.computed_by, record.start.release, 0, blocks);
         scenario.asked = record.start.trials;
         scenario.counted = record.start.counted;
         scenario.totals = file_.read(record.totals, record.end - record.totals);
@@ -78,6 +90,7 @@ void Journal::load(Study& study) {
             ScenarioResults& results = study.scenarios[s];
             add_places(placed, found[s]);
             kept_[s].counted = found[s].counted;
+            for (const ComputedBy& one : found[s].computed_by) note_computed(computed_by_, one.release, s, one.of(0));
             set_blocks(results, placed.blocks, placed.trials_up_to());
             ByteReader totals(found[s].totals->data(), found[s].totals->size());
             get_totals(totals, results);
@@ -94,6 +107,7 @@ void Journal::load(Study& study) {
     study.complete = std::all_of(study.scenarios.begin(), study.scenarios.end(), [&](const ScenarioResults& results) {
         return results.trials == study.trials;
     });
+    study.computed_by = computed_by_;
     finished(study);
 }
 

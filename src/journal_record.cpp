@@ -109,6 +109,24 @@ void put_record_head(ByteWriter& to, const RecordHead& head) {
     to.put(head.payload);
 }
 
+namespace {
+
+/// Padded with nulls to its size; what is longer is cut.
+void put_release(ByteWriter& to, std::string release) {
+    release.resize(record_release_size, '\0');
+    to.put_raw(release.data(), release.size());
+}
+
+std::string get_release(ByteReader& from) {
+    std::string release(from.raw(record_release_size), record_release_size);
+    release.resize(std::min(release.find('\0'), release.size()));
+    if (std::any_of(release.begin(), release.end(), [](char c) { return c < ' ' || c > '~'; }))
+        throw BadBytes("an impossible release");
+    return release;
+}
+
+}  // namespace
+
 RecordHead get_record_head(ByteReader& from) {
     if (from.get<std::uint32_t>() != record_magic) throw BadBytes("no record begins there");
     RecordHead head;
@@ -122,6 +140,7 @@ void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep) {
     to.put(start.trials);
     to.put(start.counted);
     put_shard(to, start.shard);
+    put_release(to, start.release);
     if (keep == Keep::aggregates) {
         to.put(static_cast<std::uint32_t>(start.ranges.size()));
         for (const BlockRange& range : start.ranges) {
@@ -182,6 +201,7 @@ RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
     if (start.trials < 0 || start.trials > most_trials || start.counted < 0 || start.counted > start.trials)
         throw BadBytes("an impossible number of trials");
     start.shard = get_shard(from);
+    start.release = get_release(from);
     const auto count = from.get<std::uint32_t>();
     if (layout.keep() == Keep::aggregates) {
         get_ranges(from, count, layout, start);

@@ -2,7 +2,7 @@
 // Room 12: what a journal is made of: a header, then records, each the blocks of one scenario that one commit brought
 // and its totals after them [docs/durability.md, The journal].
 
-#include <credence/study.hpp>
+#include <credence/store.hpp>
 
 #include "bytes.hpp"
 
@@ -21,6 +21,7 @@ enum class JournalBase : std::uint8_t {
 /// The study that a journal belongs to.
 struct JournalHeader {
     JournalBase base = JournalBase::none;
+    FileIdentity base_file;   ///< of that file; without its device, of which the number may change
     std::int64_t trials = 0;  ///< that were asked for
     Shard shard;              ///< of them
     StudyDefinition study;
@@ -93,11 +94,12 @@ struct RecordStart {
     std::vector<JournalBlock> blocks;  ///< that have values, in their order: all of them, where the trials are kept
     Shard shard{};                     ///< that the run works on
     std::vector<BlockRange> ranges{};  ///< where no trial is kept: all blocks, those that have values in their order
+    std::string release{};             ///< that computed the blocks
 };
 void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep = Keep::trials);
-/// Throws BadBytes where the blocks cannot be. With ranges, `layout` says which of their blocks have values.
+/// Throws BadBytes where the blocks or the release cannot be. With ranges, `layout` says which of their blocks have values.
 RecordStart get_record_start(ByteReader& from, const BlockLayout& layout);
-inline constexpr std::size_t record_start_size = 36, journal_block_size = 12, journal_range_size = 16;
+inline constexpr std::size_t record_release_size = 64, record_start_size = 36 + record_release_size, journal_block_size = 12, journal_range_size = 16;
 /// Of the part that lists the blocks.
 std::size_t block_list_size(const RecordStart& start, Keep keep);
 
@@ -114,5 +116,8 @@ std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep 
 
 /// CRC-32 of zlib, going on from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);
+
+/// The checksum of a journal's header and of the checksums of its records, with that of one more.
+inline std::uint32_t seal_with(std::uint32_t seal, std::uint32_t record) { return checksum(&record, sizeof record, seal); }
 
 }  // namespace credence

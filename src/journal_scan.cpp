@@ -11,8 +11,8 @@ namespace {
 constexpr auto head_size = static_cast<std::int64_t>(record_head_size),
                tail_size = static_cast<std::int64_t>(record_tail_size);
 
-/// Whether the file's bytes have the checksum that follows them.
-bool checksum_is_right(const JournalBytes& file, std::int64_t begin, std::int64_t end) {
+/// The checksum that follows these bytes of the file; nothing where theirs is another.
+std::optional<std::uint32_t> right_checksum(const JournalBytes& file, std::int64_t begin, std::int64_t end) {
     constexpr std::int64_t at_once = std::int64_t{1} << 20;
     std::uint32_t crc = 0, stored = 0;
     for (std::int64_t at = begin; at < end; at += at_once) {
@@ -20,7 +20,7 @@ bool checksum_is_right(const JournalBytes& file, std::int64_t begin, std::int64_
         crc = checksum(some.data(), some.size(), crc);
     }
     file.read(end, &stored, sizeof stored);
-    return crc == stored;
+    return crc == stored ? std::optional(stored) : std::nullopt;
 }
 
 /// The head of the record that begins at `position`; nothing where it is torn.
@@ -43,7 +43,8 @@ std::optional<FoundRecord> find_record(const JournalBytes& file, std::int64_t po
     const std::optional<RecordHead> head = find_head(file, position);
     if (!head) return std::nullopt;
     const std::int64_t payload = position + head_size, end = payload + head->payload;
-    if (!checksum_is_right(file, position, end)) return std::nullopt;
+    const std::optional<std::uint32_t> crc = right_checksum(file, position, end);
+    if (!crc) return std::nullopt;
     std::uint32_t count = 0;
     file.read(payload + static_cast<std::int64_t>(record_start_size - sizeof count), &count, sizeof count);
     if (head->scenario >= layouts.size()) throw BadBytes("a record is of a scenario that the study does not have");
@@ -53,7 +54,7 @@ std::optional<FoundRecord> find_record(const JournalBytes& file, std::int64_t po
     if (start_size > head->payload) throw BadBytes("a record has more blocks than bytes");
     const std::string start = file.read(payload, start_size);
     ByteReader from(start.data(), start.size());
-    FoundRecord record{head->scenario, get_record_start(from, layout), {}, payload + start_size, end};
+    FoundRecord record{head->scenario, get_record_start(from, layout), {}, payload + start_size, end, *crc};
     for (const JournalBlock& block : record.start.blocks) {
         const std::int64_t size = layout.size(block);
         if (size > end - record.totals) throw BadBytes("a record has fewer values than its blocks");

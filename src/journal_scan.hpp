@@ -29,6 +29,7 @@ struct FoundRecord {
     std::vector<std::int64_t> places;  ///< where the values of each of start.blocks begin in the file
     std::int64_t totals = 0;           ///< where the totals begin
     std::int64_t end = 0;              ///< of the totals
+    std::uint32_t checksum = 0;
 };
 
 /// Calls `found` for every record from `position` on, up to one that is torn or has another checksum; returns where

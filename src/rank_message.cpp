@@ -9,7 +9,7 @@ std::string order_bytes(const RankOrder& order) {
     ByteWriter to;
     to.put(static_cast<std::int32_t>(order.threads));
     to.put(order.seconds);
-    to.put_text(header_bytes({JournalBase::none, 0, {}, order.study}));
+    to.put_text(header_bytes({JournalBase::none, {}, 0, {}, order.study}));
     return to.take();
 }
 

@@ -18,6 +18,9 @@ namespace credence {
 
 inline const std::string results_format = "credence results", trajectories_format = "credence trajectories";
 inline const std::string run_group = "run";
+/// Facts of /run that say which release computed which blocks, and which one wrote the file.
+inline const std::string computed_by_fact = "computed_by", version_fact = "credence_version",
+                         revision_fact = "git_revision";
 
 /// NaNs come with different bits from different processors; files hold one of them.
 inline double one_nan(double value) { return value == value ? value : nan; }
@@ -101,8 +104,8 @@ inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const 
 
 /// Builds an HDF5 file aside and puts it under its name. HDF5 itself only refuses for want of memory.
 template <class Build>
-void write_file(const std::string& path, Build build) {
-    write_durably(path, [&](int descriptor) {
+void write_file(const Output& output, Build build) {
+    write_durably(output, [&](int descriptor) {
         ByteFile bytes(descriptor);
         try {
             const hdf5::QuietErrors quiet;
@@ -111,7 +114,7 @@ void write_file(const std::string& path, Build build) {
             root.close();
         } catch (const hdf5::Error& error) {
             if (bytes.error() == 0)
-                throw Failure("cannot write " + path + " (" + error.what() + "). Free some memory.");
+                throw Failure("cannot write " + output.path + " (" + error.what() + "). Free some memory.");
         }
         return bytes.error();
     });

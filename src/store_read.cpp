@@ -166,6 +166,22 @@ bool read_complete(const Handle& root, const Study& study) {
     return complete == 1;
 }
 
+/// Where the file does not say which release computed its blocks, the one that wrote it did.
+Provenance computed_by(const Study& study, const RunFacts& run) {
+    const auto fact = [&](const std::string& name) {
+        const auto found = std::find_if(run.begin(), run.end(), [&](const auto& one) { return one.first == name; });
+        return found == run.end() ? "" : found->second;
+    };
+    if (const std::string releases = fact(computed_by_fact); !releases.empty()) try {
+            return read_provenance(releases, study);
+        } catch (const std::invalid_argument&) {
+            throw Error("/run/@" + computed_by_fact, "is no list of releases and of blocks that are there");
+        }
+    return fact(version_fact).empty()
+               ? Provenance{}
+               : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
+}
+
 StoredStudy read_study(const Opened& source) {
     const Handle& root = *source.file;
     StoredStudy stored;
@@ -182,6 +198,7 @@ StoredStudy read_study(const Opened& source) {
     const Handle run = hdf5::open_group(root, run_group);
     for (const std::string& name : hdf5::attribute_names(run))
         stored.run.emplace_back(name, hdf5::read_text(run, name));
+    study.computed_by = computed_by(study, stored.run);
     return stored;
 }
 

@@ -147,9 +147,9 @@ void write_trajectory(const Handle& scenario_group, const Trajectory& trajectory
 
 }  // namespace
 
-void write_trajectories(const std::string& path, const std::vector<Trajectory>& trajectories, const RunFacts& run) {
+void write_trajectories(const Output& output, const std::vector<Trajectory>& trajectories, const RunFacts& run) {
     for (const Trajectory& trajectory : trajectories) refuse_reserved_name(declaration_of(trajectory.scenario));
-    write_file(path, [&](const Handle& root) {
+    write_file(output, [&](const Handle& root) {
         write_header(root, trajectories_format, "Single trials of EKF-SLAM with everything that happened in them");
         std::map<std::string, Handle> groups;
         for (const Trajectory& trajectory : trajectories) {

@@ -155,14 +155,20 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
         const Handle group = new_scenario_group(root, results.scenario);
         for (const ArmResults& arm : results.arms) write_arm(group, results, arm);
     }
-    write_run_facts(root, run);
+    RunFacts facts = run;
+    if (const std::string releases = provenance_text(study); !releases.empty())
+        facts.emplace_back(computed_by_fact, releases);
+    write_run_facts(root, facts);
 }
 
 }  // namespace
 
-void write_results(const std::string& path, const Study& study, const RunFacts& run) {
+void write_results(const Output& output, const Study& study, const RunFacts& run, const std::function<void()>& check) {
     for (const ScenarioResults& results : study.scenarios) refuse_reserved_name(results.scenario);
-    write_file(path, [&](const Handle& root) { write_study(root, study, run); });
+    write_file(output, [&](const Handle& root) {
+        write_study(root, study, run);
+        if (check) check();
+    });
 }
 
 }  // namespace credence

@@ -1,6 +1,8 @@
 #pragma once
 // Room 12: what the system does with files, and what it says where it refuses.
 
+#include <sys/types.h>
+
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -45,10 +47,26 @@ private:
 /// Whether the name still stands for the file that was opened.
 bool same_file(const Descriptor& opened, const std::string& path);
 
-/// Opens or makes a regular file for reading and writing, locked against a second writer, who may have renamed or removed
-/// it between our opening and locking. Throws Failure about `target` where the system refuses, InputError where another
+/// Opens or makes a regular file for reading and writing, `mode` being its permissions where it is made, locked against a
+/// second writer, who may have renamed or removed it between our opening and locking. Throws Failure about `target` where the system refuses, InputError where another
 /// program holds the lock.
-Descriptor open_locked(const std::string& path, const std::string& target);
+Descriptor open_locked(const std::string& path, const std::string& target, mode_t mode = 0666);
+
+/// The same of a file that is made anew: one that a crash left, and that is not locked, is removed.
+Descriptor open_new_locked(const std::string& path, const std::string& target);
+
+/// The permissions of the file that is there; those of any new file where there is none.
+mode_t permissions_of(const std::string& path);
+
+/// Gives a file the owner and the permissions of another one, as far as the system allows it; where there is no other,
+/// nothing changes.
+void take_owner_and_permissions(const Descriptor& file, const std::string& other);
+
+/// Renames `from` unless `to` is there: then nothing happens. Returns 0 or an error of the system, EEXIST for that.
+int rename_to_free_name(const std::string& from, const std::string& to);
+
+/// The path that is left when symbolic links at its end are followed, whether there is a file or not.
+std::filesystem::path followed(std::filesystem::path path);
 
 /// Makes renaming and removing in a folder last. One that cannot be opened for reading, or a file system that syncs none,
 /// is left alone. Throws Failure about `path`.

@@ -1,7 +1,7 @@
 #include <credence/watch.hpp>
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/stored_run.hpp>
 
 #include "journal_follower.hpp"
 
@@ -52,7 +52,7 @@ RunWatch::~RunWatch() = default;
 
 /// Nothing where there is no journal.
 std::optional<WatchLook> RunWatch::look_at_journal() {
-    const std::string path = path_ + ".journal";
+    const std::string path = journal_path_of(path_);
     for (int attempt = 0;; ++attempt) {
         const std::optional<JournalBytes> journal = JournalBytes::open(path);
         if (!journal) return std::nullopt;
@@ -81,8 +81,8 @@ std::optional<WatchLook> RunWatch::look_at_journal() {
 WatchLook RunWatch::look_at_results() const {
     std::error_code none;
     if (!std::filesystem::exists(path_, none))
-        throw InputError("nothing to watch: neither " + path_ + " nor " + path_ +
-                         ".journal is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
+        throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
+                         " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
     const Study study = read_results(path_).study;
     WatchLook look{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
     if (!study.complete && !study.scenarios.empty()) look.shard = shard_of(study.scenarios.front(), study.trials);

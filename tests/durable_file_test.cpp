@@ -1,6 +1,7 @@
 // Room 12, files: what happens when the system refuses. What was there stays, and nothing is left behind.
 
 #include "../src/durable_file.hpp"
+#include "../src/system_file.hpp"
 #include "store_study.hpp"
 
 #include <fcntl.h>
@@ -22,6 +23,12 @@ std::string failure(const std::string& path, const std::string& bytes) {
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+mode_t permissions_of_new_file() {
+    const mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+}
 
 /// Lets no file of this process grow beyond `bytes`, as a full disk or a quota would.
 class FileSizeLimit {
@@ -53,9 +60,59 @@ TEST_CASE("durable file: appears whole, replaces, and leaves nothing aside") {
 
 TEST_CASE("durable file: a crash's leftover is taken over") {
     const TemporaryFolder folder;
-    put_bytes(folder / "file.partial", std::string(1000, 'x'));
+    put_bytes(folder / "file.credence-partial", std::string(1000, 'x'));
     write(folder / "file", "whole");
     CHECK(bytes_of(folder / "file") == "whole");
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("durable file: what has a name like it beside it is left alone") {
+    const TemporaryFolder folder;
+    put_bytes(folder / "file.partial", "mine");
+    write(folder / "file", "whole");
+    CHECK(bytes_of(folder / "file.partial") == "mine");
+    CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("durable file: permissions of what it replaces stay") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "file";
+    write(path, "first");
+    CHECK(permissions_of(path) == permissions_of_new_file());
+    for (const mode_t mode : {mode_t{0600}, mode_t{0664}, mode_t{0400}}) {
+        REQUIRE(chmod(path.c_str(), mode) == 0);
+        write(path, "next");
+        CHECK(permissions_of(path) == mode);
+    }
+    // Those of what a crash left are another writing's.
+    put_bytes(folder / "new.credence-partial", "left");
+    REQUIRE(chmod((folder / "new.credence-partial").c_str(), 0600) == 0);
+    write(folder / "new", "whole");
+    CHECK(permissions_of(folder / "new") == permissions_of_new_file());
+}
+
+TEST_CASE("durable file: what appears or changes under the name in the meantime is not replaced") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "file";
+    const auto said = [](const Output& output) {
+        return refusal<Failure>([&] { write_text_file(output, "new"); });
+    };
+    const Output fresh = check_output(path, false);
+    put_bytes(path, "mine");
+    CHECK(contains(said(fresh), "cannot write " + path + " (a file of that name appeared in the meantime). Move that away"));
+    CHECK(bytes_of(path) == "mine");
+    Output seen = check_output(path, true);
+    put_bytes(folder / "other", "mine");
+    std::filesystem::rename(folder / "other", path);  // as long, but another file
+    CHECK(contains(said(seen), "another program changed or replaced it in the meantime"));
+    seen = check_output(path, true);
+    put_bytes(path, "longer than it was");
+    CHECK(contains(said(seen), "another program changed or replaced it in the meantime"));
+    CHECK(bytes_of(path) == "longer than it was");
+    seen = check_output(path, true);
+    std::filesystem::remove(path);
+    CHECK(said(seen).empty());
+    CHECK(bytes_of(path) == "new");
     CHECK(folder.entries() == 1);
 }
 
@@ -86,7 +143,7 @@ TEST_CASE("durable file: a missing folder, a folder in its place and devices are
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     CHECK(contains(failure(folder / "pipe", "x"), "something that is not a file"));
     CHECK(std::filesystem::is_fifo(folder / "pipe"));
-    std::filesystem::create_directory(folder / "file.partial");
+    std::filesystem::create_directory(folder / "file.credence-partial");
     CHECK(contains(failure(folder / "file", "x"), "is a directory"));
     CHECK(folder.entries() == 3);
     CHECK(contains(failure(folder / std::string(300, 'x'), "x"), "name too long"));
@@ -94,7 +151,7 @@ TEST_CASE("durable file: a missing folder, a folder in its place and devices are
 
 TEST_CASE("durable file: a second writer is turned away") {
     const TemporaryFolder folder;
-    const std::string aside = folder / "file.partial";
+    const std::string aside = folder / "file.credence-partial";
     const int other = open(aside.c_str(), O_WRONLY | O_CREAT, 0666);
     REQUIRE(flock(other, LOCK_EX | LOCK_NB) == 0);
     CHECK(contains(refusal<InputError>([&] { write(folder / "file", "x"); }), "another program is writing it"));
@@ -112,7 +169,16 @@ TEST_CASE("durable file: a link is followed, not replaced; one aside is not") {
     write(folder / "link", "new");
     CHECK(std::filesystem::is_symlink(folder / "link"));
     CHECK(bytes_of(folder / "real") == "new");
-    std::filesystem::create_symlink("precious", folder / "file.partial");
+    // One that leads to no file yet makes it, through another one and into another folder.
+    std::filesystem::create_directory(folder / "disk");
+    std::filesystem::create_symlink("disk/file", folder / "next");
+    std::filesystem::create_symlink(folder / "next", folder / "first");
+    write_text_file(check_output(folder / "first", false), "through");
+    CHECK(bytes_of(folder / "disk/file") == "through");
+    CHECK(std::filesystem::is_symlink(folder / "first"));
+    std::filesystem::create_symlink("circle", folder / "circle");
+    CHECK(contains(refusal<InputError>([&] { check_output(folder / "circle", true); }), "its links lead in a circle"));
+    std::filesystem::create_symlink("precious", folder / "file.credence-partial");
     CHECK(!failure(folder / "file", "x").empty());
     CHECK(bytes_of(folder / "precious") == "mine");
 }

@@ -48,7 +48,7 @@ struct Made {
         const std::vector<std::size_t> ends = record_ends(bytes);
         header = bytes.substr(0, ends[0]);
         record.keep = keep;
-        record.start = {3, 3, {{0, 3}}, {}, {{0, 0}}};
+        record.start = {3, 3, {{0, 3}}, {}, {{0, 0}}, unknown_release};
         const BlockLayout layout(study.scenarios.front());
         record.values = bytes.substr(ends[0] + record_head_size + record_start_size + block_list_size(record.start, keep),
                                      static_cast<std::size_t>(layout.size({0, 3})));

@@ -137,7 +137,7 @@ TEST_CASE("journal: a status that is none is refused when it is read") {
 TEST_CASE("journal: numbers of trials that no memory holds take none") {
     const Made made;
     const LittleMemory limit;
-    const JournalHeader header{JournalBase::none, most_trials, {}, definition_of(made.study)};
+    const JournalHeader header{JournalBase::none, {}, most_trials, {}, definition_of(made.study)};
     put_bytes(made.path + ".journal", header_bytes(header));
     CHECK(opened(made.path, made.asked).study().trials == most_trials);
     // A whole block, but far away: its rows are few.
@@ -162,6 +162,7 @@ TEST_CASE("journal: a header that was made up is refused") {
     ByteWriter body;
     body.put(static_cast<std::int32_t>(schema_version));
     body.put(std::uint8_t{0});
+    for (int i = 0; i < 3; ++i) body.put(std::int64_t{0});  // no file was there
     body.put(std::int64_t{3});
     body.put(std::int64_t{0});
     body.put(std::int64_t{1});
@@ -169,7 +170,7 @@ TEST_CASE("journal: a header that was made up is refused") {
     const auto journal_of = [&](const ByteWriter& rest) {
         const std::string text = body.bytes() + rest.bytes();
         const auto size = static_cast<std::uint32_t>(text.size());
-        return sealed("credence-journal" + std::string("\2\0\0\0", 4) +
+        return sealed("credence-journal" + std::string("\4\0\0\0", 4) +
                       std::string(reinterpret_cast<const char*>(&size), sizeof size) + text);
     };
     const auto said = [&](const std::function<void(ByteWriter&)>& make) {

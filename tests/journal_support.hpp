@@ -27,6 +27,7 @@ struct Asked {
     std::vector<Scenario> scenarios{tiny("a"), tiny("b"), tiny("c")};
     int threads = 1;
     Keep keep = Keep::trials;
+    std::string release = unknown_release;
 
     Study study() const { return new_study(scenarios, root_seed, keep); }
 };
@@ -39,7 +40,7 @@ inline std::function<bool()> after(std::int64_t blocks) {
 }
 
 inline StoredRun opened(const std::string& path, const Asked& asked, Start start = Start::resume) {
-    return StoredRun(path, asked.study(), start);
+    return StoredRun(path, asked.study(), start, asked.release);
 }
 
 inline void compute(StoredRun& run, const Asked& asked, std::int64_t blocks = all_blocks) {
@@ -96,7 +97,7 @@ inline std::string sealed(std::string bytes) {
 
 /// What refuses a run on `path`; empty where it goes on.
 inline std::string refused(const std::string& path, const Asked& asked, Start start = Start::resume) {
-    return refusal<InputError>([&] { run_to_end(path, asked, all_blocks, start); });
+    return refusal<std::runtime_error>([&] { run_to_end(path, asked, all_blocks, start); });
 }
 
 inline bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -47,6 +47,24 @@ inline void replace(const Handle& root, const std::string& path, const hdf5::Ext
     hdf5::write_dataset(root, path, hdf5::type_of<T>(), values.data(), extents, {"", ""});
 }
 
+/// Multiplies the numbers of a dataset; by a power of two the parts of a total stay parts of one.
+inline void scale(const Handle& root, const std::string& path, double factor) {
+    const Handle dataset = open(root, path);
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose, path, "space");
+    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id())));
+    REQUIRE(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+    for (double& value : values) value *= factor;
+    REQUIRE(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+}
+
+/// A copy of a file after `damage`.
+inline std::string damaged_copy(const std::string& good, const std::string& bad,
+                                const std::function<void(const Handle& root)>& damage) {
+    std::filesystem::copy_file(good, bad, std::filesystem::copy_options::overwrite_existing);
+    damage(Handle(H5Fopen(bad.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, bad, "cannot open it"));
+    return bad;
+}
+
 /// A dataset whose extents promise terabytes that the file does not hold.
 inline void promise_terabytes(const Handle& root, const std::string& path) {
     remove(root, path);

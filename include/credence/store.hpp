@@ -5,6 +5,9 @@
 #include <credence/study.hpp>
 #include <credence/trajectory.hpp>
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,16 +22,39 @@ struct StoredStudy {
     RunFacts run;
 };
 
-/// Throws InputError where a results file could not be put at `path`: folder missing or not writable, or something is
-/// there already and `overwrite` is false; `way_out` is the remedy for that. Writes nothing.
-void check_output(const std::string& path, bool overwrite, const std::string& way_out = "Give another name");
+/// Which file it is, and when it was written last: two that differ are other files, or one of which the content changed.
+struct FileIdentity {
+    std::uint64_t device = 0, inode = 0;
+    std::int64_t size = 0, written = 0;  ///< `written` in nanoseconds, by the file system's clock
 
-/// Writes a text to `path` in the same way as results: whole, or not at all. Throws Failure where the system refuses.
-void write_text_file(const std::string& path, const std::string& text);
+    bool operator==(const FileIdentity&) const = default;
+};
+/// Of the regular file that a name leads to; nothing where there is none.
+std::optional<FileIdentity> identity_of(const std::string& path);
 
-/// Writes the study to `path`: built in memory, written aside, synced and renamed, so that the name never stands for
-/// half a file. Replaces what is there. Throws Failure where the system refuses (no space ...), leaving what was there.
-void write_results(const std::string& path, const Study& study, const RunFacts& run);
+/// A file to be written, and the one that it may replace.
+struct Output {
+    /// Whatever is there now may be replaced.
+    Output(const std::string& path);
+
+    std::string path;                   ///< as it was given
+    std::string target;                 ///< where its symbolic links lead to
+    std::optional<FileIdentity> there;  ///< what may be replaced; nothing: no file
+};
+
+/// Throws InputError where a file could not be put at `path`: folder missing or not writable, or something is there
+/// already and `overwrite` is false; `way_out` is the remedy for that. Writes nothing. The output that it returns
+/// replaces what is there now and nothing that appears later.
+Output check_output(const std::string& path, bool overwrite, const std::string& way_out = "Give another name");
+
+/// Writes a text in the same way as results: whole, or not at all. Throws Failure where the system refuses.
+void write_text_file(const Output& output, const std::string& text);
+
+/// Writes the study: built in memory, written aside, synced and renamed, so that the name never stands for half a file.
+/// `check` is called when all is written and not renamed yet, and throws where that must not be. Throws Failure where the
+/// system refuses (no space ...), or another file is there than the output may replace, leaving what was there.
+void write_results(const Output& output, const Study& study, const RunFacts& run,
+                   const std::function<void()>& check = {});
 
 /// Reads a results file back. Throws InputError, naming the file and the place, where it is not one, was made by
 /// another schema version, is damaged, or does not agree with itself. Scenarios are read back from their text.
@@ -39,6 +65,6 @@ StoredStudy read_results(const std::string& path);
 NoiseRecord read_noise_record(const std::string& path);
 
 /// Writes trajectories of single trials, a group per scenario and within it a group per arm.
-void write_trajectories(const std::string& path, const std::vector<Trajectory>& trajectories, const RunFacts& run);
+void write_trajectories(const Output& output, const std::vector<Trajectory>& trajectories, const RunFacts& run);
 
 }  // namespace credence

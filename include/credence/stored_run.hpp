@@ -19,14 +19,20 @@ enum class Start {
 };
 
 class Journal;
+struct JournalHeader;
+
+/// The journal of the results file `path`: beside the file that the name leads to, so that a symbolic link and that file
+/// have one journal.
+std::string journal_path_of(const std::string& path);
 
 /// Keeps a run on the disk. One at a time for a file: the journal is locked.
 class StoredRun {
 public:
     /// Looks at what is there, and reads it where the run is to go on; changes nothing but a journal's torn tail.
-    /// `study` is what is asked for, empty. Throws InputError where the output cannot be used: it is there (fresh), holds
-    /// another study, is damaged, or another program writes it.
-    StoredRun(const std::string& path, Study study, Start start);
+    /// `study` is what is asked for, empty, and `release` what will compute it. Throws InputError where the output cannot
+    /// be used: it is there (fresh), holds another study, was computed by a release that this one may not be mixed with,
+    /// is damaged, or another program writes it.
+    StoredRun(const std::string& path, Study study, Start start, const std::string& release = unknown_release);
     StoredRun(StoredRun&&) noexcept;
     ~StoredRun();
 
@@ -39,7 +45,8 @@ public:
     BlockKeeper& begin(std::int64_t trials, std::int64_t commit_every = 0, const Shard& shard = {});
 
     /// Writes the results file, unless it has all that the study has, and removes the journal. Returns whether it wrote.
-    /// Throws Failure where the system refuses; then the journal is there still.
+    /// Throws Failure where the system refuses, another program changed the journal, or the name leads to another file than
+    /// at the start; then the journal is there still.
     bool finish(const RunFacts& facts);
 
 private:
@@ -54,10 +61,21 @@ private:
 
     void open_journal();
     void go_on();
+    void go_on_with(const JournalHeader& header, const StudyDefinition& asked);
+    void choose(const StudyDefinition& asked);
+    void read_file(const StudyDefinition& asked);
+    Study stored(const StudyDefinition& asked) const;
+    bool is_base_of(const JournalHeader& header) const;
+    void check_releases() const;
+    void check_unchanged() const;
+    void write(const RunFacts& facts);
 
-    std::string path_, journal_path_;
+    Output output_;  ///< may replace the file that was there at the start
+    std::string journal_path_;
     Start start_;
+    std::string release_;
     std::optional<Contents> in_file_;   ///< of the results file that the study goes on with
+    bool journal_is_over_ = false;      ///< the results file has all that it has: it is begun anew
     std::unique_ptr<Journal> journal_;  ///< outlives the study, whose columns it may hold
     Study study_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 // Room 11: the study: scenarios under their arms, which blocks to run, and on what.
 
+#include <credence/provenance.hpp>
 #include <credence/results.hpp>
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct Study {
     std::vector<ScenarioResults> scenarios;
     std::int64_t trials = 0;            ///< of each scenario that were asked for
     bool complete = true;               ///< every scenario has all of them
+    Provenance computed_by{};           ///< which release computed which blocks; empty where it is not known
 };
 
 /// What makes a study that study: not its trials, threads, shards or stopping.

@@ -150,7 +150,7 @@ void check_output_option(const Parsed& parsed) {
 }
 
 void write_output(const Parsed& parsed, const std::string& text) {
-    if (const std::optional<std::string> path = parsed.text("output")) write_text_file(*path, text);
+    if (const std::optional<std::string> path = parsed.text("output")) write_text_file(check_output(*path, false), text);
     else std::cout << text;
 }
 

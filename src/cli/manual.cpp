@@ -77,7 +77,7 @@ std::string files_text() {
     return roff::tagged(roff::italic("FILE.h5"), "A results file: HDF5, readable as netCDF-4 by any tool.") +
            roff::tagged(roff::italic("FILE.h5.journal"),
                         "Beside it while a run goes on: all that is finished. --resume goes on with it.") +
-           roff::tagged(roff::italic("FILE.h5.partial"), "The results file while it is being written.");
+           roff::tagged(roff::italic("FILE.h5.credence-partial"), "The results file while it is being written.");
 }
 
 std::string head() {

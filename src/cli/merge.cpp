@@ -39,9 +39,9 @@ void allow_open_files() {
 
 int merge(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
-    const std::optional<std::string> output = parsed.text("output");
-    if (!output) throw InputError("no -o given. Name the results file to write.");
-    check_output(*output, parsed.has("overwrite"), "Give another name or --overwrite");
+    const std::optional<std::string> path = parsed.text("output");
+    if (!path) throw InputError("no -o given. Name the results file to write.");
+    const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
     allow_open_files();
     const Study study = merge_results(parsed.arguments);
     if (!study.complete)
@@ -50,10 +50,10 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     RunFacts facts = build_facts();
     facts.emplace_back("merged_files", std::to_string(parsed.arguments.size()));
     facts.emplace_back("command_line", command_line);
-    write_results(*output, study, facts);
+    write_results(output, study, facts);
     if (!parsed.has("quiet"))
-        std::cout << *output << ": " << study.trials << " trials of each scenario from " << parsed.arguments.size()
-                  << " files, " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*output))) << "\n";
+        std::cout << *path << ": " << study.trials << " trials of each scenario from " << parsed.arguments.size()
+                  << " files, " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*path))) << "\n";
     return 0;
 }
 

@@ -163,8 +163,8 @@ int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1)
         throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
     const std::string format = parsed.choice("format");
-    const std::optional<std::string> output = parsed.text("output"), noise = parsed.text("noise");
-    check_output_option(parsed);
+    const std::optional<std::string> path = parsed.text("output"), noise = parsed.text("noise");
+    const std::optional<Output> output = path ? std::optional(check_output(*path, false)) : std::nullopt;
     const std::vector<Trajectory> trajectories = noise ? replay_noise(parsed, *noise) : replay_stored(parsed);
     if (output) {
         RunFacts facts = build_facts();

@@ -1,5 +1,7 @@
 #include "run_request.hpp"
 
+#include "version.hpp"
+
 #include <credence/error.hpp>
 #include <credence/launcher.hpp>
 #include <credence/text.hpp>
@@ -81,7 +83,7 @@ RunRequest read_request(const Parsed& parsed) {
 StoredRun starting_run(RunRequest& request) {
     Study study = new_study(request.scenarios, request.root_seed, request.keep);
     check_goals(request.goals, study);
-    StoredRun run(request.output, std::move(study), request.start);
+    StoredRun run(request.output, std::move(study), request.start, made_by());
     const std::int64_t before = least_trials(run.study());
     if (!request.trials_given && request.goals.empty() && before > 0) request.options.trials = before;
     return run;

@@ -41,7 +41,7 @@ RunFacts build_facts() {
 }
 
 std::string made_by() {
-    return "credence " + std::string(build_info::version) + ", git revision " + build_info::git_revision;
+    return release_name(build_info::version, build_info::git_revision);
 }
 
 std::string version_text() {

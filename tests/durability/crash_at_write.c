@@ -170,6 +170,10 @@ int renameat(int from_folder, const char *from, int to_folder, const char *to) {
     REAL(renameat, "renameat");
     CHANGE_PATH("renameat", to, 0, real(from_folder, from, to_folder, to));
 }
+int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags) {
+    REAL(renameat2, "renameat2");
+    CHANGE_PATH("renameat2", to, 0, real(from_folder, from, to_folder, to, flags));
+}
 int unlink(const char *path) {
     REAL(unlink, "unlink");
     CHANGE_PATH("unlink", path, 1, real(path));

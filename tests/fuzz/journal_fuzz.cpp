@@ -94,7 +94,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const Study trials = asked(Keep::trials), aggregates = asked(Keep::aggregates);
     constexpr std::size_t version_at = 16;
-    const Study& study = size > version_at && data[version_at] == 3 ? aggregates : trials;
+    const Study& study = size > version_at && data[version_at] == 5 ? aggregates : trials;
     const ScratchFile file(data, size);
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");

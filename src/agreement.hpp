@@ -1,0 +1,14 @@
+#pragma once
+// Room 12: whether a results file agrees with itself, where it says the same thing twice.
+
+#include <credence/study.hpp>
+
+#include <string>
+
+namespace credence {
+
+/// Throws InputError where totals over the trials are not those of the trials' own columns, of all that are both: who
+/// carries totals on into another file asks for this. The columns are read once.
+void check_agreement(const Study& study, const std::string& path);
+
+}  // namespace credence
