@@ -136,6 +136,20 @@ void store_columns(ScenarioResults& results, const Block& block) {
     }
 }
 
+bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block) {
+    const std::int64_t row_a = first_row(a, block).value(), row_b = first_row(b, block).value();
+    if (row_a >= a.detailed() || row_b >= b.detailed()) return true;
+    const std::int64_t rows = block_rows(b, static_cast<std::size_t>(row_b / block_size));
+    const auto same = [&](const std::vector<double>& in_a, const std::vector<double>& in_b, std::int64_t width) {
+        const auto begin = in_a.begin() + row_a * width;
+        return std::equal(begin, begin + rows * width, in_b.begin() + row_b * width,
+                          [](double x, double y) { return x == y || (x != x && y != y); });
+    };
+    const std::int64_t steps = b.steps();
+    return same(a.arms[arm].nees, b.arms[arm].nees, steps) &&
+           same(a.arms[arm].errors, b.arms[arm].errors, steps * b.state_size());
+}
+
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
     const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
     if (row_to >= to.detailed() || row_from >= from.detailed()) return;

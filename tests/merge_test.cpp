@@ -79,9 +79,7 @@ TEST_CASE("merge: details of trials come from whichever file has them") {
 TEST_CASE("merge: the same block with other values is refused by trials, arm and column") {
     const Shards shards;
     const std::string good = shards.shard(0, 2), bad = shards.folder / "bad.h5";
-    std::filesystem::copy_file(good, bad);
-    {
-        const Handle root(H5Fopen(bad.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, bad, "cannot open it");
+    damaged_copy(good, bad, [&](const Handle& root) {
         const Handle column = open(root, "/b/fixed.ekf/pose_error");
         const hsize_t row = 300, one = 1;  // of block 2, trials 512 to 767
         const Handle file(H5Dget_space(column.id()), H5Sclose, bad, "space"),
@@ -89,12 +87,73 @@ TEST_CASE("merge: the same block with other values is refused by trials, arm and
         H5Sselect_hyperslab(file.id(), H5S_SELECT_SET, &row, nullptr, &one, nullptr);
         const double value = 0.125;
         REQUIRE(H5Dwrite(column.id(), H5T_NATIVE_DOUBLE, memory.id(), file.id(), H5P_DEFAULT, &value) >= 0);
-    }
+    });
     const std::string said = refused_to_merge({shards.shard(1, 2), good, bad});
     CAPTURE(said);
     CHECK(said.starts_with("cannot merge " + bad + " with " + good +
                            " (trials 512 to 767 of b/fixed.ekf differ in pose_error)"));
     CHECK_FALSE(refused_to_merge({bad, good}).empty());
+}
+
+TEST_CASE("merge: totals that are not those of the trials' columns are refused, in any order") {
+    const Shards shards;
+    const std::string good = shards.shard(0, 2), other = shards.shard(1, 2);
+    for (const std::string name : {"nees_total", "nees_run_square_total", "trace_P_step_total", "unseen_features_total",
+                                   "trace_P_step_square_total"}) {
+        const std::string bad = damaged_copy(good, shards.folder / (name + ".h5"), [&](const Handle& root) {
+            scale(root, "/b/fixed.ekf/" + name, 2);
+        });
+        std::vector<std::vector<std::string>> orders{{bad, other}, {other, bad}, {bad, good, other}, {good, other, bad}};
+        for (const std::vector<std::string>& paths : orders) {
+            const std::string said = refused_to_merge(paths);
+            CAPTURE(name, said);
+            CHECK(said.starts_with(bad + ": /b/fixed.ekf: the totals of "));
+        }
+        // Nor is such a file grown.
+        CHECK(says(refused(bad, shards.asked), bad + ": /b/fixed.ekf: the totals of "));
+    }
+}
+
+TEST_CASE("merge: totals of blocks that several files have contradict each other, whichever comes first") {
+    Shards shards;
+    shards.asked.scenarios = {tiny("b")};
+    for (const Keep keep : {Keep::trials, Keep::aggregates}) {
+        shards.asked.keep = keep;
+        const std::string half = shards.shard(0, 2), rest = shards.shard(1, 2), whole = shards.shard(0, 1),
+                          third = shards.shard(0, 3);
+        const auto bad = [&](const std::string& good) {
+            return damaged_copy(good, good + "-bad.h5", [](const Handle& root) {
+                scale(root, "/b/fixed.ekf/nees_pose_total", 2);  // no column says it
+            });
+        };
+        // The same blocks; some that another has all of, and the other way round; blocks shared in part; two that make
+        // up a third one. In their order, and the other way round.
+        std::vector<std::vector<std::string>> unions{{half, bad(half)}, {whole, bad(third)}, {third, bad(whole)},
+                                                     {half, bad(third)}, {third, half + "-bad.h5"},
+                                                     {half, rest, whole + "-bad.h5"}, {half + "-bad.h5", rest, whole}};
+        if (keep == Keep::aggregates) unions.resize(4);
+        for (std::vector<std::string>& paths : unions) {
+            for (int order = 0; order < 2; ++order) {
+                const std::string said = refused_to_merge(paths);
+                CAPTURE(paths, said);
+                CHECK(said.starts_with("cannot merge "));
+                CHECK(says(said, "-bad.h5"));
+                CHECK(says(said, " totals of b "));
+                std::reverse(paths.begin(), paths.end());
+            }
+        }
+        CHECK(same_results(merge_results({whole, third, half, rest}), undisturbed(shards.asked)));
+    }
+}
+
+TEST_CASE("merge: the same block with other errors of its trials is refused") {
+    const Shards shards;
+    const std::string good = shards.shard(0, 2);
+    const std::string bad = damaged_copy(good, shards.folder / "bad.h5", [](const Handle& root) {
+        scale(root, "/a/fixed.ekf/detailed_error", 2);
+    });
+    CHECK(says(refused_to_merge({bad, good}), "of a/fixed.ekf differ in their errors"));
+    CHECK(says(refused_to_merge({good, bad}), "of a/fixed.ekf differ in their errors"));
 }
 
 TEST_CASE("merge: blocks that no file has are named by scenario") {

@@ -144,6 +144,9 @@ void store_columns(ScenarioResults& results, const Block& block);
 void add_totals(ScenarioResults& results, const Block& block, const std::vector<ArmAggregates>& aggregates);
 void add_totals(ScenarioResults& results, const Block& block);
 
+/// Whether the details of a block that both have, where it has any, are the same in both, under one arm.
+bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block);
+
 /// Copies the details of a block that both have, where it has any. Different blocks may be copied at once.
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block);
 
