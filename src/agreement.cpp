@@ -108,8 +108,10 @@ void check_arm(const ScenarioResults& results, const ArmResults& arm, const std:
 }  // namespace
 
 void check_agreement(const Study& study, const std::string& path) {
-    for (const ScenarioResults& results : study.scenarios)
-        for (const ArmResults& arm : results.arms) check_arm(results, arm, path);
+    for (const ScenarioResults& results : study.scenarios) {
+        const WithTotals with_totals(results);
+        for (const ArmResults& arm : (*with_totals).arms) check_arm(*with_totals, arm, path);
+    }
 }
 
 }  // namespace credence

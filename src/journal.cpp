@@ -20,7 +20,7 @@ Journal::Journal(const std::string& path, mode_t mode) : file_(path, mode) {
 }
 
 void Journal::begin(const JournalHeader& header, Study& study) {
-    keep_columns_of(study);
+    keep(study);
     file_.cut(0);
     const std::string bytes = header_bytes(header);
     file_.append(bytes);
@@ -55,24 +55,32 @@ void Journal::take(std::size_t scenario, const std::vector<std::int64_t>& blocks
     pending_blocks_ += blocks.size();
 }
 
-bool Journal::due() const {
+namespace {
+
+constexpr std::size_t too_much = std::size_t{64} << 20;
+
+}  // namespace
+
+bool Journal::full() const { return committing_ && pending_size_ > too_much; }
+
+bool Journal::due(std::int64_t held) const {
     using Seconds = std::chrono::duration<double>;
     constexpr Seconds least(0.5), most(10.0);
-    constexpr std::size_t too_much = std::size_t{64} << 20;
     if (committing_) return false;
+    if (pending_size_ + static_cast<std::size_t>(held) > too_much) return true;
     if (commit_every_ > 0) return pending_blocks_ >= static_cast<std::size_t>(commit_every_);
     // Totals are as large after one block as after a thousand: they are not to make up most of the journal. Where they
     // make up all of it, a hundredth of the time that the run took so far is at stake at most, and their number hardly
     // grows with that time.
     const Seconds waited = std::chrono::steady_clock::now() - last_commit_,
                   longest = keeps_trials() ? most : std::max(most, Seconds(last_commit_ - begun_) / 100);
-    return pending_size_ > too_much || (waited > least && (pending_size_ > totals_size_ / 4 || waited > longest));
+    return waited > least && (pending_size_ > totals_size_ / 4 || waited > longest);
 }
 
 void Journal::put_record(std::size_t scenario, const Study& study) {
     Kept& kept = kept_[scenario];
     ByteWriter totals;
-    put_totals(totals, study.scenarios[scenario]);
+    put_totals(totals, *WithTotals(study.scenarios[scenario]));
     const Keep keep = kept.layout.keep();
     RecordStart start = record_of(kept.pending, study.trials, kept.layout);
     const std::size_t before = record_head_size + record_start_size + block_list_size(start, keep);
@@ -81,18 +89,20 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
         kept.placed.put(block.index, {block.trials, position, false});
         position += kept.layout.size(block);
     }
+    kept.totals = {position, static_cast<std::int64_t>(totals.size())};
     for (const BlockRange& range : start.ranges) kept.placed.put(range, study.trials, kept.layout);
     for (const std::int64_t block : kept.pending) kept.counted += trials_in_block(study.trials, block);
     start.counted = kept.counted;
     start.shard = shard_;
     start.release = release_;
     note_computed(computed_by_, release_, scenario, kept.pending);
-    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, keep, kept.pending_values.bytes(), totals.bytes());
+    // Moved out, as a string that is only cleared keeps its room: one for every scenario of the study.
+    const std::string values = kept.pending_values.take();
+    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, keep, values, totals.bytes());
     batch_.append(record_tail_size, '\0');
     ends_.push_back(batch_.size());
     totals_size_ += totals.size();
     kept.pending.clear();
-    kept.pending_values = {};
 }
 
 void Journal::prepare(const Study& study) {

@@ -40,13 +40,21 @@ struct PlacedBlocks {
     bool has(const PlacedBlocks& others) const;
 };
 
+/// Where the journal has the last totals of a scenario.
+struct JournalTotals {
+    std::int64_t position = 0, size = 0;
+
+    /// Whether any record is of that scenario.
+    bool found() const { return position > 0; }
+};
+
 /// What a journal says of one scenario.
 struct JournalScenario {
     PlacedBlocks placed;
-    std::int64_t asked = 0;           ///< trials that the study was asked for at the last totals
-    std::int64_t counted = 0;         ///< trials in the last totals
-    std::optional<std::string> totals;  ///< their bytes; none: no record is of this scenario
-    Provenance computed_by;             ///< of this scenario alone
+    std::int64_t asked = 0;    ///< trials that the study was asked for at the last totals
+    std::int64_t counted = 0;  ///< trials in the last totals
+    JournalTotals totals;
+    Provenance computed_by;    ///< of this scenario alone
 };
 
 class Journal : public BlockKeeper {
@@ -82,10 +90,14 @@ public:
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
     void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) override;
-    bool due() const override;
+    bool due(std::int64_t held) const override;
+    bool full() const override;
     void prepare(const Study& study) override;
     void commit() override;
     void finished(const Study& study) override;
+
+    /// The totals and details that are committed.
+    void load_totals(std::size_t scenario, ScenarioResults& results) const;
 
     /// Values of a column by row, once finished() has said which blocks are there.
     std::vector<double> values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
@@ -97,14 +109,16 @@ private:
         BlockLayout layout;
         std::vector<ColumnType> types;
         std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that is grown
+        std::shared_ptr<const KeptTotals> totals_in_file;         ///< likewise; nullptr: there is none
         PlacedBlocks placed;
         std::int64_t counted = 0;                                 ///< trials in them
+        JournalTotals totals;                                     ///< over them; none: those of the results file
         std::vector<BlockPlace> rows;                             ///< of those that are there, in order; if trials are kept
         std::vector<std::int64_t> pending;                        ///< blocks
         ByteWriter pending_values;
     };
 
-    void keep_columns_of(Study& study);
+    void keep(Study& study);
     std::vector<BlockLayout> layouts() const;
     bool keeps_trials() const { return kept_.empty() || kept_.front().layout.keep() == Keep::trials; }
     std::vector<JournalScenario> scan(const Study& study);

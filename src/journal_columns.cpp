@@ -24,16 +24,29 @@ private:
     std::size_t scenario_, arm_;
 };
 
+/// A scenario's totals and details, likewise.
+class TotalsOfRun : public KeptTotals {
+public:
+    TotalsOfRun(const Journal& journal, std::size_t scenario) : journal_(journal), scenario_(scenario) {}
+    void load(ScenarioResults& results) const override { journal_.load_totals(scenario_, results); }
+
+private:
+    const Journal& journal_;
+    std::size_t scenario_;
+};
+
 }  // namespace
 
-/// From here on the study's columns, where they are kept, are read from where the journal has them.
-void Journal::keep_columns_of(Study& study) {
+/// From here on the study's columns, where they are kept, are read from where the journal has them, and so are totals that
+/// are not in memory.
+void Journal::keep(Study& study) {
     kept_.clear();
     computed_by_ = study.computed_by;
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         ScenarioResults& results = study.scenarios[s];
-        Kept kept{BlockLayout(results), kept_types(results), {}, {}, results.trials, {}, {}, {}};
+        Kept kept{BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
         kept.placed.blocks = results.blocks;
+        results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
         const auto note = [&](std::size_t place) {
             kept.placed.places[results.blocks[place]] = {block_rows(results, place),
                                                          block_size * static_cast<std::int64_t>(place), true};

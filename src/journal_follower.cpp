@@ -43,7 +43,7 @@ JournalFollower::JournalFollower(const JournalBytes& journal, FoundHeader found,
 }
 
 void JournalFollower::read_file(const std::string& path) {
-    const Study stored = read_results(path).study;
+    const Study stored = read_results(path, 0).study;
     const std::string difference = difference_of(definition_of(stored), header_.study);
     if (!difference.empty())
         throw InputError(path + ": is not the file that its journal goes on with (" + difference +
@@ -105,7 +105,9 @@ void JournalFollower::check(std::size_t scenario) {
     if (!followed.totals) return;
     ScenarioResults& results = study_.scenarios[scenario];
     ByteReader from(followed.totals->data(), followed.totals->size());
+    load_totals(results);
     get_totals(from, results);
+    drop_totals(results);  // counted and aggregates are left
     followed.totals.reset();
     if (followed.already_in_file()) return;
     if (followed.trials() != followed.counted) throw BadBytes("totals and blocks do not agree");

@@ -37,7 +37,7 @@ std::vector<JournalScenario> Journal::scan(const Study& study) {
         note_computed(scenario.computed_by, record.start.release, 0, blocks);
         scenario.asked = record.start.trials;
         scenario.counted = record.start.counted;
-        scenario.totals = file_.read(record.totals, record.end - record.totals);
+        scenario.totals = {record.totals, record.end - record.totals};
         asked_ = std::max(asked_, record.start.trials);
     });
     torn_ = file_.size() - end;
@@ -79,26 +79,43 @@ void add_places(PlacedBlocks& placed, const JournalScenario& found) {
 
 }  // namespace
 
+void Journal::load_totals(std::size_t scenario, ScenarioResults& results) const {
+    const Kept& kept = kept_[scenario];
+    if (kept.totals_in_file) kept.totals_in_file->load(results);
+    if (!kept.totals.found()) return;
+    set_blocks(results, kept.placed.blocks, kept.placed.trials_up_to());
+    const std::string bytes = file_.read(kept.totals.position, kept.totals.size);
+    try {
+        ByteReader totals(bytes.data(), bytes.size());
+        get_totals(totals, results);
+        for (const ArmResults& arm : results.arms)
+            if (arm.counted < 0 || arm.counted > kept.counted ||
+                (results.keep == Keep::aggregates && arm.aggregates.trials() != kept.counted))
+                throw BadBytes("totals of an impossible number of trials");
+        read_details(scenario, results);
+    } catch (const BadBytes& bad) {
+        refuse_damaged(file_.path(), bad.what());
+    }
+}
+
 void Journal::load(Study& study) {
-    keep_columns_of(study);
+    keep(study);
+    TotalsInMemory in_memory(most_totals_in_memory);
     try {
         const std::vector<JournalScenario> found = scan(study);
         for (std::size_t s = 0; s < found.size(); ++s) {
             PlacedBlocks& placed = kept_[s].placed;
             // The run may have ended, so that the results file holds all that the journal has, and only that had to go.
-            if (!found[s].totals || placed.has(found[s].placed)) continue;
+            if (!found[s].totals.found() || placed.has(found[s].placed)) continue;
             ScenarioResults& results = study.scenarios[s];
             add_places(placed, found[s]);
             kept_[s].counted = found[s].counted;
             for (const ComputedBy& one : found[s].computed_by) note_computed(computed_by_, one.release, s, one.of(0));
+            kept_[s].totals = found[s].totals;
+            drop_totals(results);
             set_blocks(results, placed.blocks, placed.trials_up_to());
-            ByteReader totals(found[s].totals->data(), found[s].totals->size());
-            get_totals(totals, results);
-            for (const ArmResults& arm : results.arms)
-                if (arm.counted < 0 || arm.counted > found[s].counted ||
-                    (results.keep == Keep::aggregates && arm.aggregates.trials() != found[s].counted))
-                    throw BadBytes("totals of an impossible number of trials");
-            read_details(s, results);
+            credence::load_totals(results);
+            in_memory.limit(results);
         }
     } catch (const BadBytes& bad) {
         refuse_damaged(file_.path(), bad.what());

@@ -45,7 +45,7 @@ RankTasks read_tasks(const std::string& bytes) {
 }
 
 ScenarioResults without_columns(const Declaration& scenario, Keep keep) {
-    ScenarioResults results = empty_results(scenario, keep);
+    ScenarioResults results = results_without_totals(scenario, keep);
     for (ArmResults& arm : results.arms) arm.columns.clear();
     return results;
 }
@@ -69,6 +69,10 @@ RankRecord::RankRecord(const ScenarioResults& empty) : layout_(empty), types_(ke
 void RankRecord::take(const Block& block, const std::vector<ArmAggregates>& aggregates) {
     blocks_.push_back(block.index);
     put_block(values_, types_, block);
+    if (!has_totals(results_)) {
+        load_totals(results_);
+        totals_size_ = static_cast<std::size_t>(totals_size(results_, 0));
+    }
     add_totals(results_, block, aggregates);
 }
 
@@ -93,6 +97,7 @@ ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<Scen
     computed.blocks = blocks_of(start);
     computed.values.assign(from.raw(static_cast<std::uint64_t>(size)), static_cast<std::size_t>(size));
     set_blocks(results, computed.blocks, start.trials);
+    load_totals(results);
     get_totals(from, results);
     std::int64_t position = 0;
     for (const JournalBlock& block : start.blocks) {

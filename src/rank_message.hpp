@@ -38,7 +38,7 @@ public:
 
     void take(const Block& block, const std::vector<ArmAggregates>& aggregates = {});
     bool empty() const { return blocks_.empty(); }
-    std::size_t size() const { return values_.size(); }  ///< bytes of values
+    std::size_t size() const { return values_.size() + totals_size_; }  ///< bytes that it takes
     /// A record of the journal but for its checksum: the totals are those of its blocks alone.
     std::string bytes(std::size_t scenario, std::int64_t trials) const;
 
@@ -48,12 +48,13 @@ private:
     std::vector<std::int64_t> blocks_;
     ByteWriter values_;
     ScenarioResults results_;
+    std::size_t totals_size_ = 0;
 };
 
-/// Reads it back; `empty` are the empty results of the study's scenarios, without columns. Throws BadBytes.
+/// Reads it back; `empty` are those of the study's scenarios without columns. Throws BadBytes.
 ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty);
 
-/// Empty results that hold no columns.
+/// Empty results that hold no columns, and no totals yet.
 ScenarioResults without_columns(const Declaration& scenario, Keep keep = Keep::trials);
 
 }  // namespace credence

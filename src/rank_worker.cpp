@@ -189,7 +189,8 @@ private:
         {
             const std::lock_guard lock(mutex_);
             idle = queue_.empty() && under_way_ == 0;
-            if (!idle && (seconds_since(sent_) < order_.seconds || post_.sending())) return;
+            const bool early = seconds_since(sent_) < order_.seconds && pending_ < too_much / 2;
+            if (!idle && (early || post_.sending())) return;
         }
         send_records();
         if (!idle || !dropping_) return;
@@ -223,7 +224,7 @@ private:
     std::condition_variable changed_;  ///< tasks, room for what they bring, or the end
     std::deque<Task> queue_;
     std::vector<RankRecord> records_;  ///< by scenario: what is done
-    std::size_t pending_ = 0;          ///< bytes in them
+    std::size_t pending_ = 0;          ///< bytes that they take
     std::int64_t trials_ = 0;          ///< of the study, at the tasks' time
     std::int64_t wanted_ = 0;          ///< blocks to have
     int under_way_ = 0;

@@ -88,8 +88,9 @@ Report make_report(const Study& study, double margin) {
     report.pairs = planned_against_partners(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
-        for (const ArmResults& arm : results.arms)
-            report.arms.push_back(report_arm(results, arm, study.root_seed, margin));
+        const WithTotals with_totals(results);
+        for (const ArmResults& arm : (*with_totals).arms)
+            report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, margin));
     }
     return report;
 }

@@ -38,6 +38,7 @@ void add_products(ProductTotals& to, const ArmBlock& from, double sign) {
 }
 
 void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
+    load_totals(results);
     const std::size_t steps = static_cast<std::size_t>(results.steps());
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         const ArmBlock& from = block.arms[a];
@@ -57,29 +58,6 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
 }  // namespace
 
 std::string keep_name(Keep keep) { return keep == Keep::trials ? "trials" : "aggregates"; }
-
-ScenarioResults empty_results(const Declaration& scenario, Keep keep) {
-    const World& world = world_of(scenario);
-    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
-    const std::size_t steps = static_cast<std::size_t>(results.steps());
-    const std::size_t lags = static_cast<std::size_t>(lag_count(scenario.poses));
-    for (const std::string& name : scenario.arms) {
-        ArmResults one;
-        one.name = name;
-        if (keep == Keep::trials) one.columns.resize(results.columns.size());
-        for (const Figure& figure : results.figures)
-            one.totals.push_back(
-                {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
-                 std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
-        if (shape_counted(results.steps())) one.cells.resize(steps * shape_cells);
-        one.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
-        results.arms.push_back(std::move(one));
-    }
-    if (keep == Keep::trials) return results;
-    std::vector<ArmAggregates> aggregates = empty_aggregates(results.columns, results.arms.size());
-    for (std::size_t a = 0; a < results.arms.size(); ++a) results.arms[a].aggregates = std::move(aggregates[a]);
-    return results;
-}
 
 bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 

@@ -114,12 +114,14 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
     for (ArmResults& arm : results.arms) {
         if (!arm.kept)
             for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
+        if (!has_totals(results)) continue;
         move_rows(arm.nees, detailed_moves, detailed, steps);
         move_rows(arm.errors, detailed_moves, detailed, steps * results.state_size());
     }
 }
 
 void extend(ScenarioResults& results, std::int64_t trials) {
+    load_totals(results);
     set_blocks(results, BlockRanges::below(block_count(trials)), trials);
 }
 

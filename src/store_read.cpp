@@ -98,6 +98,52 @@ FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t step
     return totals;
 }
 
+/// How many parts an exact total has.
+hsize_t read_parts(const Handle& group) {
+    const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
+    if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
+    return parts;
+}
+
+/// Totals, but those of the columns, and details.
+void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
+    const hsize_t parts = read_parts(group);
+    for (const Figure& figure : results.figures)
+        arm.totals.push_back(read_figure(group, figure, static_cast<hsize_t>(results.steps()), parts));
+    read_evidence(group, results, parts, arm);
+}
+
+/// Those of a scenario in a file that stays open for them.
+class TotalsOfFile : public KeptTotals {
+public:
+    TotalsOfFile(const Opened& source, const ScenarioResults& results) : source_(source), blocks_(results.blocks) {
+        for (const ArmResults& arm : results.arms) {
+            counted_.push_back(arm.counted);
+            aggregates_.push_back(arm.aggregates);
+        }
+    }
+
+    void load(ScenarioResults& results) const override {
+        set_blocks(results, blocks_, source_.asked);
+        hdf5::translated(source_.path, another_copy, [&] {
+            const Handle scenario = hdf5::open_group(*source_.file, results.scenario.name);
+            for (std::size_t a = 0; a < results.arms.size(); ++a) {
+                ArmResults& arm = results.arms[a];
+                arm.counted = counted_[a];
+                arm.aggregates = aggregates_[a];
+                arm.totals.clear();
+                read_totals(hdf5::open_group(scenario, arm.name), results, arm);
+            }
+        });
+    }
+
+private:
+    Opened source_;
+    BlockRanges blocks_;
+    std::vector<std::int64_t> counted_;       ///< by arm
+    std::vector<ArmAggregates> aggregates_;  ///< likewise
+};
+
 /// The first arm tells which trials are there, the others must agree.
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
                     const Opened& source) {
@@ -108,10 +154,8 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     if (results.arms.empty()) set_blocks(results, blocks, source.asked);
     if (blocks != results.blocks)
         throw Error(hdf5::place_of(group, trials ? "trial" : "first_block"), "is not the same in every arm");
-    const hsize_t steps = read_numbered<std::int32_t>(group, "step", 1);
-    const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
+    read_numbered<std::int32_t>(group, "step", 1);
     Dataset(group, "step").require_extents({static_cast<hsize_t>(results.steps())});
-    if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
 
     ArmResults arm;
     arm.name = name;
@@ -121,11 +165,10 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
         const std::string place = results.scenario.name + "/" + name;
         arm.kept = columns_of_file(source.file, source.path, place, results.columns);
     } else {
-        arm.aggregates = read_aggregates(group, results, parts);
+        arm.aggregates = read_aggregates(group, results, read_parts(group));
         check_counted(group, arm, arm.aggregates.counted());
     }
-    for (const Figure& figure : results.figures) arm.totals.push_back(read_figure(group, figure, steps, parts));
-    read_evidence(group, results, parts, arm);
+    read_totals(group, results, arm);
     return arm;
 }
 
@@ -143,6 +186,7 @@ ScenarioResults read_scenario_results(const std::string& name, const Opened& sou
     check_sweep(group, scenario.sweep);
     require_links(group, scenario.arms);
     for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
+    results.kept_totals = std::make_shared<TotalsOfFile>(source, results);
     return results;
 }
 
@@ -182,7 +226,7 @@ Provenance computed_by(const Study& study, const RunFacts& run) {
                : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
 }
 
-StoredStudy read_study(const Opened& source) {
+StoredStudy read_study(const Opened& source, std::int64_t most_totals) {
     const Handle& root = *source.file;
     StoredStudy stored;
     Study& study = stored.study;
@@ -190,8 +234,12 @@ StoredStudy read_study(const Opened& source) {
     if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
         throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
     study.trials = source.asked;
+    TotalsInMemory in_memory(most_totals);
     for (const std::string& name : hdf5::link_names(root))
-        if (name != run_group) study.scenarios.push_back(read_scenario_results(name, source));
+        if (name != run_group) {
+            study.scenarios.push_back(read_scenario_results(name, source));
+            in_memory.limit(study.scenarios.back());
+        }
     if (hdf5::read_text(root, "study_hash") != study_hash(study))
         throw Error("/@study_hash", "does not belong to these scenarios and this root seed");
     study.complete = read_complete(root, study);
@@ -217,8 +265,8 @@ Opened open_results(const std::string& path) {
 
 }  // namespace
 
-StoredStudy read_results(const std::string& path) {
-    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path)); });
+StoredStudy read_results(const std::string& path, std::int64_t most_totals) {
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path), most_totals); });
 }
 
 }  // namespace credence

@@ -153,7 +153,8 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
     if (keep_of(study) != Keep::trials) hdf5::write_text(root, "keep", keep_name(keep_of(study)));
     for (const ScenarioResults& results : study.scenarios) {
         const Handle group = new_scenario_group(root, results.scenario);
-        for (const ArmResults& arm : results.arms) write_arm(group, results, arm);
+        const WithTotals with_totals(results);
+        for (const ArmResults& arm : (*with_totals).arms) write_arm(group, *with_totals, arm);
     }
     RunFacts facts = run;
     if (const std::string releases = provenance_text(study); !releases.empty())

@@ -14,7 +14,7 @@ Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_se
         if (!names.insert(scenario.name).second)
             throw invalid_value("scenario.name", scenario.name, "two scenarios of the run have it",
                                 "Give each its own name");
-        study.scenarios.push_back(empty_results(scenario, keep));
+        study.scenarios.push_back(results_without_totals(scenario, keep));
     }
     return study;
 }

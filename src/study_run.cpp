@@ -21,9 +21,8 @@ namespace {
 /// Runs tasks on threads and puts their results into the study. Totals are exact, so the order does not matter.
 class Runner : private BlockDesk {
 public:
-    Runner(Study& study, const RunOptions& options) : study_(study), options_(options), done_(study.scenarios.size()) {
-        for (const ScenarioResults& results : study.scenarios)
-            runners_.emplace_back(results.scenario);
+    Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
+        for (const ScenarioResults& results : study.scenarios) work_.emplace_back(results.scenario);
     }
 
     void run() {
@@ -38,27 +37,64 @@ public:
     }
 
 private:
-    /// Takes back a partial last block that will be larger, makes room, and lists the blocks that are missing.
+    /// What a run has to do with a scenario.
+    struct Work {
+        explicit Work(const Declaration& scenario) : runner(scenario) {}
+
+        BlockRunner runner;
+        BlockRanges done;      ///< blocks that are there
+        BlockRanges missing;   ///< blocks that are this run's tasks
+        std::size_t left = 0;  ///< of them those that are not finished
+        Task partial;          ///< the last block, where it was there with fewer trials than it will have
+        int partial_trials = 0;///< that it had; 0: there is none such
+        bool begun = false;
+    };
+
+    /// Makes room, and lists the blocks that are missing.
     void prepare(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
-        BlockRanges missing = missing_blocks(results, options_.trials, options_.shard), planned = missing;
-        if (last_would_grow(results, options_.trials)) take_back_last(s);
-        progress_.total += trials_in(missing, options_.trials);
-        task_count_ += missing.size();
-        missing_.push_back(std::move(missing));
-        done_[s] = results.blocks;
-        planned.add(done_[s]);
+        Work& work = work_[s];
+        work.missing = missing_blocks(results, options_.trials, options_.shard);
+        work.done = results.blocks;
+        if (last_would_grow(results, options_.trials)) {
+            work.partial = {s, results.blocks.back()};
+            work.partial_trials = static_cast<int>(block_rows(results, results.blocks.size() - 1));
+            work.done.remove(work.partial.block);
+        }
+        if (has_totals(results)) held_ += size_of(results);
+        BlockRanges planned = work.missing;
+        planned.add(work.done);
+        progress_.total += trials_in(work.missing, options_.trials);
+        task_count_ += work.left = work.missing.size();
         set_blocks(results, std::move(planned), options_.trials);
     }
 
-    void take_back_last(std::size_t s) {
+    static std::int64_t size_of(const ScenarioResults& results) { return totals_size(results, results.detailed()); }
+
+    /// Before a block is computed: waits where others are to be committed first, and begins with its scenario.
+    void begin(std::size_t s) {
+        std::unique_lock lock(mutex_);
+        if (options_.keeper != nullptr && options_.keeper->full()) {
+            lock.unlock();
+            { const std::lock_guard until_committed(committing_); }
+            lock.lock();
+        }
+        if (!work_[s].begun) begin_scenario(s);
+    }
+
+    /// Brings totals into memory, and takes a partial last block back.
+    void begin_scenario(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
-        const std::int64_t last = results.blocks.back();
-        const auto size = static_cast<int>(block_rows(results, results.blocks.size() - 1));
-        remove_totals(results, runners_[s].run(study_.root_seed, last, size));
-        if (options_.keeper != nullptr) options_.keeper->take_back(s, last);
-        taken_back_.push_back({s, last});
-        set_blocks(results, results.blocks.without({last}), options_.trials);
+        Work& work = work_[s];
+        if (!has_totals(results)) {
+            load_totals(results);
+            held_ += size_of(results);
+        }
+        if (work.partial_trials > 0) {
+            remove_totals(results, work.runner.run(study_.root_seed, work.partial.block, work.partial_trials));
+            if (options_.keeper != nullptr) options_.keeper->take_back(s, work.partial.block);
+        }
+        work.begun = true;
     }
 
     void run_tasks() {
@@ -73,11 +109,11 @@ private:
         else
             while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
         if (trouble_) std::rethrow_exception(trouble_);
-        for (const Task& task : taken_back_)  // what was there is not lost to a stop
-            if (!done_[task.scenario].contains(task.block)) run_task(task);
+        for (const Work& work : work_)  // what was there is not lost to a stop
+            if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);
         if (options_.keeper == nullptr) return;
-        options_.keeper->prepare(study_);
-        options_.keeper->commit();
+        prepare_all();
+        commit();
     }
 
     /// An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after it.
@@ -95,17 +131,18 @@ private:
     std::optional<Task> next_task() {
         if (next_ >= task_count_ || stopped()) return std::nullopt;
         std::size_t place = next_++;
-        for (std::size_t s = 0; s < missing_.size(); place -= missing_[s++].size())
-            if (place < missing_[s].size()) return Task{s, missing_[s][place]};
+        for (std::size_t s = 0; s < work_.size(); place -= work_[s++].missing.size())
+            if (place < work_[s].missing.size()) return Task{s, work_[s].missing[place]};
         return std::nullopt;
     }
 
     void run_task(const Task& task) {
+        begin(task.scenario);
         const int trials = trials_in_block(options_.trials, task.block);
-        const Block block = runners_[task.scenario].run(study_.root_seed, task.block, trials);
+        const Block block = work_[task.scenario].runner.run(study_.root_seed, task.block, trials);
         ScenarioResults& results = study_.scenarios[task.scenario];
         store_columns(results, block);
-        if (finish_task(task, block, block_aggregates(results, block))) options_.keeper->commit();
+        if (finish_task(task, block, block_aggregates(results, block))) commit();
     }
 
     /// Adds the block's totals; returns whether a commit was prepared.
@@ -119,14 +156,36 @@ private:
     }
 
     void finished(const Task& task) {
-        done_[task.scenario].add(task.block);
+        Work& work = work_[task.scenario];
+        work.done.add(task.block);
         progress_.done += trials_in_block(options_.trials, task.block);
+        if (--work.left > 0) return;
+        finished_.push_back(task.scenario);
+        finished_size_ += size_of(study_.scenarios[task.scenario]);
     }
 
     bool prepare_commit() {
-        if (options_.keeper == nullptr || !options_.keeper->due()) return false;
-        options_.keeper->prepare(study_);
+        if (options_.keeper == nullptr || !options_.keeper->due(too_much_held() ? finished_size_ : 0)) return false;
+        prepare_all();
         return true;
+    }
+
+    bool too_much_held() const { return held_ > options_.most_totals; }
+
+    /// Prepares a commit of all that was taken. The keeper has then the totals of the scenarios that are finished.
+    void prepare_all() {
+        options_.keeper->prepare(study_);
+        if (!too_much_held()) return;
+        for (const std::size_t s : finished_)
+            if (study_.scenarios[s].kept_totals) drop_totals(study_.scenarios[s]);
+        finished_.clear();
+        held_ -= finished_size_;
+        finished_size_ = 0;
+    }
+
+    void commit() {
+        const std::lock_guard one(committing_);
+        options_.keeper->commit();
     }
 
     // What the crew sees [BlockDesk].
@@ -148,9 +207,10 @@ private:
         return stopped_;
     }
     void take(const ComputedBlocks& computed) override {
+        begin(computed.scenario);
         ScenarioResults& results = study_.scenarios[computed.scenario];
         for (const std::int64_t block : computed.blocks) copy_details(results, computed.results, block);
-        if (add(results, computed)) options_.keeper->commit();
+        if (add(results, computed)) commit();
     }
 
     bool add(ScenarioResults& results, const ComputedBlocks& computed) {
@@ -165,7 +225,7 @@ private:
     /// After an early stop: only what is done is there.
     void leave_out_missing() {
         for (std::size_t s = 0; s < study_.scenarios.size(); ++s)
-            set_blocks(study_.scenarios[s], std::move(done_[s]), options_.trials);
+            set_blocks(study_.scenarios[s], std::move(work_[s].done), options_.trials);
     }
 
     void report() {
@@ -175,21 +235,23 @@ private:
 
     Study& study_;
     const RunOptions& options_;
-    std::vector<BlockRunner> runners_;
-    std::vector<BlockRanges> done_;      ///< by scenario: blocks that are there
-    std::vector<BlockRanges> missing_;   ///< likewise: those that are this run's tasks, one scenario after the other
+    std::vector<Work> work_;             ///< by scenario; its tasks one scenario after the other
     std::size_t task_count_ = 0;
     std::atomic<std::size_t> next_ = 0;  ///< the first task that nobody has
     std::atomic<bool> stopped_ = false;
     std::exception_ptr trouble_;
-    std::vector<Task> taken_back_;  ///< partial blocks: computed again even where the run is stopped
-    std::mutex mutex_;              ///< of totals, done_, progress and the keeper
+    std::mutex mutex_;              ///< of totals, work_, progress and the keeper
+    std::mutex committing_;         ///< locked while a commit is made
+    std::vector<std::size_t> finished_;  ///< scenarios whose tasks are done, and whose totals are in memory
+    std::int64_t held_ = 0, finished_size_ = 0;  ///< bytes of totals in memory, and those of `finished_`
     Progress progress_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Columns of a file cannot grow there.
 void bring_into_memory(ScenarioResults& results) {
+    load_totals(results);
+    results.kept_totals.reset();
     for (ArmResults& arm : results.arms) {
         if (!arm.kept) continue;
         for (std::size_t c = 0; c < results.columns.size(); ++c) arm.columns.push_back(column_values(results, arm, c));

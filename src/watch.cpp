@@ -83,7 +83,7 @@ WatchLook RunWatch::look_at_results() const {
     if (!std::filesystem::exists(path_, none))
         throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
                          " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
-    const Study study = read_results(path_).study;
+    const Study study = read_results(path_, 0).study;
     WatchLook look{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
     if (!study.complete && !study.scenarios.empty()) look.shard = shard_of(study.scenarios.front(), study.trials);
     for (const ScenarioResults& results : study.scenarios) {

@@ -232,7 +232,8 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
         void take_back(std::size_t, std::int64_t) override {}
         void take(std::size_t, const Block&) override {}
         void take(std::size_t, const std::vector<std::int64_t>&, const std::string&) override {}
-        bool due() const override { return true; }
+        bool due(std::int64_t) const override { return true; }
+        bool full() const override { return false; }
         void prepare(const Study&) override {}
         void commit() override { throw Failure("no space"); }
         void finished(const Study&) override {}

@@ -56,8 +56,9 @@ void require_same(const Study& found, const Study& expected) {
         CHECK(one.columns.size() == other.columns.size());
         CHECK(one.figures.size() == other.figures.size());
         REQUIRE(one.arms.size() == other.arms.size());
+        const WithTotals of_one(one), of_other(other);
         for (std::size_t a = 0; a < one.arms.size(); ++a) {
-            require_same(one.arms[a], other.arms[a]);
+            require_same((*of_one).arms[a], (*of_other).arms[a]);
             for (std::size_t c = 0; c < one.columns.size(); ++c)
                 CHECK(same(column_values(one, one.arms[a], c), column_values(other, other.arms[a], c)));
         }

@@ -84,8 +84,9 @@ bool same_results(const Study& a, const Study& b) {
     for (std::size_t s = 0; s < a.scenarios.size(); ++s) {
         if (a.scenarios[s].keep != b.scenarios[s].keep || a.scenarios[s].trials != b.scenarios[s].trials ||
             a.scenarios[s].blocks != b.scenarios[s].blocks) return false;
+        const WithTotals in_a(a.scenarios[s]), in_b(b.scenarios[s]);
         for (std::size_t i = 0; i < a.scenarios[s].arms.size(); ++i)
-            if (!same_arm(a.scenarios[s].arms[i], b.scenarios[s].arms[i]) ||
+            if (!same_arm((*in_a).arms[i], (*in_b).arms[i]) ||
                 !same_columns(a.scenarios[s], b.scenarios[s], i))
                 return false;
     }

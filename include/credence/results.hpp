@@ -47,6 +47,17 @@ public:
     virtual std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const = 0;
 };
 
+struct ScenarioResults;
+
+/// Totals and details of a scenario that are kept in a file, because those of all scenarios may exceed the memory.
+class KeptTotals {
+public:
+    virtual ~KeptTotals() = default;
+    /// Gives `results`, which has no block and totals of 0, the blocks that are kept and their totals and details. Throws
+    /// InputError or Failure where the file does not give them.
+    virtual void load(ScenarioResults& results) const = 0;
+};
+
 /// One arm of a scenario: per-trial columns and per-step totals.
 struct ArmResults {
     std::string name;
@@ -79,6 +90,9 @@ struct ScenarioResults {
     /// 0, 1, 2 ... but for shards and interrupted runs. Empty for a record.
     BlockRanges blocks{};
     Keep keep = Keep::trials;
+    /// What gives the arms their totals (but `aggregates`, which are always in memory) and details where has_totals() says
+    /// that they are not in memory [load_totals]; nullptr: no trial has been computed.
+    std::shared_ptr<const KeptTotals> kept_totals{};
 
     int steps() const { return scenario.poses - 1; }
     /// Trials that are there whose errors are kept: the rows of the details.
@@ -89,6 +103,50 @@ struct ScenarioResults {
 
 /// An empty result of a resolved scenario. Throws InputError where there is no such world.
 ScenarioResults empty_results(const Declaration& scenario, Keep keep = Keep::trials);
+
+/// The same, its totals not in memory.
+ScenarioResults results_without_totals(const Declaration& scenario, Keep keep = Keep::trials);
+
+/// Totals and details of a study are held in memory up to so many bytes, or those of the scenarios that are computed.
+inline constexpr std::int64_t most_totals_in_memory = std::int64_t{128} << 20;
+
+/// Whether the totals and details are in memory.
+bool has_totals(const ScenarioResults& results);
+
+/// Bytes of memory that the totals take, and the details of `detailed` trials.
+std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed);
+
+/// Brings totals and details into memory, those of blocks that were not there when they were kept as 0 and anything.
+void load_totals(ScenarioResults& results);
+
+/// Frees the memory of totals and details. What they were is lost where nothing has kept them.
+void drop_totals(ScenarioResults& results);
+
+/// Totals that are in memory, `most` bytes at most.
+class TotalsInMemory {
+public:
+    explicit TotalsInMemory(std::int64_t most) : left_(most) {}
+    /// Drops totals that are kept, where they are too large.
+    void limit(ScenarioResults& results);
+    /// Loads totals, unless they are too large.
+    void load(ScenarioResults& results);
+
+private:
+    bool take(const ScenarioResults& results);
+
+    std::int64_t left_;
+};
+
+/// A scenario's results with totals: themselves, or a copy for as long as this lives.
+class WithTotals {
+public:
+    explicit WithTotals(const ScenarioResults& results);
+    const ScenarioResults& operator*() const { return loaded_ ? *loaded_ : results_; }
+
+private:
+    const ScenarioResults& results_;
+    std::optional<ScenarioResults> loaded_;
+};
 
 /// Whether a column is a figure of the trial, not its status.
 bool is_figure(const Column& column);
@@ -129,10 +187,10 @@ std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int
 std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64_t block);
 
 /// Makes `blocks`, of a study of `trials` trials, those that are there: rows of blocks that were and stay are moved, rows
-/// of others hold anything until they are stored. Totals are not touched, nor columns that are kept in a file.
+/// of others hold anything until they are stored. Totals are not touched, nor what is not in memory.
 void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials);
 
-/// All blocks of `trials` trials.
+/// All blocks of `trials` trials, the totals in memory.
 void extend(ScenarioResults& results, std::int64_t trials);
 
 /// What of a block's columns is kept in its totals: nothing where the trials are kept. From several threads at once.

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,8 +58,10 @@ void write_results(const Output& output, const Study& study, const RunFacts& run
                    const std::function<void()>& check = {});
 
 /// Reads a results file back. Throws InputError, naming the file and the place, where it is not one, was made by
-/// another schema version, is damaged, or does not agree with itself. Scenarios are read back from their text.
-StoredStudy read_results(const std::string& path);
+/// another schema version, is damaged, or does not agree with itself. Scenarios are read back from their text. Totals and
+/// details beyond `most_totals` bytes are looked at and stay in the file [load_totals].
+StoredStudy read_results(const std::string& path,
+                         std::int64_t most_totals = std::numeric_limits<std::int64_t>::max());
 
 /// Reads a noise record: `odometry` [K, 3], `walk`, `deformation`, `measurement` [K, M, 2], optionally `edge` [K, E,
 /// 2]. Throws InputError where something is missing, has another shape or type, or is not finite.

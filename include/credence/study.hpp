@@ -67,8 +67,10 @@ public:
     /// The same of blocks that another process computed; `values` are their columns and details in order, in the keeper's
     /// own form.
     virtual void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) = 0;
-    /// Whether what was taken should be committed.
-    virtual bool due() const = 0;
+    /// Whether what was taken should be committed. `held` bytes of memory would be freed then, beside the keeper's own.
+    virtual bool due(std::int64_t held) const = 0;
+    /// Whether so much waits to be committed that no more should be computed while a commit is being made.
+    virtual bool full() const = 0;
     /// Makes a commit of all that was taken, with the study's totals, which hold just that.
     virtual void prepare(const Study& study) = 0;
     /// Makes durable what was prepared. Other threads may take blocks meanwhile. Throws Failure.
@@ -85,11 +87,14 @@ struct RunOptions {
     std::function<void(const Progress&)> progress{};  ///< called from one thread at a time; may be empty
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
-    BlockKeeper* keeper = nullptr;      ///< none: columns that are kept stay in memory
+    BlockKeeper* keeper = nullptr;      ///< none: columns that are kept stay in memory, and all totals
     Crew* crew = nullptr;               ///< other processes that compute blocks too; needs a keeper
+    /// Beyond so many bytes totals of scenarios that are done are dropped where the keeper gives them back.
+    std::int64_t most_totals = most_totals_in_memory;
 };
 
-/// An empty study of resolved, validated scenarios with names that differ.
+/// An empty study of resolved, validated scenarios with names that differ. Their totals are not in memory yet
+/// [load_totals].
 Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
 
 /// Runs what is missing of the shard's blocks of the first `options.trials` trials of every scenario; a partial last

@@ -43,7 +43,7 @@ int compare(const Parsed& parsed) {
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
     check_output_option(parsed);
     std::vector<StudyFile> files;
-    for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path).study});
+    for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path, 0).study});
     const CompareReport report = compare_studies(files, choice);
     write_output(parsed, format == "json"   ? compare_json(report)
                          : format == "csv"  ? compare_csv(report)

@@ -93,7 +93,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
         throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
     const std::string scenario_name = needed(parsed, "scenario"), arm = needed(parsed, "arm");
     needed(parsed, "trial");
-    const Study study = read_results(parsed.arguments.front()).study;
+    const Study study = read_results(parsed.arguments.front(), 0).study;
     const ScenarioResults& results = find_scenario(study, scenario_name);
     const std::size_t a = find_arm(results, arm);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);

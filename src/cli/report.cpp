@@ -46,7 +46,7 @@ int report(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
     const ReportRequest request = read_report_request(parsed);
     const std::string& path = parsed.arguments.front();
-    const StoredStudy stored = read_results(path);
+    const StoredStudy stored = read_results(path, most_totals_in_memory);
     return give_report(parsed, request, make_report(stored.study, request.margin), path, stored.run);
 }
 
