@@ -58,7 +58,7 @@ bool same_file(const Descriptor& opened, const std::string& path) {
 
 namespace {
 
-void lock(const Descriptor& file, const std::string& target) {
+void lock_for_writing(const Descriptor& file, const std::string& target) {
     // File systems without locks are no reason not to write.
     if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw InputError("cannot write " + target +
@@ -71,7 +71,7 @@ Descriptor open_locked(const std::string& path, const std::string& target, mode_
     for (;;) {
         Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, mode));
         if (file.get() < 0) fail_to_write(target, errno);
-        lock(file, target);
+        lock_for_writing(file, target);
         if (same_file(file, path)) return file;
     }
 }
@@ -80,7 +80,7 @@ Descriptor open_new_locked(const std::string& path, const std::string& target) {
     for (;;) {
         Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
         if (file.get() >= 0) {
-            lock(file, target);
+            lock_for_writing(file, target);
             if (same_file(file, path)) return file;
         } else if (errno == EEXIST) {
             const Descriptor left = open_locked(path, target);

@@ -86,8 +86,9 @@ TEST_CASE("provenance: trials of a release of another version are neither gone o
     const std::string half = folder / "half.h5", rest = folder / "rest.h5";
     run_to_end(half, by(foreign, 300, {0, 2}));
     run_to_end(rest, by(first, 300, {1, 2}));
-    for (const auto& [a, b] : {std::pair(half, rest), std::pair(rest, half)})
-        CHECK(says(refusal<InputError>([&] { merge_results({a, b}); }), "cannot merge " + b + " with " + a + " (credence 0."));
+    for (const std::vector<std::string>& paths : {std::vector{half, rest}, std::vector{rest, half}})
+        CHECK(says(refusal<InputError>([&] { merge_results(paths); }),
+                   "cannot merge " + paths[1] + " with " + paths[0] + " (credence 0."));
     // Another revision, or a patch, may.
     CHECK(may_mix(first, second));
     CHECK_FALSE(may_mix(second, foreign));
