@@ -24,11 +24,12 @@ void ByteFile::write(std::uint64_t offset, const void* bytes, std::size_t size) 
     }
 }
 
-void ByteFile::read(std::uint64_t offset, void* bytes, std::size_t size) const {
+void ByteFile::read(std::uint64_t offset, void* bytes, std::size_t size) {
     auto to = static_cast<char*>(bytes);
     while (size > 0) {
         const ssize_t got = pread(descriptor_, to, size, static_cast<off_t>(offset));
         if (got < 0 && errno == EINTR) continue;
+        if (got < 0 && error_ == 0) error_ = errno;
         if (got <= 0) break;
         to += got;
         offset += static_cast<std::uint64_t>(got);

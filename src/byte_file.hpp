@@ -14,7 +14,7 @@ public:
 
     void write(std::uint64_t offset, const void* bytes, std::size_t size);
     /// Bytes that are not there read as 0.
-    void read(std::uint64_t offset, void* bytes, std::size_t size) const;
+    void read(std::uint64_t offset, void* bytes, std::size_t size);
     /// Cuts or lengthens the file.
     void resize(std::uint64_t size);
     std::uint64_t size() const { return size_; }

@@ -2,6 +2,10 @@
 
 #include <credence/error.hpp>
 
+#include "readable_file.hpp"
+#include "system_file.hpp"
+
+#include <cstdlib>
 #include <exception>
 
 namespace credence::hdf5 {
@@ -16,8 +20,27 @@ QuietErrors::~QuietErrors() {
     if (std::uncaught_exceptions() == exceptions_) H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
+namespace {
+
+/// HDF5 tells of the system's errors in the words of its descriptions alone: `..., errno = 24, error message = ...`.
+herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
+    const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
+    if (const std::size_t at = said.rfind(number); at != std::string::npos)
+        *static_cast<int*>(to) = std::atoi(said.c_str() + at + number.size());
+    return 0;
+}
+
+}  // namespace
+
+Error failure(const std::string& place, const std::string& problem) {
+    int error = 0;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_system_error, &error);
+    if (error == 0) return Error(place, problem);
+    return Error(place, "cannot be read (" + words_for(error) + ")", remedy_for_reading(error));
+}
+
 Handle::Handle(hid_t id, Close close, const std::string& place, const std::string& problem) : id_(id), close_(close) {
-    if (id_ < 0) throw Error(place, problem);
+    if (id_ < 0) throw failure(place, problem);
 }
 
 Handle::~Handle() {
@@ -30,7 +53,7 @@ void Handle::close() {
 }
 
 void check(herr_t returned, const std::string& place, const std::string& problem) {
-    if (returned < 0) throw Error(place, problem);
+    if (returned < 0) throw failure(place, problem);
 }
 
 std::string place_of(const Handle& object) {

@@ -39,6 +39,10 @@ private:
     int exceptions_;
 };
 
+/// The error of the call to HDF5 that failed last. Where the system was the reason (no more files may be open, a disk that
+/// cannot be read) it says so, and else `problem`. Any other call to HDF5 in between forgets it.
+Error failure(const std::string& place, const std::string& problem);
+
 /// Owns one HDF5 identifier. Where closing can lose data, call close(), which checks; the destructor cannot.
 class Handle {
 public:

@@ -1,10 +1,8 @@
 #include "hdf5_read.hpp"
 
+#include "readable_file.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
 
 namespace credence::hdf5 {
 
@@ -16,6 +14,12 @@ Handle open_attribute(const Handle& object, const std::string& name) {
     const std::string place = attribute_place(object, name);
     if (!has_attribute(object, name)) throw Error(place, "is missing");
     return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it"};
+}
+
+/// What HDF5 answers to whether there is such a thing; throws where it cannot tell.
+bool found(htri_t answer, const std::string& place) {
+    check(answer, place, "cannot be looked up");
+    return answer > 0;
 }
 
 void require_scalar(const Handle& attribute, const std::string& place) {
@@ -44,29 +48,37 @@ std::string kind_text(hid_t type) {
 }
 
 const std::string& hard(const Handle& group, const std::string& name) {
+    const std::string place = place_of(group, name);
+    if (!has_link(group, name)) throw Error(place, "is missing");
     H5L_info_t info;
-    if (H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) <= 0 ||
-        H5Lget_info(group.id(), name.c_str(), &info, H5P_DEFAULT) < 0)
-        throw Error(place_of(group, name), "is missing");
+    check(H5Lget_info(group.id(), name.c_str(), &info, H5P_DEFAULT), place, "cannot be looked up");
     if (info.type != H5L_TYPE_HARD)
-        throw Error(place_of(group, name), "is a link to somewhere else", "Copy what it points to into the file");
+        throw Error(place, "is a link to somewhere else", "Copy what it points to into the file");
     return name;
 }
 
+namespace {
+
+/// The first bytes of a file, as far as it has them. Throws Error.
+std::string start_of(const std::string& path, std::size_t most) {
+    try {
+        return start_of_file(path, most);
+    } catch (const Unreadable& why) {
+        const std::string whole = "the file";
+        if (why.is_missing()) throw Error(whole, "cannot be found", "Check the path");
+        if (why.is_irregular()) throw Error(whole, "is not a regular file", "Give an HDF5 file");
+        throw Error(whole, std::string("cannot be read (") + why.what() + ")", remedy_for_reading(why.error()));
+    }
+}
+
+}  // namespace
+
 Handle open_file(const std::string& path) {
-    constexpr std::array<unsigned char, 8> signature{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
-    const std::string whole = "the file", another = "Give an HDF5 file";
-    std::error_code trouble;
-    const std::filesystem::file_status status = std::filesystem::status(path, trouble);
-    if (!std::filesystem::exists(status)) throw Error(whole, "cannot be found", "Check the path");
-    if (!std::filesystem::is_regular_file(status)) throw Error(whole, "is not a regular file", another);
-    std::array<unsigned char, 8> start{};
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream)
-        throw Error(whole, "cannot be opened",
-                    errno == EMFILE ? "Raise the number of files that may be open (ulimit -n)" : "Check its permissions");
-    stream.read(reinterpret_cast<char*>(start.data()), static_cast<std::streamsize>(start.size()));
-    if (!stream || start != signature) throw Error(whole, "is not an HDF5 file", another);
+    const std::string whole = "the file", signature = "\x89HDF\r\n\x1a\n", start = start_of(path, signature.size());
+    // A workspace that MATLAB saved is HDF5 behind a header of its own; its variables have no attribute on the root.
+    if (start.starts_with("MATLAB"))
+        throw Error(whole, "is a MATLAB workspace", "Write the record with h5create, h5write and h5writeatt");
+    if (start != signature) throw Error(whole, "is not an HDF5 file", "Give an HDF5 file");
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "/", "HDF5 gives no properties");
 #if H5_VERSION_GE(1, 10, 7) && !(H5_VERSION_GE(1, 12, 0) && !H5_VERSION_GE(1, 12, 1))
     // Finished files appear whole, under their name; locks only fail on file systems that have none.
@@ -79,13 +91,14 @@ Handle open_file(const std::string& path) {
 
 std::vector<std::string> link_names(const Handle& group) {
     H5G_info_t info;
-    check(H5Gget_info(group.id(), &info), place_of(group), "cannot be listed");
+    const std::string place = place_of(group);
+    check(H5Gget_info(group.id(), &info), place, "cannot be listed");
     std::vector<std::string> names;
     for (hsize_t i = 0; i < info.nlinks; ++i) {
         const auto get = [&](char* to, std::size_t room) {
             const ssize_t length = H5Lget_name_by_idx(group.id(), ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, to, room,
                                                       H5P_DEFAULT);
-            if (length <= 0) throw Error(place_of(group), "cannot be listed in the order in which it was made");
+            if (length <= 0) throw failure(place, "cannot be listed in the order in which it was made");
             return static_cast<std::size_t>(length);
         };
         std::string name(get(nullptr, 0), '\0');
@@ -110,13 +123,18 @@ std::vector<std::string> attribute_names(const Handle& object) {
 }
 
 bool has_link(const Handle& group, const std::string& name) {
-    return H5Lexists(group.id(), name.c_str(), H5P_DEFAULT) > 0;
+    const std::string place = place_of(group, name);
+    return found(H5Lexists(group.id(), name.c_str(), H5P_DEFAULT), place);
 }
-bool has_attribute(const Handle& object, const std::string& name) { return H5Aexists(object.id(), name.c_str()) > 0; }
+
+bool has_attribute(const Handle& object, const std::string& name) {
+    const std::string place = attribute_place(object, name);
+    return found(H5Aexists(object.id(), name.c_str()), place);
+}
 
 Handle open_group(const Handle& parent, const std::string& name) {
-    return {H5Gopen2(parent.id(), hard(parent, name).c_str(), H5P_DEFAULT), H5Gclose, place_of(parent, name),
-            "is no readable group"};
+    const std::string place = place_of(parent, name);
+    return {H5Gopen2(parent.id(), hard(parent, name).c_str(), H5P_DEFAULT), H5Gclose, place, "is no readable group"};
 }
 
 std::string read_text(const Handle& object, const std::string& name) {

@@ -4,10 +4,11 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
+#include "readable_file.hpp"
+
 #include <boost/program_options.hpp>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -18,7 +19,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr std::uintmax_t largest_file = 1 << 20;
+constexpr std::size_t largest_file = 1 << 20;
 
 /// Keys of a scenario text with their values and lines.
 struct Assignment {
@@ -53,7 +54,8 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
 std::vector<Assignment> read_lines(const std::string& text, const std::string& origin) {
     std::vector<Assignment> all;
     std::map<std::string, int> lines;
-    std::istringstream stream(text);
+    const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors begin every text with it
+    std::istringstream stream(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
     std::string line, section;
     for (int number = 1; std::getline(stream, line); ++number)
         for (Assignment& one : read_line(line, origin, number, section)) {
@@ -129,20 +131,18 @@ std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vect
 }
 
 std::string text_of_file(const std::string& path) {
-    std::error_code trouble;
-    const std::filesystem::file_status status = std::filesystem::status(path, trouble);
-    if (!std::filesystem::exists(status))
-        throw InputError("cannot read scenario " + path + " (there is no such file). Check the path.");
-    if (!std::filesystem::is_regular_file(status))
-        throw InputError("cannot read scenario " + path + " (it is not a file). Give an INI file.");
-    if (std::filesystem::file_size(path, trouble) > largest_file)
-        throw InputError("cannot read scenario " + path + " (it is larger than 1 MiB). Give an INI file.");
-    std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream || (!text && text.tellp() > 0))
-        throw InputError("cannot read scenario " + path + " (reading failed). Check its permissions.");
-    return text.str();
+    const auto refuse = [&](const std::string& why, const std::string& remedy) {
+        return InputError("cannot read scenario " + path + " (" + why + "). " + remedy + ".");
+    };
+    try {
+        std::string text = start_of_file(path, largest_file + 1);
+        if (text.size() > largest_file) throw refuse("it is larger than 1 MiB", "Give an INI file");
+        return text;
+    } catch (const Unreadable& why) {
+        if (why.is_missing()) throw refuse("there is no such file", "Check the path");
+        if (why.is_irregular()) throw refuse("it is not a file", "Give an INI file");
+        throw refuse(why.what(), remedy_for_reading(why.error()));
+    }
 }
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }

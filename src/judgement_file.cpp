@@ -82,10 +82,11 @@ std::optional<RealDataset> optional_dataset(const Handle& root, const std::strin
 /// Throws where `name` is a group, as Octave's own `save -hdf5` writes variables.
 const Handle& with_dataset(const Handle& root, const std::string& name) {
     if (!hdf5::has_link(root, name)) return root;
-    const Handle object(H5Oopen(root.id(), hdf5::hard(root, name).c_str(), H5P_DEFAULT), H5Oclose,
-                        hdf5::place_of(root, name), "cannot be opened");
+    const std::string place = hdf5::place_of(root, name);
+    const Handle object(H5Oopen(root.id(), hdf5::hard(root, name).c_str(), H5P_DEFAULT), H5Oclose, place,
+                        "cannot be opened");
     if (H5Iget_type(object.id()) == H5I_GROUP)
-        throw Error(hdf5::place_of(root, name), "is a group, not a dataset, as Octave's save makes it",
+        throw Error(place, "is a group, not a dataset, as Octave's save makes it",
                     "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
     return root;
 }

@@ -4,20 +4,10 @@
 #include "judgement_totals.hpp"
 
 #include <chrono>
-#include <fstream>
 
 namespace credence {
 
 namespace {
-
-/// A workspace that MATLAB saved is HDF5 behind a header of its own; its variables have no attribute on the root.
-void refuse_workspace(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::string start(6, '\0');
-    if (stream.read(start.data(), static_cast<std::streamsize>(start.size())) && start == "MATLAB")
-        throw InputError(path + ": the file: is a MATLAB workspace. Write the record with h5create, h5write and "
-                                "h5writeatt.");
-}
 
 void add_part(const RecordPart& part, const RecordShape& shape, const RecordValues& values, RecordTotals& totals) {
     const auto n = static_cast<std::size_t>(shape.n), m = static_cast<std::size_t>(shape.m);
@@ -58,7 +48,6 @@ JudgedRecord read_record(const RecordFile& file, const std::string& path,
 }
 
 JudgedRecord read_judgement_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
-    refuse_workspace(path);
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "

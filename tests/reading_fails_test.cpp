@@ -1,0 +1,25 @@
+// Room 12: a disk that cannot be read in the middle of a file [reading_fails.c].
+
+#include "catch.hpp"
+#include "judgement_support.hpp"
+#include "program.hpp"
+
+using namespace credence;
+using namespace credence::test;
+using Catch::Contains;
+
+TEST_CASE("cli: a disk that fails in the middle of a file is what the message says, not that something is missing") {
+    const Workplace here;
+    REQUIRE(here.credence("run " + seed_scenario("ekf-straight-constant") + " --trials 300 --quiet -o x.h5").exit_code == 0);
+    write_plain_record(here.path("record.h5"));
+    const auto check = [&](const std::string& command, const std::string& file, int from) {
+        const Outcome outcome = here.shell("LD_PRELOAD=" CREDENCE_READING_FAILS " READING_FAILS=" + file + " READING_FAILS_FROM=" +
+                                           std::to_string(from) + " " CREDENCE_PROGRAM " " + command + " " + file);
+        CAPTURE(command, from, outcome.err);
+        CHECK(outcome.exit_code == 2);
+        CHECK_THAT(outcome.err, Contains("cannot be read (input/output error). Check the disk."));
+    };
+    for (const int from : {4, 100, 1000, 5000, 50000})
+        for (const std::string command : {"report", "compare", "watch"}) check(command, "x.h5", from);
+    for (const int from : {4, 700, 2500}) check("judge --quiet", "record.h5", from);
+}
