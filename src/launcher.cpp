@@ -104,13 +104,15 @@ Shard shard_of_launcher(const Variables& variables) {
     return {outer.index * inner.count + inner.index, outer.count * inner.count};
 }
 
-std::optional<int> rank_of_launcher(const Variables& variables) {
+std::optional<LauncherRank> rank_of_launcher(const Variables& variables) {
     std::vector<RankNames> names = mpi_names;
     names.push_back({"PMIX_RANK", "SLURM_STEP_NUM_TASKS"});
     for (const RankNames& name : names) {
         const std::optional<std::int64_t> rank = to_integer(variables(name.rank).value_or("")),
                                           size = to_integer(variables(name.size).value_or(""));
-        if (rank && size && *size > 1) return static_cast<int>(*rank);
+        if (rank && size && *size > 1)
+            return LauncherRank{*rank, *size,
+                                name.rank + "=" + std::to_string(*rank) + ", " + name.size + "=" + std::to_string(*size)};
     }
     return std::nullopt;
 }

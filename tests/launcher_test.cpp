@@ -126,7 +126,7 @@ TEST_CASE("launcher: what names no shard is refused") {
 }
 
 TEST_CASE("launcher: MPI is for processes of an MPI launcher that started more than one") {
-    const auto rank = [](const Names& names) { return rank_of_launcher(variables(names)).value_or(-1); };
+    const auto rank = [](const Names& names) { return rank_of_launcher(variables(names)).value_or(LauncherRank{-1, 0, ""}).rank; };
     CHECK(rank({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "3"}}) == 2);
     CHECK(rank({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}}) == -1);
     CHECK(rank({{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}}) == 1);

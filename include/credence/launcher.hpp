@@ -27,8 +27,14 @@ Shard parse_shard(const std::string& text);
 /// Throws InputError where nothing names a shard, or what names it cannot be.
 Shard shard_of_launcher(const Variables& variables);
 
-/// The rank of this process in an MPI job of more than one, of the same variables (PMIX_RANK in a step of srun); nothing
-/// where no MPI launcher started it. Only to know that MPI is to be started, and who speaks before it is.
-std::optional<int> rank_of_launcher(const Variables& variables);
+/// A process of an MPI job of more than one, as the environment says.
+struct LauncherRank {
+    std::int64_t rank = 0, size = 0;
+    std::string names;  ///< the variables with their values: `PMI_RANK=1, PMI_SIZE=4`
+};
+
+/// What the same variables (PMIX_RANK in a step of srun) say of this process; nothing where they name no MPI job of more
+/// than one. A process inherits them from a shell in a job as well: MPI itself says whether there are others.
+std::optional<LauncherRank> rank_of_launcher(const Variables& variables);
 
 }  // namespace credence

@@ -119,8 +119,7 @@ int program(int argc, char** argv) {
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {
-        if (cli::follows_rank_0(name, arguments(argc, argv))) return 0;
-        return complain(prefix + error.what(), 2);
+        return cli::rank_0_says_it(name, arguments(argc, argv)) ? 0 : complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
         return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
                                                 : "out of memory. The file holds more than fits."),

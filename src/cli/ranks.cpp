@@ -21,9 +21,12 @@ bool given(const std::vector<std::string>& arguments, const std::string& option,
 
 }  // namespace
 
-bool follows_rank_0(const std::string& command, const std::vector<std::string>& arguments) {
-    return command == "run" && rank_of_launcher(environment()).value_or(0) > 0 && !given(arguments, "--mpi", "off") &&
-           !given(arguments, "--shard", "auto");
+bool rank_0_says_it(const std::string& command, const std::vector<std::string>& arguments) {
+    if (command != "run" || !rank_of_launcher(environment()) || given(arguments, "--mpi", "off") ||
+        given(arguments, "--shard", "auto"))
+        return false;
+    const std::unique_ptr<Post> post = start_mpi();
+    return post && post->rank() > 0;
 }
 
 std::unique_ptr<Post> post_of(const Parsed& parsed) {
@@ -33,12 +36,17 @@ std::unique_ptr<Post> post_of(const Parsed& parsed) {
         throw InputError(
             "--mpi on and --shard auto contradict each other (every process would be a run of its own). Give "
             "one of them.");
-    if (mpi == "off" || (mpi == "auto" && (own_shards || !rank_of_launcher(environment())))) return nullptr;
+    const std::optional<LauncherRank> launched = rank_of_launcher(environment());
+    if (mpi == "off" || (mpi == "auto" && (own_shards || !launched))) return nullptr;
+    const std::string named = launched ? "the environment has " + launched->names + ", but " : "";
     std::unique_ptr<Post> post = start_mpi();
     if (!post)
-        throw InputError(
-            "cannot share the run among ranks (this credence was built without MPI). Build it with "
-            "-DCREDENCE_MPI=ON, or make each process a run of its own: --shard auto -o 'part-{shard}.h5'.");
+        throw InputError("cannot share the run among ranks (" + named + "this credence was built without MPI). Build it with "
+                         "-DCREDENCE_MPI=ON, make each process a run of its own: --shard auto -o 'part-{shard}.h5', or run "
+                         "alone: --mpi off.");
+    if (launched && post->size() == 1)
+        throw InputError("cannot share the run among ranks (" + named + "MPI has started this process alone). Start it by the "
+                         "mpirun of " + mpi_library() + ", or run alone: --mpi off.");
     return post;
 }
 

@@ -9,12 +9,14 @@
 
 namespace credence::cli {
 
-/// Whether this process follows rank 0 of the same command line, which says all there is to say; to be known before the
-/// command line is understood, or MPI started.
-bool follows_rank_0(const std::string& command, const std::vector<std::string>& arguments);
+/// Whether another process, rank 0 of the same job, refuses the same command line: then this one need not say so again. MPI
+/// answers it, because an inherited environment names a rank as well; every process of the job has to ask, rank 0 too,
+/// unless it has started MPI before. Without MPI each process speaks for itself.
+bool rank_0_says_it(const std::string& command, const std::vector<std::string>& arguments);
 
 /// The ranks of the run; null where this process runs alone. `--mpi auto`: where an MPI launcher started more than one
-/// process, and `--shard auto` does not make each of them a run of its own. Throws InputError.
+/// process, and `--shard auto` does not make each of them a run of its own. Throws
+/// InputError, also where the environment names other ranks and MPI knows of none.
 std::unique_ptr<Post> post_of(const Parsed& parsed);
 
 /// A rank other than 0: the exit code.

@@ -80,7 +80,11 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Post> start_mpi() { return std::make_unique<MpiPost>(); }
+std::unique_ptr<Post> start_mpi() {
+    int before = 0;
+    MPI_Initialized(&before);
+    return before == 0 ? std::make_unique<MpiPost>() : nullptr;
+}
 
 std::string mpi_library() {
     char text[MPI_MAX_LIBRARY_VERSION_STRING];

@@ -8,7 +8,8 @@
 
 namespace credence {
 
-/// Starts MPI, and ends it with the object; one in a process. Null where the program was built without MPI.
+/// Starts MPI, and ends it with the object. Null where the program was built without MPI, and where this process has
+/// started MPI before: that can be done once.
 std::unique_ptr<Post> start_mpi();
 
 /// The library and its version; `none` where the program was built without MPI. Starts nothing.
