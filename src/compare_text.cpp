@@ -41,7 +41,7 @@ std::string conclusions(const CompareReport& report) {
         width = std::max(width, static_cast<int>(pair.comparison.scenario.size()) + 2);
     std::string text;
     for (const ComparedPair& pair : report.pairs)
-        text += "  " + padded(pair.comparison.scenario, width, false) + conclusion_text(pair) + "\n";
+        text += "  " + wrapped(padded(pair.comparison.scenario, width, false) + conclusion_text(pair), 2) + "\n";
     return text;
 }
 
@@ -62,7 +62,7 @@ std::string sizes(const ComparedPair& pair) {
                 padded(with_interval(paired.difference.mean, paired.difference.ci95), 22) +
                 padded(bracketed(paired.bootstrap95, digits), 24) +
                 padded(number(paired.difference.median, digits), 12) +
-                (paired.pairs == pair.pairs() ? "" : "  (" + std::to_string(paired.pairs) + " pairs)") + "\n";
+                (paired.pairs == pair.pairs() ? "" : "\n      of " + std::to_string(paired.pairs) + " pairs") + "\n";
     }
     return text;
 }
@@ -145,12 +145,12 @@ std::string compare_notes(const CompareReport& report) {
 
 std::string pair_head(const ComparedPair& pair) {
     const Comparison& comparison = pair.comparison;
-    std::string text = "\n" + comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title) + "\n";
-    text += "  A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
+    std::string text = "\n" + wrapped(comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title)) + "\n";
+    std::string sides = "A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
     if (pair.a.trials != pair.b.trials)
-        text += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
-                ", B has " + std::to_string(pair.b.trials);
-    text += "\n";
+        sides += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
+                 ", B has " + std::to_string(pair.b.trials);
+    text += "  " + wrapped(sides, 2) + "\n";
     std::vector<std::string> parts;
     for (const KeyDifference& key : pair.differences)
         parts.push_back(key.key + " (" + key.a + " in A, " + key.b + " in B)");

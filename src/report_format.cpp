@@ -1,15 +1,28 @@
 #include "report_format.hpp"
 
+#include <credence/text.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 namespace credence {
 
+namespace {
+
+constexpr std::size_t text_width = 118;
+
+std::size_t characters(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
 std::string padded(const std::string& text, int width, bool right) {
-    int characters = 0;
-    for (const char c : text) characters += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-    const std::string space(static_cast<std::size_t>(std::max(1, width - characters)), ' ');  // never glued together
+    const int left = width - static_cast<int>(characters(text));
+    const std::string space(static_cast<std::size_t>(std::max(1, left)), ' ');  // never glued together
     return right ? space + text : text + space;
 }
 
@@ -60,19 +73,57 @@ std::string p_text(double p) {
     return text;
 }
 
+namespace {
+
+/// Units with blanks between them, on as many lines as they take; the first begins behind `indent` columns.
+std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
+    std::string text;
+    std::size_t column = indent;
+    for (const std::string& unit : units) {
+        const std::size_t size = characters(unit);
+        if (text.empty()) text = unit, column += size;
+        else if (column + 1 + size <= text_width) text += " " + unit, column += 1 + size;
+        else text += "\n" + std::string(indent + 2, ' ') + unit, column = indent + 2 + size;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string wrapped(const std::string& text, std::size_t indent) { return flowing(split_list(text, ' '), indent); }
+
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
-    constexpr std::size_t width = 118;
-    std::string text = head;
-    std::size_t column = indent + head.size();
+    std::vector<std::string> units = split_list(head, ' ');
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
-        if (column + 1 + part.size() > width && i > 0) {
-            text += "\n" + std::string(indent + 2, ' ') + part;
-            column = indent + 2 + part.size();
-        } else {
-            text += " " + part;
-            column += 1 + part.size();
+        const bool fits = indent + 2 + characters(part) <= text_width;
+        for (const std::string& unit : fits ? std::vector<std::string>{part} : split_list(part, ' ')) units.push_back(unit);
+    }
+    return flowing(units, indent);
+}
+
+void TextTable::row(std::vector<std::string> cells) {
+    widths_.resize(std::max(widths_.size(), cells.size()));
+    for (std::size_t c = 0; c < cells.size(); ++c) widths_[c] = std::max(widths_[c], characters(cells[c]));
+    rows_.push_back({std::move(cells), {}});
+}
+
+void TextTable::line(std::string text) { rows_.push_back({{}, std::move(text)}); }
+
+bool TextTable::fits() const {
+    return std::accumulate(widths_.begin(), widths_.end(), 2 * widths_.size()) <= text_width;
+}
+
+std::string TextTable::text() const {
+    std::string text;
+    for (const Row& row : rows_) {
+        std::string line = row.line;
+        for (std::size_t c = 0; c < row.cells.size(); ++c) {
+            const bool right = alignment_[std::min(c, alignment_.size() - 1)] == 'r';
+            const std::string space(widths_[c] - characters(row.cells[c]), ' ');
+            line += "  " + (right ? space + row.cells[c] : row.cells[c] + space);
         }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
     return text;
 }

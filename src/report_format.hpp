@@ -1,5 +1,5 @@
 #pragma once
-// Room 13: how the text report writes numbers and tables.
+// Room 13: how text reports write numbers, sentences and tables.
 
 #include <credence/statistics.hpp>
 
@@ -34,7 +34,32 @@ std::string percent(double share);
 /// A p-value: three decimals, below 0.001 its order of magnitude.
 std::string p_text(double p);
 
-/// `head` and the parts between commas, wrapped and indented.
+/// A sentence on lines of less than 120 columns, of which the first begins behind `indent` columns and the others two further.
+std::string wrapped(const std::string& text, std::size_t indent = 0);
+
+/// The same of `head` and the parts between commas, each of which stays whole where it can.
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent);
+
+/// Columns as wide as what they hold, each two blanks from the one before.
+class TextTable {
+public:
+    /// `l` or `r` for each column, to the left or to the right; the last one stands for all further ones.
+    explicit TextTable(std::string alignment) : alignment_(std::move(alignment)) {}
+    void row(std::vector<std::string> cells);
+    /// Between the rows, as it is.
+    void line(std::string text);
+    /// Whether its rows have less than 120 columns.
+    bool fits() const;
+    std::string text() const;
+
+private:
+    struct Row {
+        std::vector<std::string> cells;
+        std::string line;
+    };
+    std::string alignment_;
+    std::vector<std::size_t> widths_;
+    std::vector<Row> rows_;
+};
 
 }  // namespace credence

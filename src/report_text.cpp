@@ -37,13 +37,16 @@ std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
 
 std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
     if (arms.empty()) return "";
+    constexpr int widest = 56;  // longer names have a line of their own
     int width = 16;
     for (const ArmReport* arm : arms)
-        width = std::max(width, static_cast<int>(arm->scenario.size() + arm->arm.size()) + 3);
+        width = std::clamp(static_cast<int>(arm->scenario.size() + arm->arm.size()) + 3, width, widest);
     std::string text = "  " + padded("", width, false) + padded("verdict", 12, false) + padded("NEES/n", 19) +
                        padded("NIS/m", 19) + padded("failed", 9) + "\n";
     for (const ArmReport* arm : arms) {
-        text += "  " + padded(arm->scenario + "/" + arm->arm, width, false) +
+        const std::string name = arm->scenario + "/" + arm->arm;
+        const bool fits = static_cast<int>(name.size()) < width;
+        text += (fits ? "" : "  " + name + "\n") + "  " + padded(fits ? name : "", width, false) +
                 padded(verdict_name(arm->consistency.verdict), 12, false);
         for (const char* figure : {"nees_ratio", "nis_ratio"}) {
             const Summary& summary = figure_named(arm->figures, figure).summary;
@@ -58,7 +61,7 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
 
 std::string report_text(const Report& report) {
     std::string text;
-    for (const std::string& warning : warnings_of(report)) text += warning + "\n";
+    for (const std::string& warning : warnings_of(report)) text += wrapped(warning) + "\n";
     const std::int64_t trials = report.arms.empty() ? 0 : report.arms.front().trials;
     text += report.source + ": " + std::to_string(trials) + (trials == 1 ? " trial" : " trials") +
             (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "") +

@@ -76,9 +76,10 @@ std::string innovations_part(const Evidence& evidence) {
     if (!evidence.whiteness.empty()) {
         const Whiteness& first = evidence.whiteness.front();
         const int outside = lags_outside(evidence.whiteness);
-        text += "    innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
-                " (white within ± " + number(first.bound, 4) + "); " + of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
-                " lags outside their joint bounds\n";
+        text += "    " + wrapped("innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
+                                     " (white within ± " + number(first.bound, 4) + "); " +
+                                     of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
+                                     " lags outside their joint bounds", 4) + "\n";
     }
     return text;
 }
@@ -88,12 +89,12 @@ std::string distribution_part(const Evidence& evidence) {
     if (const WorstShape worst = worst_shape(evidence.shape); worst.known > 0)
         text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +
                 std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) + " over all " +
-                std::to_string(worst.known) + " steps)";
+                std::to_string(worst.known) + " steps)\n";
     if (!std::isnan(evidence.credibility.nci))
-        text += std::string(text.empty() ? "    " : "; ") + "NCI " + number(evidence.credibility.nci, 3) + ", I² " +
+        text += "    NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +
-                (evidence.credibility.inclination > 0 ? " (> 0: optimistic)" : " (< 0: pessimistic)");
-    return text.empty() ? text : text + "\n";
+                (evidence.credibility.inclination > 0 ? " (> 0: optimistic)\n" : " (< 0: pessimistic)\n");
+    return text;
 }
 
 std::string consistency_part(const ArmReport& arm) {
@@ -129,7 +130,7 @@ std::vector<std::string> detailed_figures(const Report& report, const std::strin
 }  // namespace
 
 std::string scenario_detail(const Report& report, const Declaration& scenario) {
-    std::string text = "\n" + scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title) + "\n";
+    std::string text = "\n" + wrapped(scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title)) + "\n";
     text += padded("mean ± 95 %", 50) + padded("bootstrap 95 %", 22) + padded("median", 12) + padded("sd", 12) +
             (has_published(report, scenario.name) ? padded("published (pctl.)", 20) : "") + "\n";
     for (const std::string& name : detailed_figures(report, scenario.name))

@@ -12,37 +12,58 @@ namespace credence {
 
 namespace {
 
-constexpr int figure_width = 24;
+using Cells = std::vector<std::string>;
 
-/// Columns of the swept keys, wide enough for their values.
-class KeyColumns {
-public:
-    explicit KeyColumns(const Grid& grid) : grid_(grid) {
-        for (const GridAxis& axis : grid.axes) {
-            std::size_t width = axis.key.size();
-            for (const std::string& value : axis.values) width = std::max(width, std::min(value.size(), longest));
-            widths_.push_back(static_cast<int>(width) + 2);
-        }
-    }
-    std::string heads() const {
-        std::string text = "  ";
-        for (std::size_t a = 0; a < widths_.size(); ++a) text += padded(grid_.axes[a].key, widths_[a]);
-        return text;
-    }
-    std::string values(const GridPoint& point) const {
-        std::string text = "  ";
-        for (std::size_t a = 0; a < widths_.size(); ++a) {
-            const std::string& value = grid_.axes[a].values[point.place[a]];
-            text += padded(value.size() > longest ? value.substr(0, longest - 3) + "..." : value, widths_[a]);
-        }
-        return text;
-    }
-
-private:
-    static constexpr std::size_t longest = 24;
-    const Grid& grid_;
-    std::vector<int> widths_;
+/// What a table has of one point, behind the values of its keys.
+struct PointRow {
+    const GridPoint* point;
+    Cells cells;
 };
+
+const std::string& key_value(const Grid& grid, const GridPoint& point, std::size_t axis) {
+    return grid.axes[axis].values[point.place[axis]];
+}
+
+Cells joined_cells(Cells cells, const Cells& more) {
+    cells.insert(cells.end(), more.begin(), more.end());
+    return cells;
+}
+
+/// The values of the keys in columns before the others.
+TextTable with_key_columns(const Grid& grid, const Cells& heads, const std::vector<PointRow>& rows,
+                           const std::string& alignment) {
+    TextTable table(std::string(grid.axes.size(), 'r') + alignment);
+    Cells keys;
+    for (const GridAxis& axis : grid.axes) keys.push_back(axis.key);
+    table.row(joined_cells(keys, heads));
+    for (const PointRow& row : rows) {
+        for (std::size_t a = 0; a < keys.size(); ++a) keys[a] = key_value(grid, *row.point, a);
+        table.row(joined_cells(keys, row.cells));
+    }
+    return table;
+}
+
+/// The values of the keys in a line before each row, for keys that columns have no room for.
+TextTable with_key_lines(const Grid& grid, const Cells& heads, const std::vector<PointRow>& rows,
+                         const std::string& alignment) {
+    TextTable table("l" + alignment);
+    table.row(joined_cells({"  "}, heads));
+    for (const PointRow& row : rows) {
+        std::vector<std::string> keys;
+        for (std::size_t a = 0; a < grid.axes.size(); ++a)
+            keys.push_back(grid.axes[a].key + " = " + key_value(grid, *row.point, a));
+        table.line("    " + wrapped_list("", keys, 4));
+        table.row(joined_cells({"  "}, row.cells));
+    }
+    return table;
+}
+
+std::string table_text(const Grid& grid, const Cells& heads, const std::vector<PointRow>& rows,
+                       const std::string& alignment) {
+    if (rows.empty()) return "";
+    const TextTable table = with_key_columns(grid, heads, rows, alignment);
+    return table.fits() ? table.text() : with_key_lines(grid, heads, rows, alignment).text();
+}
 
 std::string figure_head(const SweptFigure& figure) {
     if (figure.name == "nees_ratio") return "NEES/n";
@@ -50,45 +71,44 @@ std::string figure_head(const SweptFigure& figure) {
     return figure.name + (figure.unit == "1" ? "" : " [" + figure.unit + "]");
 }
 
-std::string figure_cells(const std::vector<SweptFigure>& figures) {
-    std::string text;
+Cells figure_cells(const std::vector<SweptFigure>& figures) {
+    Cells cells;
     for (const SweptFigure& figure : figures)
-        text += padded(with_interval(figure.summary.mean, figure.summary.ci95), figure_width);
-    return text;
+        cells.push_back(with_interval(figure.summary.mean, figure.summary.ci95));
+    return cells;
 }
 
-std::string heads_of(const std::vector<SweptFigure>& figures) {
-    std::string text;
-    for (const SweptFigure& figure : figures) text += padded(figure_head(figure), figure_width);
-    return text;
+Cells heads_of(const std::vector<SweptFigure>& figures) {
+    Cells heads;
+    for (const SweptFigure& figure : figures) heads.push_back(figure_head(figure));
+    return heads;
 }
 
 std::string arm_table(const SweptReport& swept, const Grid& grid, const std::string& name) {
-    const KeyColumns keys(grid);
-    std::string heads, rows;
+    Cells heads;
+    std::vector<PointRow> rows;
     for (const GridPoint& point : grid.points) {
         const ArmReport* arm = swept.arm(point, name);
         if (arm == nullptr) continue;
         const std::vector<SweptFigure> figures = swept_figures(*arm);
-        if (heads.empty())
-            heads = keys.heads() + "  " + padded("verdict", 12, false) + heads_of(figures) + padded("failed", 9) + "\n";
-        rows += keys.values(point) + "  " + padded(verdict_name(arm->consistency.verdict), 12, false) +
-                figure_cells(figures) + padded(std::to_string(arm->failed), 9) + "\n";
+        if (heads.empty()) heads = joined_cells(joined_cells({"verdict"}, heads_of(figures)), {"failed"});
+        const Cells verdict{verdict_name(arm->consistency.verdict)}, failed{std::to_string(arm->failed)};
+        rows.push_back({&point, joined_cells(joined_cells(verdict, figure_cells(figures)), failed)});
     }
-    return "  " + name + "\n" + heads + rows;
+    return "  " + name + "\n" + table_text(grid, heads, rows, "lr");
 }
 
 std::string pair_table(const SweptReport& swept, const Grid& grid, const std::string& name) {
-    const KeyColumns keys(grid);
-    std::string heads, rows;
+    Cells heads;
+    std::vector<PointRow> rows;
     for (const GridPoint& point : grid.points) {
         const Comparison* pair = swept.pair(point, name);
         if (pair == nullptr) continue;
         const std::vector<SweptFigure> figures = swept_figures(*pair);
-        if (heads.empty()) heads = keys.heads() + heads_of(figures) + "\n";
-        rows += keys.values(point) + figure_cells(figures) + "\n";
+        if (heads.empty()) heads = heads_of(figures);
+        rows.push_back({&point, figure_cells(figures)});
     }
-    return "  " + name + ", trial by trial\n" + heads + rows;
+    return "  " + name + ", trial by trial\n" + table_text(grid, heads, rows, "r");
 }
 
 }  // namespace
@@ -100,7 +120,7 @@ std::string sweep_text(const Report& report) {
         std::vector<std::string> keys;
         for (const GridAxis& axis : grid.axes)
             keys.push_back(axis.key + " (" + std::to_string(axis.values.size()) + " values)");
-        text += "sweep of " + grid.of + " over " + joined(keys) + ": mean ± 95 %\n";
+        text += wrapped("sweep of " + grid.of + " over " + joined(keys) + ": mean ± 95 %") + "\n";
         for (const std::string& name : swept.arm_names(grid)) text += arm_table(swept, grid, name);
         for (const std::string& name : swept.pair_names(grid)) text += pair_table(swept, grid, name);
         text += "\n";

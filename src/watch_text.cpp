@@ -2,6 +2,8 @@
 
 #include <credence/watch.hpp>
 
+#include <credence/error.hpp>
+
 #include "report_format.hpp"
 #include "report_json.hpp"
 
@@ -10,8 +12,6 @@
 namespace credence {
 
 namespace {
-
-constexpr int name_width = 24, figure_width = 18, failed_width = 8;
 
 std::string of_text(std::int64_t done, std::int64_t asked) {
     return std::to_string(done) + (done == asked ? "" : " of " + std::to_string(asked));
@@ -60,21 +60,20 @@ std::string units_text(const WatchedScenario& scenario) {
 }
 
 std::string figure_text(const Moments& moments) {
-    return padded(moments.count > 0 ? with_interval(moments.mean, t_interval(moments)) : "-", figure_width);
+    return moments.count > 0 ? with_interval(moments.mean, t_interval(moments)) : "-";
 }
 
-std::string scenario_rows(const WatchedScenario& scenario) {
-    std::string text = scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +
-                       of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario) + "\n";
+void add_scenario(TextTable& table, const WatchedScenario& scenario) {
+    table.line(wrapped(scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +
+                       of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario)));
     for (const WatchedArm& arm : scenario.arms) {
-        text += padded("  " + arm.name, name_width, false);
-        for (const Moments& figure : arm.figures) text += figure_text(figure);
-        text += padded(std::to_string(arm.failed), failed_width) + "\n";
+        std::vector<std::string> cells{arm.name};
+        for (const Moments& figure : arm.figures) cells.push_back(figure_text(figure));
+        cells.push_back(std::to_string(arm.failed));
+        table.row(std::move(cells));
     }
     for (const WatchedArm& arm : scenario.arms)
-        if (!arm.other.empty())
-            text += padded("  " + arm.name + " - " + arm.other, name_width, false) + figure_text(arm.difference) + "\n";
-    return text;
+        if (!arm.other.empty()) table.row({arm.name + " - " + arm.other, figure_text(arm.difference)});
 }
 
 Json moments_json(const Moments& moments) {
@@ -115,13 +114,15 @@ Json arm_json(const WatchLook& look, const WatchedScenario& scenario, const Watc
 }  // namespace
 
 std::string watch_text(const WatchLook& look) {
-    std::string text = look.path + ": " + state_text(look) + "\n" + advice(look);
+    std::string text = wrapped(printable(look.path) + ": " + state_text(look)) + "\n" + advice(look);
     if (look.scenarios.empty()) return text;
-    text += padded("mean ± 95 % so far", name_width, false);
-    for (const Column& column : look.scenarios.front().columns) text += padded(column.name, figure_width);
-    text += padded("failed", failed_width) + "\n";
-    for (const WatchedScenario& scenario : look.scenarios) text += scenario_rows(scenario);
-    return text;
+    TextTable table("lr");
+    std::vector<std::string> heads{"mean ± 95 % so far"};
+    for (const Column& column : look.scenarios.front().columns) heads.push_back(column.name);
+    heads.push_back("failed");
+    table.row(std::move(heads));
+    for (const WatchedScenario& scenario : look.scenarios) add_scenario(table, scenario);
+    return text + table.text();
 }
 
 std::string watch_json(const WatchLook& look) {
