@@ -11,27 +11,15 @@ namespace credence {
 
 namespace {
 
-constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
-
-/// What stands for one byte of a text; `valid` says whether the text is UTF-8.
-std::string_view entity(const char& c, bool valid) {
-    const auto byte = static_cast<unsigned char>(c);
+std::string_view entity(const char& c) {
     switch (c) {
-        case '&':
-            return "&amp;";
-        case '<':
-            return "&lt;";
-        case '>':
-            return "&gt;";
-        case '"':
-            return "&quot;";
-        case '\'':
-            return "&#39;";
-        default:
-            break;
+        case '&': return "&amp;";
+        case '<': return "&lt;";
+        case '>': return "&gt;";
+        case '"': return "&quot;";
+        case '\'': return "&#39;";
+        default: return {&c, 1};
     }
-    const bool control = (byte < 0x20 && c != '\t' && c != '\n') || byte == 0x7f;
-    return control || (byte >= 0x80 && !valid) ? replacement : std::string_view(&c, 1);
 }
 
 Html dash() { return "-"_html; }
@@ -54,9 +42,8 @@ Html operator+(Html a, const Html& b) { return a += b; }
 Html operator""_html(const char* text, std::size_t size) { return Html::trusted(std::string(text, size)); }
 
 Html escaped(std::string_view text) {
-    const bool valid = is_utf8(text);
     std::string safe;
-    for (const char& c : text) safe += entity(c, valid);
+    for (const char& c : with_controls_as(text, [](std::string_view) { return "\xEF\xBF\xBD"; })) safe += entity(c);  // U+FFFD
     return Html::trusted(std::move(safe));
 }
 

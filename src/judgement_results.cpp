@@ -70,7 +70,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
                                      const std::string& path) {
     ScenarioResults results;
     results.scenario.name = scenario_name(path);
-    results.scenario.title = "record " + printable(is_utf8(path) ? path : results.scenario.name);
+    results.scenario.title = "record " + printable(path);
     results.scenario.poses = shape.steps + 1;
     results.columns = record_columns(shape);
     results.figures = figures;

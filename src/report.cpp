@@ -100,7 +100,7 @@ Report make_record_report(JudgedRecord record, const std::string& path, double m
     ArmResults& arm = results.arms.front();
     std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell
     Report report;
-    report.source = "record " + path;
+    report.source = "record " + printable(path, path.size());
     report.margin = margin;
     report.troubles = record.troubles;
     results.scenario.title.clear();  // the source says it

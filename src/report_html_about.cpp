@@ -20,15 +20,6 @@ std::string fact(const RunFacts& facts, const std::string& name) {
     return {};
 }
 
-/// A file's name as one word of a shell: it may hold anything.
-std::string quoted(const std::string& word) {
-    const bool plain = std::all_of(word.begin(), word.end(), [](char c) { return is_name_character(c) || c == '.'; });
-    if (plain && !word.empty() && word.front() != '-') return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 /// The command that makes a study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
     std::string line = "credence run";
@@ -126,7 +117,7 @@ Html provenance(const Report& report, const PageOrigin& origin) {
 }
 
 Html reproduction(const Report& report, const PageOrigin& origin) {
-    const std::string file = quoted(origin.file), margin = " --margin " + to_text(report.margin);
+    const std::string file = shell_word(origin.file), margin = " --margin " + to_text(report.margin);
     Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +

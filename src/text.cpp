@@ -1,8 +1,11 @@
 #include <credence/text.hpp>
 
+#include <credence/error.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace credence {
@@ -40,22 +43,102 @@ bool is_name_character(char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
 }
 
+namespace {
+
+/// A character of UTF-8 (RFC 3629); of length 0 where the bytes are none.
+struct Character {
+    std::size_t length = 0;
+    unsigned long code = 0;
+};
+
+Character character_at(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
+    const unsigned lead = byte(0);
+    const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+    if (length == 0 || at + length > text.size()) return {};
+    unsigned long code = length == 1 ? lead : lead & (0x7fu >> length);
+    for (std::size_t k = 1; k < length; ++k) {
+        if (byte(k) >> 6 != 2) return {};
+        code = code << 6 | (byte(k) & 0x3fu);
+    }
+    constexpr unsigned long shortest[] = {0, 0, 0x80, 0x800, 0x10000};
+    if (code < shortest[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return {};
+    return {length, code};
+}
+
+/// Controls of ASCII and of Latin-1 (some terminals obey U+009B as they do ESC [), separators of lines, and what changes
+/// the direction of writing, by which a text can show something else than it says.
+bool is_control(unsigned long code) {
+    return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x2028 && code <= 0x202e) ||
+           (code >= 0x2066 && code <= 0x2069);
+}
+
+/// Two digits.
+std::string hexadecimal(char byte) {
+    char text[8];
+    std::snprintf(text, sizeof text, "%02x", static_cast<unsigned>(static_cast<unsigned char>(byte)));
+    return text;
+}
+
+/// `\u009b`, as JSON has it; `\xff` of a byte that is not UTF-8, which JSON does not have.
+std::string escape(std::string_view piece) {
+    const Character character = character_at(piece, 0);
+    if (character.length == 0) return "\\x" + hexadecimal(piece.front());
+    char text[16];
+    std::snprintf(text, sizeof text, "\\u%04lx", character.code);
+    return text;
+}
+
+}  // namespace
+
 bool is_utf8(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     for (std::size_t i = 0; i < text.size();) {
-        const unsigned lead = byte(i);
-        const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
-        if (length == 0 || i + length > text.size()) return false;
-        unsigned long code = length == 1 ? lead : lead & (0x7fu >> length);
-        for (std::size_t k = 1; k < length; ++k) {
-            if (byte(i + k) >> 6 != 2) return false;
-            code = code << 6 | (byte(i + k) & 0x3fu);
-        }
-        constexpr unsigned long shortest[] = {0, 0, 0x80, 0x800, 0x10000};
-        if (code < shortest[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return false;
+        const std::size_t length = character_at(text, i).length;
+        if (length == 0) return false;
         i += length;
     }
     return true;
+}
+
+std::string with_controls_as(std::string_view text, const std::function<std::string(std::string_view)>& instead) {
+    std::string safe;
+    for (std::size_t i = 0; i < text.size();) {
+        const Character character = character_at(text, i);
+        const std::string_view piece = text.substr(i, std::max<std::size_t>(1, character.length));
+        const bool layout = piece == "\n" || piece == "\t";
+        if (!layout && (character.length == 0 || is_control(character.code))) safe += instead(piece);
+        else safe += piece;
+        i += piece.size();
+    }
+    return safe;
+}
+
+std::string shown(std::string_view text) { return with_controls_as(text, escape); }
+
+std::string printable(const std::string& given, std::size_t longest) {
+    std::size_t end = std::min(given.size(), longest);
+    while (end < given.size() && end > 0 && (static_cast<unsigned char>(given[end]) & 0xc0) == 0x80) --end;
+    std::string line;
+    for (const char c : shown(std::string_view(given).substr(0, end)))
+        if (c == '\n') line += "\\n";
+        else if (c == '\t') line += "\\t";
+        else line += c;
+    return end < given.size() ? line + "..." : line;
+}
+
+std::string shell_word(const std::string& word) {
+    const std::string plain_characters = "./=,:+%@";
+    const bool plain = std::all_of(word.begin(), word.end(), [&](char c) {
+        return is_name_character(c) || plain_characters.find(c) != std::string::npos;
+    });
+    if (plain && !word.empty()) return word;
+    const bool ansi = printable(word, word.size()) != word;
+    std::string text;
+    for (const char c : word)
+        if (ansi && (c < 0x20 || c > 0x7e)) text += "\\x" + hexadecimal(c);
+        else if (c == '\'') text += ansi ? "\\'" : "'\\''";
+        else text += ansi && c == '\\' ? std::string("\\\\") : std::string(1, c);
+    return (ansi ? "$'" : "'") + text + "'";
 }
 
 std::vector<std::string> split_list(std::string_view text, char separator) {

@@ -152,7 +152,7 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     check_refused(here.credence("run good.ini --resume -o " + std::string(300, 'x') + ".h5"), "the name is too long");
     check_refused(here.credence("report good.ini -o good.ini"), "good.ini (it is there already)");
     check_refused(here.credence("replay good.ini --noise foreign.h5 --arm fixed.ekf"), "--arm does not go with --noise");
-    check_refused(here.credence("run \"$(printf 'missing\\nline.ini')\""), "missing?line.ini");
+    check_refused(here.credence("run \"$(printf 'missing\\nline.ini')\""), "missing\\nline.ini");
     check_refused(here.credence("''"), "unknown command");
     check_refused(here.credence("run"), "no scenario given");
     check_refused(here.credence("rum good.ini"), "unknown command rum. Did you mean run?");

@@ -27,6 +27,7 @@ TEST_CASE("html: whatever somebody wrote is text") {
     CHECK(escaped(std::string("a\x01z\0b", 5)).text() ==
           "a\xEF\xBF\xBDz\xEF\xBF\xBD"
           "b");
+    CHECK(escaped("a\xC2\x9B\xE2\x80\xAE").text() == "a\xEF\xBF\xBD\xEF\xBF\xBD");  // CSI, right to left
     CHECK(escaped("\xFF<").text() == "\xEF\xBF\xBD&lt;");  // not UTF-8
     CHECK_THAT(HtmlTable("<b>", {"<i>"}).row(escaped("<u>"), {}).html().text(),
                !Contains("<b>") && !Contains("<i>") && !Contains("<u>"));

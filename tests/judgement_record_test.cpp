@@ -218,7 +218,7 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
     // e' P^-1 e of e = (0.5, 0.5) is 0.5 / (1 + p), p the mean of 0.5 and 0.5 + 2e-10; rounding leaves 1e-15.
     CHECK(std::abs(record.results.arms.front().nees[0] - 0.5 / (1.5 + 1e-10)) < 1e-14);
     CHECK(record.results.scenario.name == "r_x");
-    CHECK(record.results.scenario.title == "record r_x");  // a report is UTF-8
+    CHECK(record.results.scenario.title == "record " + printable(path));  // a report is UTF-8
 
     // What rounding leaves of a 0, between components whose variances are far larger.
     write_plain_record(path, [](const Handle& root) { set_value(root, "covariance", 1, 1e-12); });

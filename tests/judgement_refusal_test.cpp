@@ -157,7 +157,7 @@ const std::vector<Damage> block_damages{
     {"/@blocks: broken entry `a 0:1 b 1:2`", blocks("a 0:1 b 1:2")},
     {"/@blocks: broken entry ``", blocks("a 0:1,")},
     {"/@blocks: broken entry `a x:1`", blocks("a x:1")},
-    {"/@blocks: broken entry `a?[31m 0;1`", blocks("a\x1b[31m 0;1")},
+    {"/@blocks: broken entry `a\\u001b[31m 0;1`", blocks("a\x1b[31m 0;1")},
     {"/@blocks: `f(1)` is no name for a block. Use letters, digits, _ and -", blocks("f(1) 0:1")},
     {"/@blocks: `all` cannot name a block", blocks("all 0:2")},
     {"/@blocks: names two blocks `a`", blocks("a 0:1, a 1:2")},

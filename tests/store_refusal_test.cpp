@@ -61,7 +61,7 @@ const std::vector<Damage> scenario_damages{
     {"/soft: is a link", [](auto& r) { H5Lcreate_soft("/first", r.id(), "/soft", H5P_DEFAULT, H5P_DEFAULT); }},
     {"/external: is a link",
      [](auto& r) { H5Lcreate_external("other.h5", "/", r.id(), "/external", H5P_DEFAULT, H5P_DEFAULT); }},
-    {"/bell?[31m: is a link",
+    {"/bell\\u001b[31m: is a link",
      [](auto& r) { H5Lcreate_soft("/first", r.id(), "/bell\x1b[31m", H5P_DEFAULT, H5P_DEFAULT); }},
 };
 

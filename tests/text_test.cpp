@@ -2,6 +2,7 @@
 
 #include "catch.hpp"
 
+#include <credence/error.hpp>
 #include <credence/real.hpp>
 #include <credence/text.hpp>
 
@@ -107,6 +108,35 @@ TEST_CASE("text: UTF-8 is told from what only looks like it") {
     for (const char* good : {"", "dm", "\xc2\xb5m", "\xe2\x88\x9a", "\xf0\x9f\x98\x80"}) CHECK(is_utf8(good));
     for (const char* bad : {"\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff", "a\xe2\x88"})
         CHECK_FALSE(is_utf8(bad));
+}
+
+TEST_CASE("text: what a terminal could obey is escaped, and everything else stays as it is") {
+    CHECK(shown("größer µm²\n\ttab") == "größer µm²\n\ttab");
+    CHECK(shown("\x1b[31m") == "\\u001b[31m");
+    CHECK(shown("\x7f") == "\\u007f");
+    CHECK(shown("\xc2\x9b" "31m") == "\\u009b31m");                  // CSI of Latin-1
+    CHECK(shown("a\xe2\x80\xae" "b\xe2\x81\xa6" "c") == "a\\u202eb\\u2066c");  // right to left, isolated
+    CHECK(shown("\xe2\x80\xa8") == "\\u2028");
+    CHECK(shown("\x9b\xff\xe2\x80") == "\\x9b\\xff\\xe2\\x80");      // not UTF-8
+    CHECK(shown(std::string("a\0b\r", 4)) == "a\\u0000b\\u000d");
+    CHECK(shown("\xc2\xa0\xe2\x80\x8f") == "\xc2\xa0\xe2\x80\x8f");  // a hard blank, a mark of Arabic texts
+}
+
+TEST_CASE("text: in a message a name stays on one line, and is cut between characters") {
+    CHECK(printable("two\nlines\tand a tab") == "two\\nlines\\tand a tab");
+    CHECK(printable("\x1b]0;title\a") == "\\u001b]0;title\\u0007");
+    CHECK(printable("abcdef", 4) == "abcd...");
+    CHECK(printable("abc\xc2\xb5", 4) == "abc...");
+    CHECK(printable("abc\xc2\xb5", 5) == "abc\xc2\xb5");
+    CHECK(printable(std::string(10, '\x80'), 4) == "...");
+}
+
+TEST_CASE("text: a word of a shell is quoted where it must be") {
+    CHECK(shell_word("--sweep") == "--sweep");
+    CHECK(shell_word("noise.walk=0.1,0.2") == "noise.walk=0.1,0.2");
+    CHECK(shell_word("") == "''");
+    CHECK(shell_word("it's $HOME") == "'it'\\''s $HOME'");
+    CHECK(shell_word("a\x1b'\\\xc2\xb5.h5") == "$'a\\x1b\\'\\\\\\xc2\\xb5.h5'");
 }
 
 TEST_CASE("text: what is far from every word is close to none, however long") {

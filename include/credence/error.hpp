@@ -26,13 +26,9 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// What somebody gave, fit to stand in a message: control characters become `?`, and a long text is cut.
-inline std::string printable(const std::string& given, std::size_t longest = 100) {
-    std::string text = given.size() > longest ? given.substr(0, longest) + "..." : given;
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return text;
-}
+/// What somebody gave, fit to stand in a message of one line: control characters are escaped, such as `\n` or `\u001b`
+/// [text.hpp, shown], and a long text is cut.
+std::string printable(const std::string& given, std::size_t longest = 100);
 
 /// `invalid NAME=VALUE (WHY). REMEDY`: the one grammar of every refused value.
 inline InputError invalid_value(const std::string& name, const std::string& value, const std::string& why,

@@ -27,8 +27,8 @@ private:
 Html operator+(Html a, const Html& b);
 Html operator""_html(const char* text, std::size_t size);
 
-/// The text with & < > " ' as entities, fit for elements and for quoted attributes. Control characters but tab and line
-/// feed, and bytes that are not UTF-8, become U+FFFD.
+/// The text with & < > " ' as entities, fit for elements and for quoted attributes. What a terminal
+/// could obey, and bytes that are not UTF-8 [text.hpp, with_controls_as], become U+FFFD.
 Html escaped(std::string_view text);
 
 /// `<NAME ATTRIBUTES>content</NAME>`; the attributes as they stand in the tag, texts in them escaped.

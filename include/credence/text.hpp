@@ -3,6 +3,7 @@
 // bits.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,17 @@ bool is_name_character(char c);
 
 /// Whether every sequence of bytes is one of UTF-8 (RFC 3629), as files and JSON need it.
 bool is_utf8(std::string_view text);
+
+/// The text with what a terminal could obey (control characters but line feed and tab, changes of the direction of writing)
+/// and bytes that are not UTF-8 replaced by what `instead` gives for each.
+std::string with_controls_as(std::string_view text, const std::function<std::string(std::string_view)>& instead);
+
+/// The text, such as a report, fit for a terminal: these are escaped as JSON escapes them, such as `\u001b`. What the program
+/// prints goes through it, because titles, names and units come from files. For a name in a message: `printable`, error.hpp.
+std::string shown(std::string_view text);
+
+/// One word of a command line, quoted where a shell needs it; control characters as bash writes them, in $'...'.
+std::string shell_word(const std::string& word);
 
 /// The parts between commas, trimmed; an empty text has none.
 std::vector<std::string> split_list(std::string_view text, char separator = ',');
