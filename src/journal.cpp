@@ -28,6 +28,7 @@ void Journal::begin(const JournalHeader& header, Study& study) {
     seal_ = checksum(bytes.data(), bytes.size());
     sync_folder(folder_of(file_.path()), file_.path());
     header_ = header;
+    header_size_ = file_.size();
     asked_ = header.trials;
     finished(study);
 }

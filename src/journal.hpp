@@ -71,6 +71,7 @@ public:
     /// Goes on with it: adds what was committed to `study`, which holds what is in the results file that it grows. A torn
     /// tail is left out, and cut. Throws InputError where it is damaged.
     void load(Study& study);
+    bool has_commits() const { return file_.size() > header_size_; }
     /// Bytes of the torn tail that load() cut.
     std::int64_t torn() const { return torn_; }
     void remove() { file_.remove(); }

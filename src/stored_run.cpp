@@ -196,4 +196,13 @@ bool StoredRun::finish(const RunFacts& facts) {
     return changed;
 }
 
+bool StoredRun::keeps_something() {
+    if (in_file_ || (journal_ && journal_->has_commits())) return true;
+    try {
+        if (journal_) journal_->remove();
+    } catch (const Failure&) {  // what failed before is what is to be said
+    }
+    return false;
+}
+
 }  // namespace credence

@@ -49,6 +49,10 @@ public:
     /// at the start; then the journal is there still.
     bool finish(const RunFacts& facts);
 
+    /// After a failure: whether something that was computed is on the disk, for a run to go on with. A journal without a
+    /// commit is removed.
+    bool keeps_something();
+
 private:
     /// What a results file has, to tell whether it has to be written.
     struct Contents {

@@ -7,7 +7,10 @@
 #include <boost/program_options.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
 #include <iostream>
+#include <limits>
 
 namespace credence::cli {
 
@@ -61,12 +64,28 @@ std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, 
     if (!given) return otherwise;
     const std::optional<std::int64_t> number = to_integer(*given);
     const std::string name = "--" + option;
+    const std::optional<double> size = to_number(*given);
+    if (!number && size && (*size < static_cast<double>(low) || *size > static_cast<double>(high)))
+        throw invalid_value(name, *given, "must be from " + std::to_string(low) + " to " + std::to_string(high),
+                            "Give a number in that range");
     if (!number) throw invalid_value(name, *given, "not a whole number", "Give a number such as 10000 or 1e6");
     if (*number < low)
         throw invalid_value(name, *given, "must be at least " + std::to_string(low), "Give a larger number");
     if (*number > high)
         throw invalid_value(name, *given, "must be at most " + std::to_string(high), "Give a smaller number");
     return *number;
+}
+
+std::uint64_t Parsed::seed(std::uint64_t otherwise) const {
+    const std::optional<std::string> given = text("seed");
+    constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t number = 0;
+    if (!given) return otherwise;
+    const auto [end, error] = std::from_chars(given->data(), given->data() + given->size(), number);
+    if (error == std::errc() && end == given->data() + given->size()) return number;
+    if (to_number(*given).value_or(0) > static_cast<double>(largest) / 2)
+        throw invalid_value("--seed", *given, "must be at most " + std::to_string(largest), "Give a smaller number");
+    return static_cast<std::uint64_t>(integer("seed", 0, 0, std::numeric_limits<std::int64_t>::max()));  // 1e6
 }
 
 double Parsed::real(const std::string& option, double otherwise, double low, double high) const {
@@ -145,13 +164,25 @@ double parse_margin(const Parsed& parsed) {
     return margin;
 }
 
-void check_output_option(const Parsed& parsed) {
-    if (const std::optional<std::string> path = parsed.text("output")) check_output(*path, false);
+std::optional<Output> check_output_option(const Parsed& parsed) {
+    const std::optional<std::string> path = parsed.text("output");
+    if (!path) return std::nullopt;
+    const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
+    std::vector<std::string> inputs = parsed.arguments;
+    if (const std::optional<std::string> noise = parsed.text("noise")) inputs.push_back(*noise);
+    for (const std::string& input : inputs)
+        if (std::error_code none; std::filesystem::equivalent(input, *path, none))
+            throw InputError("cannot write " + *path + " (it is the file to read). Give another name.");
+    return output;
 }
 
+void print(const std::string& text) { std::cout << shown(text); }
+
+void say(const std::string& text) { std::cerr << shown(text) << std::flush; }
+
 void write_output(const Parsed& parsed, const std::string& text) {
-    if (const std::optional<std::string> path = parsed.text("output")) write_text_file(check_output(*path, false), text);
-    else std::cout << text;
+    if (const std::optional<Output> output = check_output_option(parsed)) write_text_file(*output, shown(text));
+    else print(text);
 }
 
 Option set_option() {
@@ -169,6 +200,8 @@ Option margin_option() {
 }
 
 Option output_option(const std::string& help, const std::string& value) { return {"output,o", value, help}; }
+
+Option overwrite_option() { return {"overwrite", "", "replace the file of -o where it exists"}; }
 
 Option format_option(const std::vector<std::string>& formats) {
     std::string help = formats.front() + " (default)";

@@ -42,6 +42,8 @@ public:
     std::optional<std::string> text(const std::string& option) const;
     /// A whole number in [low, high]; throws InputError naming the option.
     std::int64_t integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const;
+    /// Of --seed: any number of 64 bits without a sign; throws InputError.
+    std::uint64_t seed(std::uint64_t otherwise) const;
     /// A number in [low, high]; throws InputError naming the option.
     double real(const std::string& option, double otherwise, double low, double high) const;
     /// One of the option's choices, the first by default; throws InputError for another one.
@@ -59,8 +61,14 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
 /// `5%` or `0.05` as a number in (0, 1); throws InputError.
 double parse_margin(const Parsed& parsed);
 
-/// Refuses an `-o` that exists or cannot be written, before any work.
-void check_output_option(const Parsed& parsed);
+/// Where `-o` says to write, if it is given. Refuses, before any work, what cannot be written, what exists while --overwrite is
+/// not given, and the files that the command reads.
+std::optional<Output> check_output_option(const Parsed& parsed);
+
+/// Prints a text to the standard output, with what a terminal could obey escaped [text.hpp, shown].
+void print(const std::string& text);
+/// The same to the error stream, at once.
+void say(const std::string& text);
 
 /// Writes a text to `-o`'s file, or to the standard output.
 void write_output(const Parsed& parsed, const std::string& text);
@@ -70,6 +78,8 @@ Option set_option();
 Option sweep_option();
 Option margin_option();
 Option output_option(const std::string& help, const std::string& value = "FILE");
+/// --overwrite, of the commands that write a report or a trajectory to -o.
+Option overwrite_option();
 /// --format: the first of `formats` by default.
 Option format_option(const std::vector<std::string>& formats);
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "command.hpp"
+#include "file_kind.hpp"
 #include "version.hpp"
 
 namespace credence::cli {
@@ -15,13 +16,13 @@ const Command& compare_command() {
         "compare arms or runs trial by trial, A - B",
         "\nOf one file: --arms greedy.ekf,fixed.ekf (a controller alone, greedy,fixed, will do); without --arms every\n"
         "greedy arm against the fixed arm of its estimator, and every horizon against the greedy one. Of several files,\n"
-        "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the second, or write FILE:ARM; without --arms the\n"
-        "arms of each further file against those of the first, so that the same world under --set "
-        "filter.measurement=0.8\n"
-        "shows what that did.\n",
+        "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the second, or\n"
+        "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the same world\n"
+        "under --set filter.measurement=0.8 shows what that did.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
          format_option({"text", "json", "csv", "html"}),
-         output_option("write there, not to the standard output")}};
+         output_option("write there, not to the standard output"),
+         overwrite_option()}};
     return command;
 }
 
@@ -42,6 +43,7 @@ int compare(const Parsed& parsed) {
     std::optional<ArmsChoice> choice;
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
     check_output_option(parsed);
+    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::results});
     std::vector<StudyFile> files;
     for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path, 0).study});
     const CompareReport report = compare_studies(files, choice);

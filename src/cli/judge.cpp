@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "file_kind.hpp"
 #include "progress.hpp"
 
 #include <credence/error.hpp>
@@ -24,7 +25,8 @@ const Command& judge_command() {
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
-         output_option("write there, not to the standard output")}};
+         output_option("write there, not to the standard output"),
+         overwrite_option()}};
     return command;
 }
 
@@ -32,6 +34,7 @@ int judge(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("judge takes one record. Give RECORD.h5.");
     const std::string& path = parsed.arguments.front();
     const ReportRequest request = read_report_request(parsed);
+    check_kind(path, {FileKind::record});
     ProgressLine progress(parsed.has("quiet"));
     JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
     progress.finish();

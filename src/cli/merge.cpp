@@ -1,14 +1,13 @@
 #include "command.hpp"
+#include "file_kind.hpp"
+#include "limits.hpp"
 #include "progress.hpp"
 #include "version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/merge.hpp>
 
-#include <sys/resource.h>
-
 #include <filesystem>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -25,24 +24,13 @@ const Command& merge_command() {
     return command;
 }
 
-namespace {
-
-/// The columns stay in the shards' files, and those open: as many as the system allows, not the 1024 of a usual shell.
-void allow_open_files() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
-}
-
-}  // namespace
-
 int merge(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
     const std::optional<std::string> path = parsed.text("output");
     if (!path) throw InputError("no -o given. Name the results file to write.");
     const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
     allow_open_files();
+    for (const std::string& shard : parsed.arguments) check_kind(shard, {FileKind::results});
     const Study study = merge_results(parsed.arguments);
     if (!study.complete)
         throw Failure("blocks are missing: " + missing_text(study) +
@@ -52,8 +40,9 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     facts.emplace_back("command_line", command_line);
     write_results(output, study, facts);
     if (!parsed.has("quiet"))
-        std::cout << *path << ": " << study.trials << " trials of each scenario from " << parsed.arguments.size()
-                  << " files, " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*path))) << "\n";
+        print(printable(*path) + ": " + std::to_string(study.trials) + " trials of each scenario from " +
+              std::to_string(parsed.arguments.size()) + " files, " +
+              bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*path))) + "\n");
     return 0;
 }
 

@@ -1,6 +1,8 @@
 // The program: its subcommands, and what becomes of errors.
 
 #include "command.hpp"
+#include "limits.hpp"
+#include "progress.hpp"
 #include "ranks.hpp"
 #include "streams.hpp"
 #include "version.hpp"
@@ -52,21 +54,17 @@ int help() {
         const cli::Command& command = subcommand.command();
         std::cout << "  " << command.name << std::string(12 - command.name.size(), ' ') << command.summary << "\n";
     }
-    std::cout << "\n  --help      this\n  --version   the version and how it was built\n\nExit codes: ";
     std::vector<std::string> codes;
     for (const cli::ExitCode& exit : cli::exit_codes()) codes.push_back(std::to_string(exit.code) + " " + exit.meaning);
-    std::cout << joined(codes) << ".\n";
+    cli::print("\n  --help      this\n  --version   the version and how it was built\n\n" +
+               wrapped("Exit codes: " + joined(codes) + ".") + "\n");
     return 0;
 }
 
 /// The command line as it was given, quoted where a shell would need it.
 std::string command_line(int argc, char** argv) {
     std::vector<std::string> words{"credence"};
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`*?[](){}<>|&;#!~") == std::string::npos;
-        words.push_back(plain ? word : "'" + word + "'");
-    }
+    for (int i = 1; i < argc; ++i) words.push_back(shell_word(argv[i]));
     return joined(words, " ");
 }
 
@@ -79,7 +77,6 @@ int complain(const std::string& message, int exit_code) {
 }
 
 int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
-    best_unit();  // refuses a bad CREDENCE_FORCE_UNIT before any work
     std::vector<std::string> names{"--help", "--version"};
     for (const Subcommand& subcommand : subcommands()) {
         if (subcommand.command().name == name) {
@@ -91,6 +88,16 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
     const std::string meant = closest(name, names);
     throw InputError("unknown command " + printable(name) + ". " +
                      (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+}
+
+/// `--help`, `help`, `help COMMAND`, `--version`, or a command's work.
+int obey(const std::string& name, std::vector<std::string> arguments, const std::string& line) {
+    if (name == "--version") {
+        cli::print(version_text());
+        return 0;
+    }
+    if (name != "help" && name != "--help" && name != "-h") return dispatch(name, arguments, line);
+    return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, line);
 }
 
 }  // namespace
@@ -109,13 +116,16 @@ int program(int argc, char** argv) {
     // credence writes is closed, and checked, long before.
     H5dont_atexit();
     const std::string name = argc > 1 ? argv[1] : "--help";
-    const bool known = name != "--help" && name != "-h" && name != "--version" && !name.empty() && name.front() != '-';
+    const bool known = !name.empty() && name.front() != '-';
     const std::string prefix = known ? "credence " + name + ": " : "credence: ";
     try {
-        if (name == "--help" || name == "-h" || name == "help") return help();
-        if (name == "--version") { std::cout << version_text(); return 0; }
-        const int code =
-            dispatch(name, arguments(argc, argv), command_line(argc, argv));
+        // Bad surroundings of this process, which another one on another machine need not have, before any work.
+        if (known && name != "help") best_unit(), cli::check_stack();
+    } catch (const InputError& error) {
+        return complain(prefix + error.what(), 2);
+    }
+    try {
+        const int code = obey(name, arguments(argc, argv), command_line(argc, argv));
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {

@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "file_kind.hpp"
 #include "version.hpp"
 
 #include <credence/error.hpp>
@@ -10,7 +11,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -19,18 +19,19 @@ const Command& replay_command() {
         "replay",
         "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
         "run one trial again, pose by pose: from a results file, or on recorded noise",
-        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); a file "
-        "that\nkeeps aggregates has none to check it against.\n"
-        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2], "
+        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); a\n"
+        "file that keeps aggregates has none to check it against.\n"
+        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2],\n"
         "standardised.\n",
         {{"scenario", "NAME", "scenario of the results file"},
-         {"arm", "ARM", "arm of the results file, such as greedy.ekf"},
+         {"arm", "ARM", "arm of the results file, such as greedy.ekf; greedy alone where that is one arm"},
          {"trial", "I", "trial of the results file, from 0"},
          {"noise", "RECORD.h5", "recorded noise for SCENARIO.ini"},
          set_option(),
          format_option({"text", "json", "csv"}),
          output_option("write the trajectory there: truth, estimates, covariances, innovations, the planner's costs",
-                       "FILE.h5")}};
+                       "FILE.h5"),
+         overwrite_option()}};
     return command;
 }
 
@@ -41,6 +42,8 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
         if (parsed.has(option))
             throw InputError(std::string("--") + option +
                              " does not go with --noise (a record is one trial, for all arms). Leave it out.");
+    check_kind(parsed.arguments.front(), {FileKind::scenario});
+    check_kind(record_path, {FileKind::noise});
     const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
     const NoiseRecord record = read_noise_record(record_path);
     check_covers(record, scenario, record_path);
@@ -67,13 +70,14 @@ const ScenarioResults& find_scenario(const Study& study, const std::string& name
     throw invalid_value("--scenario", name, "not in the file", "It has " + joined(names));
 }
 
+/// The place of the arm that a name means, its own or the only one of that controller.
 std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
+    const std::vector<const ArmResults*> meant = arms_meant(results, name);
+    if (meant.size() == 1) return static_cast<std::size_t>(meant.front() - results.arms.data());
     std::vector<std::string> names;
-    for (std::size_t a = 0; a < results.arms.size(); ++a) {
-        if (results.arms[a].name == name) return a;
-        names.push_back(results.arms[a].name);
-    }
-    throw invalid_value("--arm", name, "not in the scenario", "It has " + joined(names));
+    for (const ArmResults& arm : results.arms) names.push_back(arm.name);
+    throw invalid_value("--arm", name, meant.empty() ? "not in the scenario" : "several arms have that controller",
+                        "It has " + joined(names));
 }
 
 /// Where the trial stands in the columns.
@@ -91,6 +95,7 @@ bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     if (parsed.has("set"))
         throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
+    check_kind(parsed.arguments.front(), {FileKind::results});
     const std::string scenario_name = needed(parsed, "scenario"), arm = needed(parsed, "arm");
     needed(parsed, "trial");
     const Study study = read_results(parsed.arguments.front(), 0).study;
@@ -163,17 +168,17 @@ int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1)
         throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
     const std::string format = parsed.choice("format");
-    const std::optional<std::string> path = parsed.text("output"), noise = parsed.text("noise");
-    const std::optional<Output> output = path ? std::optional(check_output(*path, false)) : std::nullopt;
+    const std::optional<std::string> noise = parsed.text("noise");
+    const std::optional<Output> output = check_output_option(parsed);
     const std::vector<Trajectory> trajectories = noise ? replay_noise(parsed, *noise) : replay_stored(parsed);
     if (output) {
         RunFacts facts = build_facts();
         facts.emplace_back("command_line", command_line);
         write_trajectories(*output, trajectories, facts);
     }
-    std::cout << (format == "json"  ? as_json(trajectories)
-                  : format == "csv" ? as_csv(trajectories)
-                                    : as_text(trajectories));
+    print(format == "json"  ? as_json(trajectories)
+          : format == "csv" ? as_csv(trajectories)
+                            : as_text(trajectories));
     return 0;
 }
 

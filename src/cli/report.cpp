@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "file_kind.hpp"
 #include "version.hpp"
 
 #include <credence/error.hpp>
@@ -18,7 +19,8 @@ const Command& report_command() {
         {margin_option(),
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
-         output_option("write there, not to the standard output")}};
+         output_option("write there, not to the standard output"),
+         overwrite_option()}};
     return command;
 }
 
@@ -46,6 +48,7 @@ int report(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
     const ReportRequest request = read_report_request(parsed);
     const std::string& path = parsed.arguments.front();
+    check_kind(path, {FileKind::results});
     const StoredStudy stored = read_results(path, most_totals_in_memory);
     return give_report(parsed, request, make_report(stored.study, request.margin), path, stored.run);
 }

@@ -14,7 +14,6 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -28,7 +27,7 @@ const Command& run_command() {
         "everything kept (exit code 3), and --resume goes on.\n",
         {output_option("results file (default credence.h5)", "FILE.h5"),
          {"trials", "N", "trials of each scenario (default 10000)"},
-         {"seed", "N", "root seed, from 0 up (default 1)"},
+         {"seed", "N", "root seed, from 0 to 2^64 - 1 (default 1)"},
          {"threads", "N", "threads (default: all processors)"},
          set_option(),
          sweep_option(),
@@ -135,20 +134,18 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
             const std::string& command_line) {
     std::int64_t done = 0;
     for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
-    std::cerr << "credence run: stopped by " << signal << " with " << done << " trials kept in " << request.output
-              << " (complete = 0). This goes on with them:\n  " << resuming(command_line, request.options.shard) << "\n";
+    say("credence run: stopped by " + signal + " with " + std::to_string(done) + " trials kept in " +
+        printable(request.output) + " (complete = 0). This goes on with them:\n  " +
+        resuming(command_line, request.options.shard) + "\n");
     return 3;
 }
 
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
-    std::cout << report_text(make_report(study, 0.05)) << "\n";
-    if (work.last_look) std::cout << stopping_text(*work.last_look);
-    std::cout << request.output;
-    if (work.changed)
-        std::cout << ": " << bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output)))
-                  << ", computed in " << duration_text(work.seconds) << " on " << threads_text(request) << " threads\n";
-    else
-        std::cout << " has these trials already\n";
+    print(report_text(make_report(study, 0.05)) + "\n" + (work.last_look ? stopping_text(*work.last_look) : "") +
+          printable(request.output) +
+          (work.changed ? ": " + bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output))) +
+                              ", computed in " + duration_text(work.seconds) + " on " + threads_text(request) + " threads\n"
+                        : " has these trials already\n"));
 }
 
 /// Runs and writes. Throws Failure with what is kept.
@@ -159,6 +156,7 @@ Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const
         work.changed = stored.finish(facts_of(request, work, started, command_line));
         return work;
     } catch (const Failure& failure) {
+        if (!stored.keeps_something()) throw Failure(failure.what() + std::string(" Nothing had been committed."));
         throw Failure(failure.what() + std::string(" What was committed is kept, and this goes on with it: ") +
                       resuming(command_line, request.options.shard));
     }
@@ -181,7 +179,7 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const std::string signal = stopped_by(ranks.get());
     if (!signal.empty() && !stored.study().complete) return stopped(stored, request, signal, command_line);
     if (work.last_look && !work.last_look->met)
-        std::cerr << "credence run: " << imprecision_text(*work.last_look, request.rule()) << "\n";
+        say("credence run: " + imprecision_text(*work.last_look, request.rule()) + "\n");
     if (!request.quiet) print_table(stored.study(), request, work);
     return 0;
 }

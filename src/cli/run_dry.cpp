@@ -2,11 +2,12 @@
 
 #include "progress.hpp"
 
+#include <credence/error.hpp>
+
 #include <omp.h>
 
 #include <algorithm>
 #include <chrono>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -44,13 +45,13 @@ int dry_run(const RunRequest& request, const Study& study) {
                        at_once = std::min(of_a_rank * request.ranks, std::max<std::int64_t>(1, blocks));
     const Footprint size =
         footprint(study, request.options.trials / request.options.shard.count, request.options.threads);
-    std::cout << "scenarios: " << request.scenarios.size() << ", trials of each: " << request.options.trials
-              << ", threads: " << threads_text(request) << ". About "
-              << duration_text(seconds / static_cast<double>(at_once)) << ", " << bytes_text(size.memory)
-              << " of memory, " << bytes_text(size.file) << " in " << request.output
-              << (request.keep == Keep::trials ? ", as much again in its journal meanwhile"
-                                               : ", as much in its journal at every commit")
-              << (request.goals.empty() ? "" : ": the cost of the ceiling, --until may stop sooner") << "\n";
+    print("scenarios: " + std::to_string(request.scenarios.size()) + ", trials of each: " +
+          std::to_string(request.options.trials) + ", threads: " + threads_text(request) + ".\n" +
+          wrapped("About " + duration_text(seconds / static_cast<double>(at_once)) + ", " + bytes_text(size.memory) +
+                  " of memory, " + bytes_text(size.file) + " in " + printable(request.output) +
+                  (request.keep == Keep::trials ? ", as much again in its journal meanwhile"
+                                                : ", as much in its journal at every commit")) +
+          (request.goals.empty() ? "\n" : ":\nthe cost of the ceiling, --until may stop sooner\n"));
     return 0;
 }
 

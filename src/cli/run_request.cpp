@@ -1,14 +1,13 @@
 #include "run_request.hpp"
 
 #include "version.hpp"
+#include "file_kind.hpp"
 
 #include <credence/error.hpp>
 #include <credence/launcher.hpp>
 #include <credence/text.hpp>
 
 #include <omp.h>
-
-#include <limits>
 
 namespace credence::cli {
 
@@ -64,8 +63,7 @@ RunRequest read_request(const Parsed& parsed) {
         for (const std::string& goal : until->second) request.goals.push_back(parse_goal(goal));
     request.options.trials =
         parsed.integer("trials", request.goals.empty() ? default_trials : default_ceiling, 1, most_trials);
-    request.root_seed =
-        static_cast<std::uint64_t>(parsed.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+    request.root_seed = parsed.seed(request.root_seed);
     request.options.threads = static_cast<int>(parsed.integer("threads", omp_get_max_threads(), 1, 4096));
     request.trials_given = parsed.has("trials");
     request.threads_given = parsed.has("threads");
@@ -76,6 +74,7 @@ RunRequest read_request(const Parsed& parsed) {
     if (request.options.shard.count > 1 && !request.goals.empty())
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
                          "one of them.");
+    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::scenario});
     request.scenarios = scenarios_of(parsed);
     return request;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -61,7 +60,7 @@ public:
         const std::int64_t most = std::min(predicted_trials(look, rule_).value_or(rule_.ceiling), rule_.ceiling);
         expected_ = (most - look.trials) * static_cast<std::int64_t>(scenarios);
         line_.finish();
-        if (!quiet_) std::cerr << look_text(look, rule_) << "\n" << std::flush;
+        if (!quiet_) say(wrapped(look_text(look, rule_)) + "\n");
     }
 
 private:

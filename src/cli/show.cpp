@@ -1,9 +1,8 @@
 #include "command.hpp"
+#include "file_kind.hpp"
 
 #include <credence/error.hpp>
 #include <credence/worlds.hpp>
-
-#include <iostream>
 
 namespace credence::cli {
 
@@ -22,9 +21,9 @@ namespace {
 void show_scenarios(const std::vector<Declaration>& scenarios) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         if (scenarios.size() > 1)
-            std::cout << (i > 0 ? "\n" : "") << "# " << i + 1 << " of " << scenarios.size() << ": "
-                      << scenarios[i].name << "\n";
-        std::cout << scenario_text(scenarios[i]);
+            print((i > 0 ? "\n# " : "# ") + std::to_string(i + 1) + " of " + std::to_string(scenarios.size()) + ": " +
+                  scenarios[i].name + "\n");
+        print(scenario_text(scenarios[i]));
     }
 }
 
@@ -34,6 +33,7 @@ int show(const Parsed& parsed) {
     if (parsed.arguments.size() > 1) throw InputError("show takes one scenario. Give one file.");
     const std::vector<SweepAxis> axes = parsed.sweep();
     if (!parsed.arguments.empty()) {
+        check_kind(parsed.arguments.front(), {FileKind::scenario});
         show_scenarios(read_grid(parsed.arguments.front(), parsed.overrides(), axes));
         return 0;
     }
@@ -42,7 +42,7 @@ int show(const Parsed& parsed) {
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
     for (const Setting& setting : scenario.settings)
         for (const DescribedKey& key : keys)
-            if (key.key == setting.key) std::cout << "# " << key.help << "\n" << key.key << " = " << setting.value << "\n";
+            if (key.key == setting.key) print("# " + key.help + "\n" + key.key + " = " + setting.value + "\n");
     return 0;
 }
 

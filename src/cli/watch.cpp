@@ -1,14 +1,15 @@
 #include "command.hpp"
+#include "file_kind.hpp"
 #include "interrupt.hpp"
 #include "screen.hpp"
 
 #include <credence/error.hpp>
+#include <credence/text.hpp>
 #include <credence/watch.hpp>
 
 #include <poll.h>
 
 #include <chrono>
-#include <iostream>
 
 namespace credence::cli {
 
@@ -46,7 +47,7 @@ WatchLook follow(RunWatch& run, double every) {
     if (look.ended()) return look;
     Screen screen;
     for (; !look.ended() && !Interrupt::came(); look = run.look()) {
-        screen.draw(watch_text(look));
+        screen.draw(shown(watch_text(look)));
         wait(every);
     }
     return look;
@@ -64,15 +65,16 @@ int watch(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("watch takes one results file. Give FILE.h5.");
     const std::string format = parsed.choice("format");
     const double every = parsed.real("every", 2, 0.1, 3600);
+    check_kind(parsed.arguments.front(), {FileKind::results, FileKind::journal});
     RunWatch run(results_path(parsed.arguments.front()));
     if (format == "json" || parsed.has("once") || !can_draw()) {
         const WatchLook look = run.look();
-        std::cout << (format == "json" ? watch_json(look) : watch_text(look));
+        print(format == "json" ? watch_json(look) : watch_text(look));
         return 0;
     }
     const Interrupt interrupt;
     const WatchLook look = follow(run, every);
-    std::cout << watch_text(look);
+    print(watch_text(look));
     return look.ended() ? 0 : 3;
 }
 

@@ -1,0 +1,79 @@
+#include "file_kind.hpp"
+
+#include "../hdf5_read.hpp"
+#include "../readable_file.hpp"
+#include "../store_format.hpp"
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace credence::cli {
+
+namespace {
+
+/// Of an HDF5 file.
+FileKind kind_of_contents(const std::string& path) {
+    try {
+        const hdf5::QuietErrors quiet;
+        const hdf5::Handle root = hdf5::open_file(path);
+        const std::string format = hdf5::has_attribute(root, "format") ? hdf5::read_text(root, "format") : "";
+        if (format == results_format) return FileKind::results;
+        if (format == trajectories_format) return FileKind::trajectories;
+        if (hdf5::has_link(root, "error") || hdf5::has_link(root, "covariance")) return FileKind::record;
+        if (hdf5::has_link(root, "odometry") && hdf5::has_link(root, "measurement")) return FileKind::noise;
+    } catch (const hdf5::Error&) {
+    }
+    return FileKind::unknown;
+}
+
+/// Whether the first line that says something is `[section]`.
+bool is_scenario(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (const std::string bare = trimmed(line.substr(0, line.find('#'))); !bare.empty())
+            return bare.front() == '[' && bare.back() == ']' && is_utf8(bare);
+    return false;
+}
+
+struct Words {
+    std::string name, advice;
+};
+
+const Words& words_of(FileKind kind) {
+    static const Words words[] = {
+        {"a scenario", "`credence run` and `credence show` read it"},
+        {"a results file", "`credence report` reads it"},
+        {"the trajectory file of a replay", "analysis/plot.py and whatever opens HDF5 read it"},
+        {"a record", "`credence judge` reads it"},
+        {"a noise record", "`credence replay SCENARIO.ini --noise` reads it"},
+        {"the journal of a run", "`credence watch` follows it, and `credence run --resume` goes on with it"},
+    };
+    return words[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace
+
+FileKind kind_of(const std::string& path) {
+    std::string start;
+    try {
+        constexpr std::size_t enough = 4096;
+        start = start_of_file(path, enough);
+    } catch (const Unreadable&) {
+        return FileKind::unknown;
+    }
+    if (start.starts_with("credence-journal")) return FileKind::journal;
+    if (start.starts_with("\x89HDF")) return kind_of_contents(path);
+    return is_scenario(start) ? FileKind::scenario : FileKind::unknown;
+}
+
+void check_kind(const std::string& path, const std::vector<FileKind>& accepted) {
+    const FileKind kind = kind_of(path);
+    if (kind == FileKind::unknown || std::count(accepted.begin(), accepted.end(), kind) > 0) return;
+    throw InputError("cannot read " + path + " (it is " + words_of(kind).name + ", not " +
+                     words_of(accepted.front()).name + "). " + words_of(kind).advice + ".");
+}
+
+}  // namespace credence::cli

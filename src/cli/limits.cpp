@@ -1,0 +1,55 @@
+#include "limits.hpp"
+
+#include <credence/error.hpp>
+
+#include <omp.h>
+#include <pthread.h>
+#include <sys/resource.h>
+
+#include <limits>
+#include <string>
+
+namespace credence::cli {
+
+namespace {
+
+/// The largest scenarios (64 features, every estimator) take less than 128 kB on any thread.
+constexpr std::size_t least_stack = std::size_t{256} << 10;
+
+/// That of the thread that asks.
+std::size_t own_stack() {
+    std::size_t size = std::numeric_limits<std::size_t>::max();
+    pthread_attr_t attributes;
+    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return size;
+    pthread_attr_getstacksize(&attributes, &size);
+    pthread_attr_destroy(&attributes);
+    return size;
+}
+
+/// The smaller of the first thread's and of another one's, which OMP_STACKSIZE may set.
+std::size_t smallest_stack() {
+    rlimit limit{};
+    std::size_t smallest = getrlimit(RLIMIT_STACK, &limit) == 0 ? limit.rlim_cur : least_stack;
+#pragma omp parallel num_threads(2) reduction(min : smallest)
+    if (omp_get_thread_num() != 0) smallest = own_stack();
+    return smallest;
+}
+
+}  // namespace
+
+void check_stack() {
+    const std::size_t stack = smallest_stack();
+    if (stack >= least_stack) return;
+    throw InputError("cannot run with a stack of " + std::to_string(stack >> 10) + " kB (at least " +
+                     std::to_string(least_stack >> 10) + " kB are needed). Raise it by ulimit -s 8192, and leave "
+                     "OMP_STACKSIZE unset.");
+}
+
+void allow_open_files() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace credence::cli
