@@ -86,7 +86,7 @@ inline Type type_of<std::uint64_t>() { return {H5T_STD_U64LE, H5T_NATIVE_UINT64}
 using Extents = std::vector<hsize_t>;
 
 /// Where something is, for messages: `/group`, `/group/name`, `/group@attribute`. Names come from files: what could
-/// upset a terminal is shown as ?, and long ones are cut.
+/// upset a terminal is escaped, and long ones are cut.
 std::string place_of(const Handle& object);
 std::string place_of(const Handle& object, const std::string& name);
 std::string attribute_place(const Handle& object, const std::string& name);
