@@ -63,7 +63,8 @@ def study_figures(scenario, report, width):
     """(stem, figure) of each picture of a scenario; none where an arm has no trial to show."""
     for name, arm in scenario.items():
         if arm.attrs["counted_trials"] == 0:
-            print(f"no pictures of {scenario.name[1:]}: every trial of {name} failed.", file=sys.stderr)
+            why = f"every trial of {name} failed" if results.trials(arm) else "it is not run yet"
+            print(f"no pictures of {scenario.name[1:]}: {why}.", file=sys.stderr)
             return
     for name, draw in STUDY_PICTURES.items():
         if name in NEED_TRIALS and not results.keeps_trials(scenario):

@@ -91,6 +91,7 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
 /// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 % where there is one.
 Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
     const PairedComparison& paired = pair.comparison.figures.front().paired;
+    if (pair.not_run()) return Conclusion::not_run;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
     if (paired.pairs < 2) return Conclusion::not_shown;
     const Summary& difference = paired.difference;
@@ -113,7 +114,7 @@ void correct_together(std::vector<ComparedPair>& pairs) {
 }  // namespace
 
 const std::string& conclusion_name(Conclusion conclusion) {
-    static const std::string names[] = {"lower", "higher", "equal", "no difference shown"};
+    static const std::string names[] = {"lower", "higher", "equal", "no difference shown", "not run yet"};
     return names[static_cast<std::size_t>(conclusion)];
 }
 

@@ -15,7 +15,8 @@ Json side_json(const ComparedSide& side) {
             {"source", side.source},
             {"trials", side.trials},
             {"failed", side.failed},
-            {"diverged", side.diverged}};
+            {"diverged", side.diverged},
+            {"failed_trials", side.failed_trials()}};
 }
 
 Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
@@ -60,7 +61,7 @@ std::string csv_row(const ComparedPair& pair, std::size_t figure) {
           difference.ci95.high, paired.bootstrap95.low, paired.bootstrap95.high, difference.median,
           difference.standard_deviation, paired.wins_a, paired.wins_b, paired.ties, paired.wilcoxon_z,
           paired.wilcoxon_p, compared.holm_p, paired.effect_size, paired.variance_reduction})
-        text += "," + (std::isnan(value) ? "" : to_text(value));
+        text += "," + (std::isfinite(value) ? to_text(value) : "");
     return text + "\n";
 }
 

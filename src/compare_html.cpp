@@ -44,18 +44,24 @@ Html means_table(const ComparedPair& pair) {
     return table.html();
 }
 
-Html pair_section(const ComparedPair& pair, std::size_t number) {
+/// What the pairs say.
+Html pair_evidence(const ComparedPair& pair, std::size_t number) {
     const Comparison& comparison = pair.comparison;
-    const Html id = "pair:"_html + escaped(std::to_string(number));
-    return "<section class=\"scenario\" aria-labelledby=\""_html + id + "\">\n<h2 id=\""_html + id + "\">"_html +
-           escaped(comparison.scenario + ": " + comparison.name()) + "</h2>\n"_html +
-           lines(pair_head(pair).substr(1), "lines"_html) + difference_table(comparison) + means_table(pair) +
+    return difference_table(comparison) + means_table(pair) +
            folded("How the differences are spread", difference_spread_table(comparison)) + "<h3>Charts</h3>\n"_html +
            chart_group("Differences of pairs",
                        "Trial by trial, with the same draws. Left of 0, A is lower. The mark is the mean with its 95 % "
                        "interval.",
                        difference_charts(comparison, number)) +
-           no_distributions(pair.keep) + "</section>\n"_html;
+           no_distributions(pair.keep);
+}
+
+Html pair_section(const ComparedPair& pair, std::size_t number) {
+    const Html id = "pair:"_html + escaped(std::to_string(number));
+    return "<section class=\"scenario\" aria-labelledby=\""_html + id + "\">\n<h2 id=\""_html + id + "\">"_html +
+           escaped(pair.comparison.scenario + ": " + pair.comparison.name()) + "</h2>\n"_html +
+           lines(pair_head(pair).substr(1), "lines"_html) + (pair.not_run() ? Html() : pair_evidence(pair, number)) +
+           "</section>\n"_html;
 }
 
 Html origin_part(const CompareReport& report, const std::string& made_by) {

@@ -7,6 +7,7 @@
 
 #include "compare_words.hpp"
 #include "report_format.hpp"
+#include "report_words.hpp"
 
 namespace credence {
 
@@ -17,12 +18,23 @@ int decimals_of(const PairedComparison& paired) {
     return decimals_for(half_width(paired.difference.ci95));
 }
 
-/// `10000 pairs`, or from the fewest to the most.
+/// `10000 pairs`, or from the fewest to the most; of several comparisons that have run also how many.
 std::string pairs_text(const CompareReport& report) {
-    const auto [least, most] = std::minmax_element(report.pairs.begin(), report.pairs.end(),
-                                                   [](auto& p, auto& q) { return p.pairs() < q.pairs(); });
-    const std::string last = std::to_string(most->pairs()) + (most->pairs() == 1 ? " pair" : " pairs");
-    return least->pairs() == most->pairs() ? last : std::to_string(least->pairs()) + " to " + last;
+    std::vector<std::int64_t> pairs;
+    for (const ComparedPair& pair : report.pairs)
+        if (!pair.not_run()) pairs.push_back(pair.pairs());
+    if (pairs.empty()) return "not run yet";
+    const auto [least, most] = std::minmax_element(pairs.begin(), pairs.end());
+    return (*least == *most ? "" : std::to_string(*least) + " to ") + std::to_string(*most) +
+           (*most == 1 ? " pair" : " pairs") +
+           (pairs.size() > 1 ? " in each of " + std::to_string(pairs.size()) + " comparisons" : "");
+}
+
+/// Which of the two has no trial yet.
+std::string not_run_text(const ComparedPair& pair) {
+    if (pair.b.trials > 0) return pair.comparison.a + " is not run yet";
+    return (pair.a.trials > 0 ? "" : pair.comparison.a + " and ") + pair.comparison.b +
+           (pair.a.trials > 0 ? " is" : " are") + " not run yet";
 }
 
 /// How the ranks stand to a mean difference that is not shown.
@@ -90,7 +102,6 @@ std::string compare_head(const CompareReport& report) {
     const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
                                  [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
     std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
-    if (report.pairs.size() > 1) text += " in each of " + std::to_string(report.pairs.size()) + " comparisons";
     text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
     const bool trials = first_pair.keep == Keep::trials;
     return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
@@ -107,11 +118,16 @@ std::string conclusion_text(const ComparedPair& pair) {
     const double mean = paired.difference.mean;
     const Interval& interval = paired.difference.ci95;
     const std::string text = comparison.figures.front().name + ": ", both = comparison.a + " and " + comparison.b;
+    if (pair.not_run()) return text + not_run_text(pair);
     if (paired.pairs == 0) return text + "no pairs, nothing to compare";
+    if (pair.conclusion == Conclusion::not_shown && !std::isfinite(mean))
+        return text + "no difference shown (the mean of " + comparison.name() + " is not finite)";
     if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
     if (pair.conclusion == Conclusion::not_shown)
         return text + "no difference shown (" + comparison.name() + " is " + number(mean, digits) +
-               (std::isnan(interval.low) ? ", one pair)" : " " + bracketed(interval, digits) + ")") +
+               (paired.pairs == 1                       ? ", one pair"
+                : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
+                                                      : "") + ")" +
                despite(comparison);
     const bool lower = pair.conclusion == Conclusion::lower;
     const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
@@ -125,20 +141,24 @@ std::string conclusion_text(const ComparedPair& pair) {
 std::string compare_notes(const CompareReport& report) {
     std::string text;
     const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
-        const std::string name = pair.comparison.scenario + "/" + arm;
-        if (static_cast<double>(side.failed) > 0.01 * static_cast<double>(pair.trials))
-            text += "WARNING: " + std::to_string(side.failed) + " of " + std::to_string(pair.trials) + " trials of " +
-                    name + " failed and are left out, with their partners.\n";
-        if (side.diverged > 0)
-            text += "note: " + std::to_string(side.diverged) + " trials of " + name + " diverged; they are compared.\n";
+        const FailureWords words{"are left out, with their partners", "are compared"};
+        for (const std::string& line :
+             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.diverged},
+                           report.failed_limit, words))
+            text += line + "\n";
     };
     bool complete = true;
+    std::size_t not_run = 0;
     for (const ComparedPair& pair : report.pairs) {
         note(pair, pair.a, pair.comparison.a);
         note(pair, pair.b, pair.comparison.b);
         complete = complete && pair.complete;
+        not_run += pair.not_run();
     }
-    if (!complete) text += "note: a study is not complete.\n";
+    if (!complete)
+        text += "note: a study is not complete" +
+                (not_run == 0 ? "" : ": " + std::to_string(not_run) + " of " + std::to_string(report.pairs.size()) +
+                                         " comparisons are not run yet") + ".\n";
     if (!report.left_out.empty()) text += wrapped_list("note: left out:", report.left_out, 0) + "\n";
     return text;
 }
@@ -146,7 +166,8 @@ std::string compare_notes(const CompareReport& report) {
 std::string pair_head(const ComparedPair& pair) {
     const Comparison& comparison = pair.comparison;
     std::string text = "\n" + wrapped(comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title)) + "\n";
-    std::string sides = "A = " + comparison.a + ", B = " + comparison.b + ": " + std::to_string(pair.pairs()) + " pairs";
+    std::string sides = "A = " + comparison.a + ", B = " + comparison.b + ": " +
+                        (pair.not_run() ? not_run_text(pair) : std::to_string(pair.pairs()) + " pairs");
     if (pair.a.trials != pair.b.trials)
         sides += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
                  ", B has " + std::to_string(pair.b.trials);
@@ -163,7 +184,8 @@ std::string pair_head(const ComparedPair& pair) {
 
 std::string compare_text(const CompareReport& report) {
     std::string text = compare_head(report) + compare_notes(report) + "\n" + conclusions(report);
-    for (const ComparedPair& pair : report.pairs) text += pair_head(pair) + sizes(pair) + tests(pair);
+    for (const ComparedPair& pair : report.pairs)
+        text += pair_head(pair) + (pair.not_run() ? "" : sizes(pair) + tests(pair));
     return text +
            "\nd_z: mean of the differences / their standard deviation. reduction: (V_A + V_B) / V_(A-B): arms with "
            "draws of their own\nwould need that many times the trials. nees_ratio and nis_ratio are best at 1.\n";

@@ -31,11 +31,11 @@ private:
 
 class Judge {
 public:
-    Judge(const Evidence& evidence, double margin)
+    Judge(const Evidence& evidence, const Limits& limits)
         : evidence_(evidence),
           corrected_(0.05 / std::max(1.0, static_cast<double>(evidence.blocks.size()) * (evidence.steps + 1.0))),
           corrected_bias_(0.05 / std::max(1.0, static_cast<double>(evidence.bias.size()) * evidence.steps)) {
-        verdict_.margin = margin;
+        verdict_.limits = limits;
     }
 
     Consistency run() {
@@ -47,7 +47,7 @@ public:
 
 private:
     void look_at_block(const BlockEvidence& block) {
-        const double margin = verdict_.margin;
+        const double margin = verdict_.limits.margin;
         const Interval time = over_steps95(block);
         all_inside_ = all_inside_ && within(time, margin);
         note_needed_trials(block.run);
@@ -70,7 +70,8 @@ private:
     /// Student's interval alone is too narrow for few trials, because chi-square is skewed: a step must also lie beyond
     /// the exact bound that NEES (1 -+ margin) chi-square(dimension) has, which needs no estimated deviation. So must all steps.
     bool beyond_chi_square(const Estimate& step, Side side, double degrees) const {
-        const double scaled = step.value / (1 + (side == Side::above ? verdict_.margin : -verdict_.margin));
+        const double margin = verdict_.limits.margin,
+                     scaled = step.value / (1 + (side == Side::above ? margin : -margin));
         const Interval band = chi_square_band(degrees, corrected_.alpha());
         return side == Side::above ? scaled > band.high : scaled < band.low;
     }
@@ -102,8 +103,8 @@ private:
     /// Trials that bring the time-averaged interval off the margin's edge, if the mean stays: every block must get
     /// inside, but one outside is enough.
     void note_needed_trials(const Moments& run) {
-        const double off = std::abs(run.mean - 1), slack = std::abs(off - verdict_.margin);
-        const bool inside = off < verdict_.margin;
+        const double off = std::abs(run.mean - 1), slack = std::abs(off - verdict_.limits.margin);
+        const bool inside = off < verdict_.limits.margin;
         const double needed = trials_needed(inside ? 0.05 : corrected_.alpha(), run.standard_deviation / slack);
         if (!std::isfinite(needed)) return;
         if (inside) needed_inside_ = std::max(needed_inside_, needed);
@@ -137,6 +138,17 @@ private:
     Consistency verdict_;
 };
 
+/// The verdict on the trials that did not fail.
+Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
+    if (evidence.trials == 1) return judge_single_trial(evidence, limits);
+    Consistency verdict = Judge(evidence, limits).run();
+    if (evidence.blocks.empty()) return verdict;
+    caution_about_whiteness(evidence, verdict);
+    caution_about_innovations(evidence, verdict);
+    caution_about_shape(evidence, verdict);
+    return verdict;
+}
+
 }  // namespace
 
 std::string listed(const std::string& what, const std::vector<int>& numbers) {
@@ -153,19 +165,23 @@ std::string listed(const std::string& what, const std::vector<int>& numbers) {
 }
 
 const std::string& verdict_name(Verdict verdict) {
-    static const std::string names[] = {"consistent", "optimistic", "pessimistic", "mixed", "undecided"};
+    static const std::string names[] = {"consistent", "optimistic", "pessimistic", "mixed", "undecided", "failed"};
     return names[static_cast<int>(verdict)];
 }
 
 Interval over_steps95(const BlockEvidence& block) { return t_interval(block.run); }
 
-Consistency judge(const Evidence& evidence, double margin) {
-    if (evidence.trials == 1) return judge_single_trial(evidence, margin);
-    Consistency verdict = Judge(evidence, margin).run();
-    if (evidence.blocks.empty()) return verdict;
-    caution_about_whiteness(evidence, verdict);
-    caution_about_innovations(evidence, verdict);
-    caution_about_shape(evidence, verdict);
+bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
+    constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+    return static_cast<double>(failed) > share * static_cast<double>(trials) * (1 + rounding);
+}
+
+Consistency judge(const Evidence& evidence, const Limits& limits) {
+    Consistency verdict = judge_survivors(evidence, limits);
+    if (too_many_failed(evidence.failed_trials(), evidence.all_trials, limits.failed)) {
+        verdict.verdict = Verdict::failed;
+        verdict.trials_to_decide = 0;
+    }
     return verdict;
 }
 

@@ -49,7 +49,7 @@ private:
 };
 
 /// The verdict on one trial: its NIS and the whiteness of its innovations.
-Consistency judge_single_trial(const Evidence& evidence, double margin);
+Consistency judge_single_trial(const Evidence& evidence, const Limits& limits);
 
 /// Adds the cautions to a verdict.
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);

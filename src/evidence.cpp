@@ -107,11 +107,22 @@ CredibilityEvidence credibility_evidence(const ScenarioResults& results, const A
     return evidence;
 }
 
+void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
+    evidence.trials = arm.counted;
+    evidence.all_trials = results.trials;
+    const std::vector<std::int64_t> statuses = status_counts(results, arm);
+    for (std::size_t status = 0; status < statuses.size(); ++status)
+        if (failed(static_cast<Status>(status))) evidence.left_out += statuses[status];
+    evidence.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
+}
+
 }  // namespace
+
+bool Whiteness::known() const { return std::isfinite(scaled); }
 
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
-    evidence.trials = arm.counted;
+    count_trials(results, arm, evidence);
     evidence.steps = results.steps();
     for (std::size_t f = 0; f < results.figures.size(); ++f) {
         const Figure& figure = results.figures[f];

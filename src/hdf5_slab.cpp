@@ -51,14 +51,16 @@ std::vector<std::string> fixed_texts(const Handle& attribute, const Handle& type
 
 }  // namespace
 
-RealDataset::RealDataset(const Handle& group, const std::string& name)
+RealDataset::RealDataset(const Handle& group, const std::string& name, Numbers numbers)
     : checked_(group, name),
       dataset_(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, checked_.place(), "is no readable dataset"),
       chunk_(checked_.extents().size(), 1) {
     const Handle type(H5Dget_type(dataset_.id()), H5Tclose, place(), "HDF5 cannot read its type");
-    if (H5Tget_class(type.id()) != H5T_FLOAT)
+    const H5T_class_t kind = H5Tget_class(type.id());
+    if (kind != H5T_FLOAT && numbers == Numbers::floating)
         throw Error(place(), "does not hold floating-point numbers", "Write it as doubles, or as singles");
-    epsilon_ = epsilon_of(type);
+    if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(place(), "does not hold numbers", "Write it as integers");
+    if (kind == H5T_FLOAT) epsilon_ = epsilon_of(type);
     const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place(), "HDF5 cannot read its layout");
     if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return;
     H5Pget_chunk(creation.id(), static_cast<int>(chunk_.size()), chunk_.data());

@@ -6,14 +6,17 @@
 
 namespace credence::hdf5 {
 
-/// A dataset of floating-point numbers of any size that is read in parts, as doubles.
+/// Which numbers a dataset may hold.
+enum class Numbers { floating, any };
+
+/// A dataset of numbers of any size that is read in parts, as doubles.
 class RealDataset {
 public:
-    RealDataset(const Handle& group, const std::string& name);
+    RealDataset(const Handle& group, const std::string& name, Numbers numbers = Numbers::floating);
 
     const std::string& place() const { return checked_.place(); }
     const Extents& extents() const { return checked_.extents(); }
-    /// Distance of 1 from the next number in the file's type, at least 2^-52.
+    /// Distance of 1 from the next number in the file's floating type, at least 2^-52.
     double epsilon() const { return epsilon_; }
     /// What is stored together: the extents of a chunk, or 1 in each dimension.
     const Extents& chunk() const { return chunk_; }

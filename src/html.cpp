@@ -54,7 +54,7 @@ Html element(std::string_view name, const Html& content, const Html& attributes)
 }
 
 Html figure_as(double value, const std::string& text) {
-    if (std::isnan(value)) return dash();
+    if (!std::isfinite(value)) return dash();
     return element("data", escaped(text), "value=\""_html + escaped(to_text(value)) + "\""_html);
 }
 
@@ -65,19 +65,19 @@ Html figure_count(double value) { return figure_as(value, short_number(value)); 
 Html figure_within(double value, double uncertainty) { return figure(value, decimals_for(uncertainty)); }
 
 Html figure_interval(const Interval& interval, int digits) {
-    if (std::isnan(interval.low) || std::isnan(interval.high)) return dash();
+    if (!std::isfinite(half_width(interval))) return dash();
     return "["_html + figure(interval.low, digits) + ", "_html + figure(interval.high, digits) + "]"_html;
 }
 
 Html figure_with_interval(double mean, const Interval& interval) {
     const double half = half_width(interval);
     const int digits = decimals_for(half);
-    if (std::isnan(mean) || std::isnan(half)) return figure(mean, digits);
+    if (!std::isfinite(mean) || !std::isfinite(half)) return figure(mean, digits);
     return figure(mean, digits) + " ± "_html + escaped(number(half, digits));
 }
 
 std::string short_number(double value) {
-    if (std::isnan(value)) return "-";
+    if (!std::isfinite(value)) return "-";
     char buffer[64];
     const bool whole = std::abs(value) < 1e15 && (std::abs(value) >= 1e5 || value == std::nearbyint(value));
     const auto end = whole ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 0).ptr

@@ -1,8 +1,10 @@
 #include "judgement_file.hpp"
 
 #include <credence/scenario.hpp>
+#include <credence/text.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -99,6 +101,27 @@ std::vector<StateBlock> read_blocks(const Handle& root, int n) {
     return parse_blocks("", n, place);
 }
 
+/// The dataset `steps` [trial]: how many steps each run has.
+std::vector<int> read_steps(const RealDataset& dataset, const RecordShape& shape) {
+    const Extents& extents = dataset.extents();
+    const Extents all{static_cast<hsize_t>(shape.trials)};
+    if (extents != all)
+        throw Error(dataset.place(), "does not fit: it is " + extents_text(extents) + ", and there are " +
+                                         std::to_string(shape.trials) + " trials",
+                    "Write it as [trial], the number of steps of each");
+    std::vector<double> values(static_cast<std::size_t>(shape.trials));
+    dataset.read({0}, all, values);
+    std::vector<int> steps;
+    for (const double value : values) {
+        if (!(value >= 1 && value <= shape.steps && value == std::nearbyint(value)))
+            throw Error(dataset.place(),
+                        "trial " + std::to_string(steps.size()) + " (counted from 0) has " + to_text(value) + " steps",
+                        "Write whole numbers from 1 to " + std::to_string(shape.steps) + ", the steps of the file");
+        steps.push_back(static_cast<int>(value));
+    }
+    return steps;
+}
+
 }  // namespace
 
 RecordFile::RecordFile(const Handle& root, std::int64_t part_numbers)
@@ -121,12 +144,46 @@ RecordFile::RecordFile(const Handle& root, std::int64_t part_numbers)
     shape_.n = static_cast<int>(extents[rank - 1]);
     shape_.blocks = read_blocks(root, shape_.n);
     shape_.covariance_epsilon = covariance_.epsilon();
-    if (!innovation_) return;
+    if (innovation_) add_innovations();
+    if (hdf5::has_link(root, "steps"))
+        shape_.declared = read_steps(RealDataset(root, "steps", hdf5::Numbers::any), shape_);
+    else
+        shape_.longest = longest_trial();
+}
+
+void RecordFile::add_innovations() {
     require_squares(*innovation_, *innovation_covariance_, "innovation", "innovation_covariance");
     require_same_steps(error_, *innovation_);
-    require_between(*innovation_, rank - 1, largest_rows, "rows");
+    require_between(*innovation_, error_.extents().size() - 1, largest_rows, "rows");
     shape_.m = static_cast<int>(innovation_->extents().back());
     shape_.innovation_epsilon = innovation_covariance_->epsilon();
+}
+
+/// The errors alone are read, and mostly only the first of them: a trial with the last step of all ends the search.
+int RecordFile::longest_trial() const {
+    int longest = 0;
+    std::vector<double> errors;
+    for (std::int64_t trial = 0; trial < shape_.trials && longest < shape_.steps;) {
+        std::int64_t trials = 1;
+        for (int step = 0; step < shape_.steps;) {
+            const RecordPart part = part_at(trial, step);
+            longest = std::max(longest, last_step(part, errors));
+            step += part.steps;
+            trials = part.trials;
+        }
+        trial += trials;
+    }
+    return longest;
+}
+
+/// Steps up to the last one of a part that some trial has, counted from the first of all.
+int RecordFile::last_step(const RecordPart& part, std::vector<double>& errors) const {
+    read(error_, part, errors);
+    const auto n = static_cast<std::size_t>(shape_.n), steps = static_cast<std::size_t>(part.steps);
+    int last = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+        if (!std::isnan(errors[i])) last = std::max(last, part.first_step + static_cast<int>(i / n % steps) + 1);
+    return last;
 }
 
 RecordPart RecordFile::part_at(std::int64_t trial, int step) const {

@@ -39,6 +39,9 @@ public:
 
 private:
     void read(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
+    void add_innovations();
+    int longest_trial() const;
+    int last_step(const RecordPart& part, std::vector<double>& errors) const;
 
     hdf5::RealDataset error_, covariance_;
     std::optional<hdf5::RealDataset> innovation_, innovation_covariance_;

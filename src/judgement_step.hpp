@@ -21,8 +21,16 @@ struct RecordShape {
     int m = 0;                       ///< rows of an innovation; 0 without innovations
     std::vector<StateBlock> blocks;  ///< all, and those of the attribute `blocks`
     double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
+    std::vector<int> declared;       ///< [trials] steps of each trial by the dataset `steps`; empty without it
+    int longest = 0;                 ///< steps of the longest trial, by its errors
 
     bool has_innovations() const { return m > 0; }
+    /// Steps that a trial must have.
+    int steps_of(std::int64_t trial) const {
+        return declared.empty() ? longest : declared[static_cast<std::size_t>(trial)];
+    }
+    /// Whether the file's step is one of the trial's: what stands behind its declared end is not looked at.
+    bool covers(std::int64_t trial, int step) const { return declared.empty() || step < steps_of(trial); }
 };
 
 /// A step of a record as it stands in the file.
@@ -35,18 +43,31 @@ struct RecordStep {
     const double* innovation_covariance = nullptr;  ///< [m, m]
 };
 
-/// A step whose values are as they must be.
+/// What a record says of a step.
+enum class Presence {
+    absent,   ///< all of its error and of its covariance is NaN
+    there,
+    broken,   ///< something of it is not finite
+};
+
+/// A step that is there; of a broken one only what is wrong.
 struct CheckedStep {
     Eigen::VectorXd e;
     Eigen::MatrixXd P;       ///< symmetric
     std::vector<int> rows;   ///< observed rows of the innovation
     Eigen::VectorXd nu;      ///< [rows]
     Eigen::MatrixXd S;       ///< [rows, rows], symmetric
+    std::string broken;      ///< such as `the covariance is not finite`
 };
 
-/// Whether the step exists; then `checked` holds its values. Throws hdf5::Error, naming dataset, trial and step, where
-/// an error or innovation is infinite, an error is NaN and another is not, or a covariance is not finite or symmetric.
-bool check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked);
+/// Reads a step. It is broken where its error is NaN and its covariance is not, or where some of its error, of its
+/// covariance, of an observed row of its innovation or of that row's covariance is not finite. Throws hdf5::Error,
+/// naming dataset, trial and step, where a covariance is not symmetric.
+Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked);
+
+/// What of a step is beyond the bound at which a trial counts as diverged, as in a study: its error or its covariance.
+/// Empty where nothing is.
+std::string divergence_of(const CheckedStep& step);
 
 /// The figures of a record, whose components are called x0, x1 ...
 StateFigures record_figures(const RecordShape& shape);

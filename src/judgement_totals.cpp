@@ -39,18 +39,36 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
 
 void RecordTotals::add(const RecordStep& step) {
     if (step.step == 0) start_trial();
-    const bool exists = check_step(step, shape_, checked_);
-    if (exists && !failed(status_)) add_figures(step, checked_);
-    if (!exists) products_.leave_out(size(step.step));
+    if (!failed(status_)) add_covered(step);  // what a filter says after it failed is not looked at
     if (step.step + 1 < shape_.steps) return;
-    if (present_.empty() && !failed(status_))
-        fail({step.trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    if (!failed(status_)) check_end(step.trial);
     end_trial(step.trial);
+}
+
+void RecordTotals::add_covered(const RecordStep& step) {
+    const bool covered = shape_.covers(step.trial, step.step);
+    switch (covered ? check_step(step, shape_, checked_) : Presence::absent) {
+        case Presence::there: return add_figures(step, checked_);
+        case Presence::broken: return note(step, Status::non_finite, checked_.broken);
+        case Presence::absent: break;
+    }
+    products_.leave_out(size(step.step));
+}
+
+/// A trial that ends before it should has failed, unless the record declares that it is a shorter one.
+void RecordTotals::check_end(std::int64_t trial) {
+    if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);
+    if (end == asked) return;
+    const std::string of = "the trial ends after " + std::to_string(end) + " of ";
+    const bool declared = !shape_.declared.empty();
+    note({trial, end}, Status::non_finite,
+         of + (declared ? "the " : "") + std::to_string(asked) + " steps" +
+             (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
 }
 
 void RecordTotals::start_trial() {
     status_ = Status::completed;
-    status_pose_ = -1;
     present_.clear();
     products_.start_trial();
 }
@@ -59,19 +77,19 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     const std::size_t k = size(step.step);
     double* values = &figure(0, k);
     const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
-    if (!trouble.empty()) return fail(step, Status::covariance_not_positive_definite, trouble);
+    if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
     if (!figures_add_up(values, figures_.list.size()))
-        return fail(step, Status::non_finite, "a figure of this step is beyond 1e140");
+        return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
+    if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
+        note(step, Status::diverged, beyond);
     present_.push_back(k);
     keep_details(step.trial, k, checked);
     products_.correlate(k);
 }
 
-void RecordTotals::fail(const RecordStep& step, Status status, const std::string& what) {
+void RecordTotals::note(const RecordStep& step, Status status, const std::string& what) {
     status_ = status;
-    status_pose_ = step.step + 1;
-    ++record_.trouble_count;
-    if (record_.troubles.size() < most_troubles) record_.troubles.push_back({step.trial, step.step, what});
+    trouble_ = {step.trial, step.step, what, status};
 }
 
 void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
@@ -83,6 +101,10 @@ void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const Checked
 
 void RecordTotals::end_trial(std::int64_t trial) {
     add_columns(trial);
+    if (status_ != Status::completed) {
+        ++record_.trouble_count;
+        if (record_.troubles.size() < most_troubles) record_.troubles.push_back(trouble_);
+    }
     if (!failed(status_)) return add_totals();
     if (trial >= record_.results.detailed()) return;
     const auto forget = [&](std::vector<double>& values, std::size_t row) {
@@ -102,7 +124,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
     };
     const double count = static_cast<double>(present_.size());
     row[column_status] = static_cast<double>(status_);
-    row[column_status_pose] = status_pose_;
+    row[column_status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     row[column_unseen] = -1;
     if (!fill_failed(record_.results.columns, row)) {
         row[column_trace_P] = figure(figures_.variance, present_.back());

@@ -33,8 +33,10 @@ private:
     double& figure(std::size_t f, std::size_t k) { return values_[k * figures_.list.size() + f]; }
 
     void start_trial();
+    void add_covered(const RecordStep& step);
     void add_figures(const RecordStep& step, const CheckedStep& checked);
-    void fail(const RecordStep& step, Status status, const std::string& what);
+    void note(const RecordStep& step, Status status, const std::string& what);
+    void check_end(std::int64_t trial);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
     void end_trial(std::int64_t trial);
     void add_columns(std::int64_t trial);
@@ -52,7 +54,7 @@ private:
     // Of the trial under way.
     CheckedStep checked_;
     Status status_ = Status::completed;
-    int status_pose_ = -1;
+    RecordTrouble trouble_;                      ///< why it failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
     LagProducts products_;

@@ -66,7 +66,7 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     std::vector<double> differences, paired_a, paired_b;
     std::vector<double> by_trial(std::min(a.size(), b.size()), nan);  // the bootstrap's blocks go by trial
     for (std::size_t i = 0; i < by_trial.size(); ++i) {
-        if (std::isnan(a[i]) || std::isnan(b[i])) continue;
+        if (std::isnan(a[i] - b[i])) continue;  // also where both are infinite
         by_trial[i] = a[i] - b[i];
         differences.push_back(by_trial[i]);
         paired_a.push_back(a[i]);

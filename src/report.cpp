@@ -6,6 +6,7 @@
 #include <credence/text.hpp>
 
 #include "nan.hpp"
+#include "report_words.hpp"
 #include "scenario_values.hpp"
 
 #include <algorithm>
@@ -65,48 +66,47 @@ FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm
 
 }  // namespace
 
-ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin) {
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
+                     const Limits& limits) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
-    report.consistency = judge(report.evidence, margin);
-    const std::vector<std::int64_t> statuses = status_counts(results, arm);
-    for (std::size_t status = 0; status < statuses.size(); ++status)
-        if (failed(static_cast<Status>(status))) report.failed += statuses[status];
-    report.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
+    report.consistency = judge(report.evidence, limits);
+    report.failed = report.evidence.left_out;
+    report.diverged = report.evidence.diverged;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
     return report;
 }
 
-Report make_report(const Study& study, double margin) {
+Report make_report(const Study& study, const Limits& limits) {
     Report report;
     report.source = "study " + study_hash(study);
     report.root_seed = study.root_seed;
     report.trials = study.trials;
     report.complete = study.complete;
     report.keep = keep_of(study);
-    report.margin = margin;
+    report.limits = limits;
     report.pairs = planned_against_partners(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         const WithTotals with_totals(results);
         for (const ArmResults& arm : (*with_totals).arms)
-            report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, margin));
+            report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, limits));
     }
     return report;
 }
 
-Report make_record_report(JudgedRecord record, const std::string& path, double margin) {
+Report make_record_report(JudgedRecord record, const std::string& path, const Limits& limits) {
     ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
     std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell
     Report report;
     report.source = "record " + printable(path, path.size());
-    report.margin = margin;
+    report.limits = limits;
     report.troubles = record.troubles;
     results.scenario.title.clear();  // the source says it
     report.scenarios.push_back(results.scenario);
     constexpr std::uint64_t bootstrap_seed = 1;
-    report.arms.push_back(report_arm(results, arm, bootstrap_seed, margin));
+    report.arms.push_back(report_arm(results, arm, bootstrap_seed, limits));
     return report;
 }
 
@@ -114,7 +114,7 @@ void require_consistent(const Report& report) {
     std::vector<std::string> others;
     for (const ArmReport& arm : report.arms)
         if (arm.consistency.verdict != Verdict::consistent)
-            others.push_back(arm.scenario + "/" + arm.arm + " is " + verdict_name(arm.consistency.verdict));
+            others.push_back(arm.scenario + "/" + arm.arm + " " + verdict_clause(arm));
     if (!others.empty()) throw Failure("required consistent, but " + joined(others) + ".");
 }
 

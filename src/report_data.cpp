@@ -7,6 +7,7 @@
 #include "nan.hpp"
 #include "report_json.hpp"
 #include "report_sweep.hpp"
+#include "report_words.hpp"
 
 #include <cmath>
 
@@ -45,12 +46,14 @@ Json findings_json(const std::vector<Finding>& findings) {
 
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
-              {"diverged", arm.diverged}};
+              {"diverged", arm.diverged}, {"failed_trials", arm.failed_trials()}};
     for (const Declaration& scenario : report.scenarios)
         if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
     for (const FigureReport& figure : arm.figures) json[figure.name] = figure_json(figure);
     json["verdict"] = verdict_name(arm.consistency.verdict);
-    json["margin"] = arm.consistency.margin;
+    if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;
+    json["margin"] = arm.consistency.limits.margin;
+    json["failed_limit"] = arm.consistency.limits.failed;
     if (arm.consistency.trials_to_decide > 0) json["trials_to_decide"] = arm.consistency.trials_to_decide;
     json["findings"] = findings_json(arm.consistency.findings);
     json["cautions"] = findings_json(arm.consistency.cautions);
@@ -65,14 +68,14 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     return json;
 }
 
-/// One row, with `end` behind its figures; cells that are NaN stay empty.
+/// One row, with `end` behind its figures; cells that are no numbers stay empty.
 std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
                     const std::optional<PublishedPlace>& published, const std::string& end) {
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
     const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
     for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
                                s.standard_deviation, place.value, place.percentile})
-        cells.push_back(std::isnan(value) ? "" : to_text(value));
+        cells.push_back(std::isfinite(value) ? to_text(value) : "");
     cells.push_back(end);
     return joined(cells, ",") + "\n";
 }
@@ -148,9 +151,10 @@ std::string report_csv(const Report& report) {
     const SweepColumns sweep(report);
     std::string text =
         "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
-        "published,percentile,verdict" + sweep.heads() + "\n";
+        "published,percentile,verdict" + sweep.heads() + ",failed_trials\n";
     for (const ArmReport& arm : report.arms) {
-        const std::string end = verdict_name(arm.consistency.verdict) + sweep.cells(arm.scenario);
+        const std::string end =
+            verdict_word(arm) + sweep.cells(arm.scenario) + "," + std::to_string(arm.failed_trials());
         for (const FigureReport& figure : arm.figures)
             text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure.name,
                              figure.unit},
@@ -160,7 +164,8 @@ std::string report_csv(const Report& report) {
     for (const Comparison& pair : report.pairs)
         for (const ComparedFigure& figure : pair.figures)
             text += csv_row({pair.scenario, pair.name(), std::to_string(figure.paired.pairs), "", figure.name, figure.unit},
-                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt, sweep.cells(pair.scenario));
+                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt,
+                            sweep.cells(pair.scenario) + ",");
     return text;
 }
 

@@ -27,7 +27,7 @@ std::string padded(const std::string& text, int width, bool right) {
 }
 
 std::string number(double value, int digits) {
-    if (std::isnan(value)) return "-";
+    if (!std::isfinite(value)) return "-";
     char buffer[64];
     const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -digits) && digits >= 6;
     if (vanishes) std::snprintf(buffer, sizeof buffer, "%.2g", value);
@@ -44,7 +44,7 @@ int decimals_for(double uncertainty) {
 std::string with_interval(double mean, const Interval& interval) {
     const double half = half_width(interval);
     const int digits = decimals_for(half);
-    return std::isnan(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
+    return !std::isfinite(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
 }
 
 std::string duration_text(double seconds) {
@@ -55,7 +55,8 @@ std::string duration_text(double seconds) {
 }
 
 std::string bracketed(const Interval& interval, int digits) {
-    return std::isnan(interval.low) ? "-" : "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
+    if (!std::isfinite(half_width(interval))) return "-";
+    return "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
 }
 
 std::string percent(double share) {

@@ -11,7 +11,7 @@ namespace credence {
 /// Left- or right-pads to a width counted in characters, not bytes.
 std::string padded(const std::string& text, int width, bool right = true);
 
-/// `-` for NaN.
+/// `-` for what is not finite: neither `nan` nor `inf` gets into a sentence.
 std::string number(double value, int digits);
 
 /// Decimals that show two digits of the uncertainty, at most 6.

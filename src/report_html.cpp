@@ -7,6 +7,7 @@
 #include "report_words.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace credence {
 
@@ -37,11 +38,8 @@ Html head(const std::string& title) {
 }
 
 Html intro(const Report& report, const PageOrigin& origin) {
-    const std::int64_t trials = report.arms.empty() ? 0 : report.arms.front().trials;
-    const std::string size = std::to_string(trials) + (trials == 1 ? " trial" : " trials") +
-                             (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "");
     Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
-                element("p", escaped(origin.file + ": " + size + "."), "class=\"source\""_html) + "\n"_html +
+                element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) + "\n"_html +
                 element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
     Html warnings;
     for (const std::string& warning : warnings_of(report)) warnings += element("li", escaped(warning));
@@ -54,12 +52,10 @@ Html contents(const Report& report) {
     Html items;
     for (const Declaration& scenario : report.scenarios) {
         if (!has_section(report, scenario.name)) continue;
-        std::vector<Verdict> verdicts;  // each of them once
-        for (const ArmReport* arm : part_of(report, scenario).arms)
-            if (std::find(verdicts.begin(), verdicts.end(), arm->consistency.verdict) == verdicts.end())
-                verdicts.push_back(arm->consistency.verdict);
+        std::set<std::string> shown;  // each badge once
         Html badges;
-        for (const Verdict verdict : verdicts) badges += " "_html + badge(verdict);
+        for (const ArmReport* arm : part_of(report, scenario).arms)
+            if (shown.insert(verdict_word(*arm)).second) badges += " "_html + badge(*arm);
         items += element("li", "<a href=\"#"_html + section_id(scenario.name) + "\">"_html + escaped(scenario.name) +
                                    "</a>"_html + badges);
     }
@@ -68,12 +64,18 @@ Html contents(const Report& report) {
            "\n</nav>\n"_html;
 }
 
+/// All that the trials of a scenario say.
+Html evidence_of_trials(const Part& part) {
+    if (!has_run(part.report, part.scenario.name)) return {};
+    return figure_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);
+}
+
 Html scenario_section(const Part& part) {
     const std::string& title = part.scenario.title;
     return "<section class=\"scenario\" aria-labelledby=\""_html + section_id(part.scenario.name) + "\">\n"_html +
            element("h2", escaped(part.scenario.name), "id=\""_html + section_id(part.scenario.name) + "\""_html) +
-           "\n"_html + (title.empty() ? Html() : paragraph(title)) + findings(part) + figure_tables(part) +
-           evidence_tables(part) + charts(part) + step_tables(part) + scenario_part(part) + "</section>\n"_html;
+           "\n"_html + (title.empty() ? Html() : paragraph(title)) + findings(part) + evidence_of_trials(part) +
+           scenario_part(part) + "</section>\n"_html;
 }
 
 }  // namespace

@@ -34,8 +34,11 @@ bool has_section(const Report& report, const std::string& scenario);
 /// The id of a scenario's section.
 inline Html section_id(const std::string& scenario) { return "scenario:"_html + escaped(scenario); }
 
-/// A verdict as a shape, a word and a colour.
-Html badge(Verdict verdict);
+/// An arm's verdict as a shape, a word and a colour.
+Html badge(const ArmReport& arm);
+
+/// How many trials of an arm failed; `-` where it is not run yet.
+Html failed_count(const ArmReport& arm);
 
 /// How many arms have which verdict, in one sentence.
 std::string verdict_counts(const Report& report);

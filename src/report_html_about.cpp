@@ -20,6 +20,12 @@ std::string fact(const RunFacts& facts, const std::string& name) {
     return {};
 }
 
+/// The options that give the same verdicts again.
+std::string limits_options(const Limits& limits) {
+    const bool usual = limits.failed == Limits().failed;
+    return " --margin " + to_text(limits.margin) + (usual ? "" : " --failed " + to_text(limits.failed));
+}
+
 /// The command that makes a study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
     std::string line = "credence run";
@@ -47,7 +53,8 @@ margin.
 Consistent: the 95 % interval of NEES/dim over the steps lies within 1 ± margin for the whole state and every block, and
 nothing else is found. Optimistic or pessimistic: some block, over all steps or at one, lies wholly above or below it,
 with
-Bonferroni's correction; mixed: both. Undecided: neither could be shown.</dd>
+Bonferroni's correction; mixed: both. Undecided: neither could be shown. Failed: more than the stated share of the
+trials failed, whatever the others say.</dd>
 <dt>Bands</dt>
 <dd>Where the mean of a consistent filter's NEES or NIS lies 95 % of the time: quantiles of χ²(N dim)/(N dim), or of
 χ²(Σm)/Σm;
@@ -106,7 +113,8 @@ Html provenance(const Report& report, const PageOrigin& origin) {
         add(table, "trials", std::to_string(report.arms.front().trials));
         add(table, "steps", std::to_string(report.arms.front().evidence.steps));
     }
-    add(table, "margin", to_text(report.margin));
+    add(table, "margin", to_text(report.limits.margin));
+    add(table, "share of trials that may fail", to_text(report.limits.failed));
     for (auto [name, value] : origin.run) {
         std::replace(name.begin(), name.end(), '_', ' ');
         add(table, name, value);
@@ -117,12 +125,12 @@ Html provenance(const Report& report, const PageOrigin& origin) {
 }
 
 Html reproduction(const Report& report, const PageOrigin& origin) {
-    const std::string file = shell_word(origin.file), margin = " --margin " + to_text(report.margin);
+    const std::string file = shell_word(origin.file), limits = limits_options(report.limits);
     Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
-                command("credence judge " + file + margin + " --format html -o page.html") +
-                command("credence judge " + file + margin + " --format json");
+                command("credence judge " + file + limits + " --format html -o page.html") +
+                command("credence judge " + file + limits + " --format json");
         return html + "</section>\n"_html;
     }
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
@@ -137,8 +145,8 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
                   "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
     html +=
         "<p>This page, and the same with every digit:</p>\n"_html +
-        command("credence report " + file + margin + " --format html -o page.html") +
-        command("credence report " + file + margin + " --format json");
+        command("credence report " + file + limits + " --format html -o page.html") +
+        command("credence report " + file + limits + " --format json");
     return html + "</section>\n"_html;
 }
 

@@ -64,7 +64,7 @@ void each_block(const Part& part, const Rows& rows, const Visit& visit) {
 }
 
 std::string interval_text(const Interval& interval) {
-    return std::isnan(interval.low) ? ""
+    return !std::isfinite(half_width(interval)) ? ""
                                     : ", 95 % " + short_number(interval.low) + " to " + short_number(interval.high);
 }
 
@@ -114,7 +114,7 @@ Html legend(const Part& part) {
 
 Html equivalence_chart(const Part& part) {
     const Rows rows = rows_of(part);
-    const double margin = part.report.margin;
+    const double margin = part.report.limits.margin;
     Range range;
     for (const double end : {1 - 1.6 * margin, 1 + 1.6 * margin}) range.include(end);
     each_block(part, rows, [&](std::size_t, std::size_t, const BlockEvidence& block) {

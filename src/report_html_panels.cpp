@@ -188,6 +188,7 @@ Html whiteness_chart(const Part& part) {
         svg.line({left, axes.y(0)}, {right, axes.y(0)}, "ideal");
         std::string described = part.arms[i]->arm + ": ";
         for (const Whiteness& lag : lags) {
+            if (!lag.known()) continue;
             const std::string says = "lag " + std::to_string(lag.lag) + ": " + short_number(lag.scaled) +
                                      " (white within ± " + short_number(lag.bound) + ")";
             svg.line({x(lag.lag), axes.y(0)}, {x(lag.lag), axes.y(lag.scaled)}, "line " + series_class(i));

@@ -18,7 +18,8 @@ constexpr std::size_t most_rows = 60;
 Html cell(double value) { return escaped(short_number(value)); }
 
 Html cell(const Interval& interval) {
-    return escaped(std::isnan(interval.low) ? "-" : short_number(interval.low) + " to " + short_number(interval.high));
+    if (!std::isfinite(half_width(interval))) return "-"_html;
+    return escaped(short_number(interval.low) + " to " + short_number(interval.high));
 }
 
 /// The caption, and which steps have a row.

@@ -11,11 +11,13 @@ namespace {
 constexpr char text[] =
     R"(:root { --paper: #fff; --ink: #1b1f24; --soft: #57606a; --line: #d0d7de; --panel: #f6f8fa; --link: #0a5a9c;
   --s0: #00629f; --s1: #b34700; --s2: #00734f; --s3: #9a3f78; --s4: #b37a00; --s5: #3a8fc2; --band: #b6bec8; --joint: #dde2e8; --margin: #cfe8dc;
-  --consistent: #00694a; --optimistic: #a84300; --pessimistic: #005a94; --mixed: #8f3a6e; --undecided: #57606a; }
+  --consistent: #00694a; --optimistic: #a84300; --pessimistic: #005a94; --mixed: #8f3a6e; --undecided: #57606a;
+  --failed: #b3131d; }
 @media screen and (prefers-color-scheme: dark) {
   :root { --paper: #14181d; --ink: #e6eaef; --soft: #a3adb8; --line: #3a424c; --panel: #1c2229; --link: #7cbcf0;
     --s0: #6ab7ec; --s1: #f09a5c; --s2: #4cc79a; --s3: #e39ac6; --s4: #f4d47c; --s5: #c4e3f7; --band: #535d69; --joint: #323a44; --margin: #1f4a3a;
-    --consistent: #4cc79a; --optimistic: #f5a36a; --pessimistic: #7cbcf0; --mixed: #e39ac6; --undecided: #a3adb8; }
+    --consistent: #4cc79a; --optimistic: #f5a36a; --pessimistic: #7cbcf0; --mixed: #e39ac6; --undecided: #a3adb8;
+    --failed: #ff9a94; }
 }
 * { box-sizing: border-box; }
 html { color-scheme: light dark; scroll-behavior: smooth; -webkit-text-size-adjust: 100%; }
@@ -37,6 +39,7 @@ a { color: var(--link); }
 .badge { white-space: nowrap; font-weight: 650; }
 .consistent { color: var(--consistent); } .optimistic { color: var(--optimistic); }
 .pessimistic { color: var(--pessimistic); } .mixed { color: var(--mixed); } .undecided { color: var(--undecided); }
+.failed { color: var(--failed); }
 .verdicts { list-style: none; padding: 0; max-width: none; }
 .verdicts li { display: grid; grid-template-columns: minmax(0, 17rem) 9rem minmax(0, 1fr); gap: .25rem 1rem;
   padding: .6rem 0;

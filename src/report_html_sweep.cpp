@@ -6,6 +6,7 @@
 #include "report_html.hpp"
 #include "report_html_curves.hpp"
 #include "report_sweep.hpp"
+#include "report_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -71,10 +72,10 @@ private:
         for (const GridPoint& point : grid_.points) {
             const ArmReport* arm = swept_.arm(point, name);
             if (arm == nullptr) continue;
-            std::vector<Html> cells{badge(arm->consistency.verdict)};
+            std::vector<Html> cells{badge(*arm)};
             for (const SweptFigure& one : swept_figures(*arm))
                 cells.push_back(figure_with_interval(one.summary.mean, one.summary.ci95));
-            cells.push_back(figure_count(static_cast<double>(arm->failed)));
+            cells.push_back(failed_count(*arm));
             table.row(head_of(point), cells);
         }
         return table.html();
@@ -89,9 +90,10 @@ private:
         for (const GridPoint& point : grid_.points) {
             const Comparison* pair = swept_.pair(point, name);
             if (pair == nullptr) continue;
+            const bool run = has_run(report_, swept_.scenario(point));
             std::vector<Html> cells;
             for (const SweptFigure& one : swept_figures(*pair))
-                cells.push_back(figure_with_interval(one.summary.mean, one.summary.ci95));
+                cells.push_back(run ? figure_with_interval(one.summary.mean, one.summary.ci95) : "not run yet"_html);
             table.row(head_of(point), cells);
         }
         return table.html();
@@ -106,7 +108,7 @@ private:
             const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
             constexpr double spread = 20;  // beyond it the small ones could not be told from 0
             const SweptCurves drawn{grid_, curve_axis(grid_), arms_, figure_words(one.name, one.unit),
-                                    is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.margin : 0,
+                                    is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.limits.margin : 0,
                                     spread, [&](const GridPoint& point, const std::string& name) {
                                         return summary_of(swept_.arm(point, name), one.name);
                                     }};

@@ -7,6 +7,7 @@
 #include "report_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace credence::page {
@@ -24,38 +25,42 @@ Html shape_of(Verdict verdict) {
             return "&#9660;"_html;  // triangle down: NEES below 1
         case Verdict::mixed:
             return "&#9670;"_html;  // diamond
+        case Verdict::failed:
+            return "&#10007;"_html;  // ballot x
         case Verdict::undecided:
             break;
     }
     return "?"_html;
 }
 
-std::string reason_text(const Reason& reason) {
-    return reason.parts.empty() ? reason.head : reason.head + " " + joined(reason.parts);
-}
-
 /// Why an arm has its verdict, in one line.
 std::string why(const ArmReport& arm) {
+    if (arm.not_run()) return no_claim_text(arm);
     const std::vector<Reason> reasons = reasons_of(arm);
     if (arm.consistency.verdict == Verdict::consistent)
-        return "NEES/dim of the whole state and of every block is within 1 ± " + to_text(arm.consistency.margin);
+        return "NEES/dim of the whole state and of every block is within 1 ± " + to_text(arm.consistency.limits.margin);
     return reasons.empty() ? "no interval lies wholly within the margin or wholly outside"
                            : reason_text(reasons.front());
 }
 
-Html verdict_line(const ArmReport& arm) {
+/// NEES and NIS of an arm, and how many of its trials failed.
+Html numbers_of(const ArmReport& arm) {
+    if (arm.not_run()) return {};
     const Summary& nees = figure_named(arm.figures, "nees_ratio").summary;
     const Summary& nis = figure_named(arm.figures, "nis_ratio").summary;
-    const Html numbers =
-        "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
-        (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
-        figure_count(static_cast<double>(arm.failed)) + " of "_html + figure_count(static_cast<double>(arm.trials)) +
-        " trials failed"_html +
-        (arm.diverged > 0 ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " diverged"_html : Html());
+    return "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
+           (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
+           failed_count(arm) + " of "_html + figure_count(static_cast<double>(arm.trials)) + " trials failed"_html +
+           (arm.diverged > 0
+                ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " of them diverged"_html
+                : Html());
+}
+
+Html verdict_line(const ArmReport& arm) {
     return element("li", "<p class=\"arm\"><a href=\"#"_html + section_id(arm.scenario) + "\">"_html +
                              escaped(arm.scenario) + "</a> "_html + element("b", escaped(arm.arm)) + "</p>\n"_html +
-                             badge(arm.consistency.verdict) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
-                             "</p>\n<p class=\"numbers\">"_html + numbers + "</p></div>"_html) +
+                             badge(arm) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
+                             "</p>\n<p class=\"numbers\">"_html + numbers_of(arm) + "</p></div>"_html) +
            "\n"_html;
 }
 
@@ -81,7 +86,7 @@ Html arm_findings(const ArmReport& arm) {
     const Html table =
         findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all)
             .html();
-    return element("h4", escaped(arm.arm) + " "_html + badge(verdict.verdict)) + "\n"_html + element("ul", lines) +
+    return element("h4", escaped(arm.arm) + " "_html + badge(arm)) + "\n"_html + element("ul", lines) +
            "\n"_html +
            (all.size() <= most
                 ? table
@@ -91,10 +96,15 @@ Html arm_findings(const ArmReport& arm) {
 
 }  // namespace
 
-Html badge(Verdict verdict) {
-    const std::string& name = verdict_name(verdict);
-    return "<span class=\"badge "_html + escaped(name) + "\"><span aria-hidden=\"true\">"_html + shape_of(verdict) +
-           "</span> "_html + escaped(name) + "</span>"_html;
+Html badge(const ArmReport& arm) {
+    const Verdict verdict = arm.consistency.verdict;
+    return "<span class=\"badge "_html + escaped(verdict_name(verdict)) + "\"><span aria-hidden=\"true\">"_html +
+           (arm.not_run() ? "&#8211;"_html : shape_of(verdict)) + "</span> "_html + escaped(verdict_word(arm)) +
+           "</span>"_html;
+}
+
+Html failed_count(const ArmReport& arm) {
+    return figure_count(arm.not_run() ? std::nan("") : static_cast<double>(arm.failed_trials()));
 }
 
 std::string figure_words(const std::string& name, const std::string& unit) {
@@ -105,16 +115,17 @@ std::string figure_words(const std::string& name, const std::string& unit) {
 }
 
 std::string verdict_counts(const Report& report) {
-    std::map<Verdict, int> counts;
     if (report.arms.empty()) return "There is nothing to judge.";
-    for (const ArmReport& arm : report.arms) ++counts[arm.consistency.verdict];
-    if (report.arms.size() == 1) return "The filter is " + verdict_name(counts.begin()->first) + ".";
+    const std::string all = std::to_string(report.arms.size()), first = verdict_clause(report.arms.front());
+    if (report.arms.size() == 1) return "The filter " + first + ".";
+    std::map<std::pair<bool, Verdict>, int> counts;
+    for (const ArmReport& arm : report.arms) ++counts[{arm.not_run(), arm.consistency.verdict}];
     std::vector<std::string> parts;
-    for (const auto& [verdict, count] : counts) parts.push_back(std::to_string(count) + " " + verdict_name(verdict));
-    const std::string all = std::to_string(report.arms.size());
-    if (parts.size() == 1 && report.arms.size() == 2)
-        return "Both arms are " + verdict_name(counts.begin()->first) + ".";
-    if (parts.size() == 1) return "All " + all + " arms are " + verdict_name(counts.begin()->first) + ".";
+    for (const auto& [kind, count] : counts)
+        parts.push_back(std::to_string(count) + " " + (kind.first ? "not run yet" : verdict_name(kind.second)));
+    if (parts.size() == 1)
+        return (report.arms.size() == 2 ? "Both arms " : "All " + all + " arms ") +
+               (first.starts_with("is ") ? "are " + first.substr(3) : first) + ".";
     return "Of " + all + " arms " + joined(parts) + ".";
 }
 
@@ -125,10 +136,11 @@ Html verdicts(const Report& report) {
     return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
            "NEES/dim 1 "
            "in every block of the state and at every step; the verdict holds all of them against 1 ± "_html +
-           escaped(to_text(report.margin)) +
+           escaped(to_text(report.limits.margin)) +
            ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
            "too "
-           "large). Intervals are two-sided 95 %.</p>\n"_html +
+           "large). Failed: more than "_html + escaped(short_number(100 * report.limits.failed)) +
+           " % of its trials failed. Intervals are two-sided 95 %.</p>\n"_html +
            (lines.empty() ? Html() : "<ul class=\"verdicts\">\n"_html + lines + "</ul>\n"_html) + "</section>\n"_html;
 }
 
@@ -140,7 +152,7 @@ Html findings(const Part& part) {
         troubles += element("li", escaped("trial " + std::to_string(trouble.trial) + ", step " +
                                           std::to_string(trouble.step + 1) + ": " + trouble.what));
     if (!troubles.empty())
-        html += folded("Trials that are in no figure (the first of them)", element("ul", troubles), InPrint::open);
+        html += folded("Trials that failed (the first of them)", element("ul", troubles), InPrint::open);
     return html;
 }
 

@@ -18,6 +18,7 @@ class SweptReport {
 public:
     explicit SweptReport(const Report& report);
 
+    const Report& report() const { return report_; }
     const std::vector<Grid>& grids() const { return grids_; }
     const std::string& scenario(const GridPoint& point) const { return report_.scenarios[point.scenario].name; }
     /// Nothing where the point lacks the arm or the pair.

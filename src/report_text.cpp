@@ -47,12 +47,12 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
         const std::string name = arm->scenario + "/" + arm->arm;
         const bool fits = static_cast<int>(name.size()) < width;
         text += (fits ? "" : "  " + name + "\n") + "  " + padded(fits ? name : "", width, false) +
-                padded(verdict_name(arm->consistency.verdict), 12, false);
+                padded(verdict_word(*arm), 12, false);
         for (const char* figure : {"nees_ratio", "nis_ratio"}) {
             const Summary& summary = figure_named(arm->figures, figure).summary;
             text += padded(with_interval(summary.mean, summary.ci95), 19);
         }
-        text += padded(std::to_string(arm->failed), 9) + "\n" + why(*arm);
+        text += padded(arm->not_run() ? "-" : std::to_string(arm->failed_trials()), 9) + "\n" + why(*arm);
     }
     return text;
 }
@@ -62,11 +62,9 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
 std::string report_text(const Report& report) {
     std::string text;
     for (const std::string& warning : warnings_of(report)) text += wrapped(warning) + "\n";
-    const std::int64_t trials = report.arms.empty() ? 0 : report.arms.front().trials;
-    text += report.source + ": " + std::to_string(trials) + (trials == 1 ? " trial" : " trials") +
-            (report.root_seed ? " of each arm, root seed " + std::to_string(*report.root_seed) : "") +
+    text += report.source + ": " + trials_text(report) +
             ".\nA consistent filter has NEES/dim 1 in every block of the state and at every step; the verdict holds all of "
-            "them\nagainst 1 ± " + to_text(report.margin) + ". Intervals are two-sided 95 %.\n\n";
+            "them\nagainst 1 ± " + to_text(report.limits.margin) + ". Intervals are two-sided 95 %.\n\n";
     const std::vector<const ArmReport*> arms = arms_by_themselves(report);
     text += verdicts_part(arms);
     for (const Declaration& scenario : report.scenarios)

@@ -12,7 +12,7 @@ namespace credence {
 namespace {
 
 std::string published_text(const PublishedPlace& published) {
-    if (std::isnan(published.percentile)) return to_text(published.value);
+    if (!std::isfinite(published.percentile)) return to_text(published.value);
     return to_text(published.value) + " (" + number(published.percentile, 1) + " %)";
 }
 
@@ -26,6 +26,7 @@ std::string figure_row(const std::string& label, const Summary& s, const std::op
 
 std::string paired_row(const Comparison& pair, const ComparedFigure& figure) {
     const PairedComparison& paired = figure.paired;
+    if (paired.pairs == 0) return {};
     const std::string less = number(100 * paired.wins_a, 0) + " % below";
     return figure_row(controller_of(pair.a) + " - " + controller_of(pair.b), paired.difference, paired.bootstrap95, less);
 }
@@ -73,15 +74,14 @@ std::string innovations_part(const Evidence& evidence) {
         parts.push_back(nis.part + " " + number(nis.ratio, 4) + " (outside its band at " +
                         of_steps(nis.nis.outside_simultaneous, nis.nis.observed) + " steps)");
     std::string text = parts.empty() ? "" : "    " + wrapped_list("ΣNIS/Σm:", parts, 4) + "\n";
-    if (!evidence.whiteness.empty()) {
-        const Whiteness& first = evidence.whiteness.front();
-        const int outside = lags_outside(evidence.whiteness);
-        text += "    " + wrapped("innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
-                                     " (white within ± " + number(first.bound, 4) + "); " +
-                                     of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
-                                     " lags outside their joint bounds", 4) + "\n";
-    }
-    return text;
+    if (evidence.whiteness.empty()) return text;
+    const Whiteness& first = evidence.whiteness.front();
+    if (!first.known()) return text + "    innovations: their correlation could not be computed\n";
+    const int outside = lags_outside(evidence.whiteness);
+    return text + "    " + wrapped("innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
+                                       " (white within ± " + number(first.bound, 4) + "); " +
+                                       of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
+                                       " lags outside their joint bounds", 4) + "\n";
 }
 
 std::string distribution_part(const Evidence& evidence) {
@@ -90,7 +90,7 @@ std::string distribution_part(const Evidence& evidence) {
         text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +
                 std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) + " over all " +
                 std::to_string(worst.known) + " steps)\n";
-    if (!std::isnan(evidence.credibility.nci))
+    if (std::isfinite(evidence.credibility.nci) && std::isfinite(evidence.credibility.inclination))
         text += "    NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +
                 (evidence.credibility.inclination > 0 ? " (> 0: optimistic)\n" : " (< 0: pessimistic)\n");
@@ -131,6 +131,7 @@ std::vector<std::string> detailed_figures(const Report& report, const std::strin
 
 std::string scenario_detail(const Report& report, const Declaration& scenario) {
     std::string text = "\n" + wrapped(scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title)) + "\n";
+    if (!has_run(report, scenario.name)) return text + "  not run yet\n";
     text += padded("mean ± 95 %", 50) + padded("bootstrap 95 %", 22) + padded("median", 12) + padded("sd", 12) +
             (has_published(report, scenario.name) ? padded("published (pctl.)", 20) : "") + "\n";
     for (const std::string& name : detailed_figures(report, scenario.name))

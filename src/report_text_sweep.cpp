@@ -92,7 +92,7 @@ std::string arm_table(const SweptReport& swept, const Grid& grid, const std::str
         if (arm == nullptr) continue;
         const std::vector<SweptFigure> figures = swept_figures(*arm);
         if (heads.empty()) heads = joined_cells(joined_cells({"verdict"}, heads_of(figures)), {"failed"});
-        const Cells verdict{verdict_name(arm->consistency.verdict)}, failed{std::to_string(arm->failed)};
+        const Cells verdict{verdict_word(*arm)}, failed{arm->not_run() ? "-" : std::to_string(arm->failed_trials())};
         rows.push_back({&point, joined_cells(joined_cells(verdict, figure_cells(figures)), failed)});
     }
     return "  " + name + "\n" + table_text(grid, heads, rows, "lr");
@@ -106,7 +106,12 @@ std::string pair_table(const SweptReport& swept, const Grid& grid, const std::st
         if (pair == nullptr) continue;
         const std::vector<SweptFigure> figures = swept_figures(*pair);
         if (heads.empty()) heads = heads_of(figures);
-        rows.push_back({&point, figure_cells(figures)});
+        Cells cells = figure_cells(figures);
+        if (!has_run(swept.report(), swept.scenario(point)) && !cells.empty()) {
+            cells.assign(cells.size(), "");
+            cells.front() = "not run yet";
+        }
+        rows.push_back({&point, std::move(cells)});
     }
     return "  " + name + ", trial by trial\n" + table_text(grid, heads, rows, "r");
 }

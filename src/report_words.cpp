@@ -2,10 +2,14 @@
 
 #include "report_words.hpp"
 
+#include <credence/html.hpp>
+#include <credence/text.hpp>
+
 #include "report_format.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace credence {
 
@@ -38,14 +42,22 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
     return parts;
 }
 
-/// Why an arm that is undecided is so.
+/// How many trials failed, where that is the verdict.
+std::string failed_text(const ArmReport& arm) {
+    if (arm.consistency.verdict != Verdict::failed) return {};
+    return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) + " trials failed" +
+           (arm.diverged > 0 ? " (" + std::to_string(arm.diverged) + " of them diverged)" : "") + ", more than " +
+           short_number(100 * arm.consistency.limits.failed) + " %";
+}
+
+/// Why an arm that is undecided is so, and whether there is anything to judge.
 std::string undecided_text(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
+    if (arm.evidence.trials == 0) return "no trial is left that could be judged";
     if (verdict.verdict == Verdict::undecided && verdict.trials_to_decide > 0)
         return "about " + number(verdict.trials_to_decide, 0) + " trials would decide";
     if (verdict.verdict == Verdict::undecided && !verdict.findings.empty() && arm.evidence.trials > 1)
         return "every block is within the margin: only this keeps it from being consistent";
-    if (arm.evidence.trials == 0) return "no trial is left that could be judged";
     if (verdict.verdict == Verdict::undecided && arm.evidence.trials == 1)
         return arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
                                         : "the innovations of one trial do not decide: give more trials or steps";
@@ -61,18 +73,60 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        "; the trial is in no figure.");
+                        (failed(trouble.status) ? "; the trial is in no figure." : "; the trial is in the figures."));
     }
-    const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed;
+    const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed_trials();
     if (shown > 0 && failed > static_cast<std::int64_t>(shown))
         lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
 }
 
 }  // namespace
 
+std::string verdict_word(const ArmReport& arm) {
+    return arm.not_run() ? "not run yet" : verdict_name(arm.consistency.verdict);
+}
+
+std::string verdict_clause(const ArmReport& arm) {
+    const bool plain = !arm.not_run() && arm.consistency.verdict == Verdict::failed;
+    return (plain ? "" : "is ") + verdict_word(arm);
+}
+
+std::string reason_text(const Reason& reason) {
+    return reason.parts.empty() ? reason.head : reason.head + " " + joined(reason.parts);
+}
+
+std::string no_claim_text(const ArmReport& arm) {
+    if (arm.not_run()) return "not run yet: no trial of it is in the file";
+    const std::string text = failed_text(arm);
+    return text.empty() ? undecided_text(arm) : text;
+}
+
+bool has_run(const Report& report, const std::string& scenario) {
+    return std::any_of(report.arms.begin(), report.arms.end(),
+                       [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
+}
+
+std::string trials_text(const Report& report) {
+    std::int64_t least = 0, most = 0;
+    std::size_t run = 0;
+    for (const ArmReport& arm : report.arms) {
+        if (arm.not_run()) continue;
+        least = run == 0 ? arm.trials : std::min(least, arm.trials);
+        most = std::max(most, arm.trials);
+        ++run;
+    }
+    const std::string text = (least == most ? "" : std::to_string(least) + " to ") + std::to_string(most) +
+                             (most == 1 ? " trial" : " trials");
+    if (!report.root_seed) return text;
+    return text + " of each arm" + (run == 0 || run == report.arms.size() ? "" : " run so far") + ", root seed " +
+           std::to_string(*report.root_seed);
+}
+
 std::vector<Reason> reasons_of(const ArmReport& arm) {
+    if (arm.not_run()) return {};
     const Consistency& verdict = arm.consistency;
     std::vector<Reason> reasons;
+    if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}});
     const auto list = [&](const std::string& what, const std::string& measure) {
         if (auto parts = findings_parts(verdict.findings, what); !parts.empty())
             reasons.push_back({what + " (" + measure + "):", std::move(parts)});
@@ -81,26 +135,45 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
     list("biased", "mean error/sigma");
     list("correlated", "whitened innovations");
+    if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
+                    [](const Whiteness& lag) { return !lag.known(); }))
+        reasons.push_back({"note, innovations: their correlation could not be computed", {}});
     for (const Finding& caution : verdict.cautions) reasons.push_back({"note, " + sentence(caution), {}});
     if (const std::string text = undecided_text(arm); !text.empty()) reasons.push_back({text, {}});
     return reasons;
 }
 
+std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
+                                       const FailureWords& words) {
+    std::vector<std::string> lines;
+    const std::int64_t failed = counts.left_out + counts.diverged;
+    const std::string of = " trials of " + arm;
+    if (too_many_failed(failed, counts.trials, limit))
+        lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of + " failed" +
+                        (counts.diverged == 0   ? " and " + words.left_out
+                         : counts.left_out == 0 ? ""
+                                                : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) + ".");
+    if (counts.diverged > 0)
+        lines.push_back("note: " + std::to_string(counts.diverged) + of + " diverged; they " + words.diverged + ".");
+    return lines;
+}
+
 std::vector<std::string> warnings_of(const Report& report) {
     std::vector<std::string> lines;
     for (const ArmReport& arm : report.arms) {
-        const std::string name = arm.scenario + "/" + arm.arm;
-        if (static_cast<double>(arm.failed) > 0.01 * static_cast<double>(arm.trials))
-            lines.push_back("WARNING: " + std::to_string(arm.failed) + " of " + std::to_string(arm.trials) +
-                            " trials of " + name + " failed and are left out of its figures.");
-        if (arm.diverged > 0)
-            lines.push_back("note: " + std::to_string(arm.diverged) + " trials of " + name +
-                            " diverged; they are in the figures.");
+        const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
+        std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
+                             {"are left out of its figures", "are in the figures"}), std::back_inserter(lines));
     }
     add_troubles(report, lines);
-    if (!report.complete)
+    if (!report.complete) {
+        const auto not_run = std::count_if(report.arms.begin(), report.arms.end(),
+                                           [](const ArmReport& arm) { return arm.not_run(); });
         lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
-                        " trials of each arm.");
+                        " trials of each arm" +
+                        (not_run == 0 ? "." : ", and " + std::to_string(not_run) + " of " +
+                                                  std::to_string(report.arms.size()) + " arms are not run yet."));
+    }
     if (report.keep == Keep::aggregates) lines.push_back(std::string("note: ") + no_trials_note);
     return lines;
 }

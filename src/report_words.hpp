@@ -14,12 +14,40 @@ struct Reason {
     std::vector<std::string> parts;
 };
 
-/// Why an arm has its verdict: the worst of what was found, notes, and what would decide.
+/// Why an arm has its verdict: how many trials failed, the worst of what was found, notes, and what would decide. Nothing
+/// of an arm that is not run yet.
 std::vector<Reason> reasons_of(const ArmReport& arm);
+std::string reason_text(const Reason& reason);
+
+/// Why nothing is claimed of an arm: that it is not run yet, that too many trials failed, or what leaves it undecided. Empty
+/// where there is nothing to say.
+std::string no_claim_text(const ArmReport& arm);
+
+/// The verdict's name, or `not run yet`; and as a clause, such as `is consistent`.
+std::string verdict_word(const ArmReport& arm);
+std::string verdict_clause(const ArmReport& arm);
+
+/// Whether the file has trials of a scenario.
+bool has_run(const Report& report, const std::string& scenario);
+
+/// `300 trials of each arm, root seed 1`; of the arms that have run.
+std::string trials_text(const Report& report);
 
 /// What is missing where no trial is kept.
 inline const char* const no_trials_note =
     "only totals are kept: medians and distributions need the trials (credence run --keep trials).";
+
+/// An arm's trials, and how many of them failed.
+struct FailureCounts {
+    std::int64_t trials = 0, left_out = 0, diverged = 0;
+};
+/// What becomes of the trials that failed, such as `are left out of its figures`, and of those that diverged.
+struct FailureWords {
+    std::string left_out, diverged;
+};
+/// A warning where more than `limit` of an arm's trials failed, and a note where some diverged.
+std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
+                                       const FailureWords& words);
 
 /// What is said before anything else: failed and diverged trials, troubles of a record, a study that is not complete or
 /// keeps no trials.

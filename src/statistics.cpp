@@ -86,7 +86,7 @@ double percentile_of(const std::vector<double>& values, double x) {
 std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b) {
     std::vector<double> differences;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (!std::isnan(a[i]) && !std::isnan(b[i])) differences.push_back(a[i] - b[i]);
+        if (!std::isnan(a[i] - b[i])) differences.push_back(a[i] - b[i]);
     return differences;
 }
 

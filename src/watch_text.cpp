@@ -64,12 +64,14 @@ std::string figure_text(const Moments& moments) {
 }
 
 void add_scenario(TextTable& table, const WatchedScenario& scenario) {
+    if (scenario.trials == 0)
+        return table.line(wrapped(scenario.name + ": not run yet, " + std::to_string(scenario.trials_asked) + " trials asked for"));
     table.line(wrapped(scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +
                        of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario)));
     for (const WatchedArm& arm : scenario.arms) {
         std::vector<std::string> cells{arm.name};
         for (const Moments& figure : arm.figures) cells.push_back(figure_text(figure));
-        cells.push_back(std::to_string(arm.failed));
+        cells.push_back(std::to_string(arm.failed + arm.diverged));
         table.row(std::move(cells));
     }
     for (const WatchedArm& arm : scenario.arms)
@@ -100,7 +102,7 @@ Json arm_json(const WatchLook& look, const WatchedScenario& scenario, const Watc
               {"state", state_name(look.state)}, {"trials", scenario.trials},
               {"trials_asked", scenario.trials_asked}, {"blocks", scenario.blocks},
               {"blocks_asked", scenario.blocks_asked}, {"failed", arm.failed},
-              {"diverged", arm.diverged}};
+              {"diverged", arm.diverged},        {"failed_trials", arm.failed + arm.diverged}};
     for (std::size_t f = 0; f < arm.figures.size(); ++f) {
         json[scenario.columns[f].name] = moments_json(arm.figures[f]);
         json[scenario.columns[f].name]["unit"] = scenario.columns[f].unit;

@@ -108,8 +108,9 @@ inline ScenarioResults results(double claimed) {
     const std::vector<double> draws = numbers(expected()["draws"]), innovations = numbers(expected()["innovations"]);
     Declaration scenario;
     scenario.poses = steps + 1;
-    ScenarioResults results{scenario, {}, figures(), {}, trials};
+    ScenarioResults results{scenario, status_columns(), figures(), {}, trials};
     ArmResults arm;
+    for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
     for (const Figure& figure : results.figures)
         arm.totals.push_back(
             {std::vector<ExactSum>(steps),

@@ -30,12 +30,13 @@ expect() {
 
 expect run credence ru
 expect '--help --version' credence --
-expect --format credence report --f
+expect '--failed --format' credence report --f
+expect --format credence report --fo
 expect 'csv html json text' credence report --format ''
 expect 'json' credence report --format j
 expect 'json' credence report --format = j
 expect 'csv html json text' credence report --format =
-expect '' credence report --format json --f
+expect '--failed' credence report --format json --f
 expect '--seed --set' credence run --set noise.heading = 1 --se
 expect consistent credence judge record.h5 --require ''
 expect '' credence run --trials ''

@@ -138,7 +138,7 @@ TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes t
     CHECK(record.results.arms.front().errors.size() == 60 * 6 * 5);
 }
 
-TEST_CASE("record: runs of different lengths, a step missing within a run, rows not observed, fixed-length text") {
+TEST_CASE("record: runs of declared lengths, a step missing within a run, rows not observed, fixed-length text") {
     const JudgedRecord record = check_reference("ragged");
     const ArmResults& arm = record.results.arms.front();
     for (std::size_t i = 0; i < arm.nees.size(); ++i) CHECK(std::isnan(arm.nees[i]) == std::isnan(arm.errors[3 * i]));
@@ -152,6 +152,18 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
         for (std::size_t i = 0; i < 4 * 3; ++i)
             CHECK(std::isnan(arm.errors[trouble[0].get<std::size_t>() * 4 * 3 + i]));
     CHECK(record.results.scenario.name == "record_troubled");
+}
+
+TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
+    const JudgedRecord record = check_reference("broken");
+    CHECK(record.trouble_count == 12);
+    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are in the figures
+}
+
+TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {
+    const JudgedRecord record = check_reference("cut");
+    CHECK(record.trouble_count == 10);
+    CHECK(record.results.arms.front().present.back() == 0);  // no trial has the last step, and none need have it
 }
 
 TEST_CASE("record: of many troubles the first twenty are named and all are counted") {
@@ -173,7 +185,7 @@ TEST_CASE("record: single precision, chunks that fit nothing, and blocks as a li
 TEST_CASE("record: one component and one row, and an attribute without a value") { check_reference("one"); }
 
 TEST_CASE("record: parts of any size, within a trial and over several, are the same record") {
-    for (const char* name : {"ragged", "troubled", "single", "singles"})
+    for (const char* name : {"ragged", "cut", "broken", "troubled", "single", "singles"})
         for (const std::int64_t part_numbers : {1, 100, 300, 2000}) {
             CAPTURE(name, part_numbers);
             const std::string path = reference_path(name);

@@ -10,10 +10,9 @@ using namespace credence::test;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Position of [trial, step, 0 ...] in the plain record.
-constexpr std::size_t vector_at(std::size_t trial, std::size_t step) { return (trial * 4 + step) * 2; }
+/// Position of [trial, step, 0, 0] of a matrix in the plain record.
 constexpr std::size_t matrix_at(std::size_t trial, std::size_t step) { return (trial * 4 + step) * 4; }
 
 std::function<void(const Handle&)> value(const std::string& name, std::size_t at, double value) {
@@ -66,32 +65,10 @@ void claim_trials(const Handle& root) {
 }
 
 const std::vector<Damage> value_damages{
-    {"/error: trial 1, step 2 (both counted from 0) holds NaN in some components and numbers in others. A step exists",
-     value("error", vector_at(1, 2) + 1, nan)},
-    {"/error: trial 2, step 0 (both counted from 0) holds an infinite value. Write NaN",
-     value("error", vector_at(2, 0), -infinite)},
-    {"/error: trial 0, step 3 (both counted from 0) holds an infinite value",
-     [](auto& r) {
-         set_value(r, "error", vector_at(0, 3), nan);
-         set_value(r, "error", vector_at(0, 3) + 1, infinite);
-     }},
     {"/covariance: trial 0, step 1 (both counted from 0) is not symmetric: [0, 1] is 0.25, [1, 0] is 0. Write (P + P')",
      value("covariance", matrix_at(0, 1) + 1, 0.25)},
     {"/covariance: trial 1, step 1 (both counted from 0) is not symmetric: [0, 1] is 0, [1, 0] is 2e-09",
      value("covariance", matrix_at(1, 1) + 2, 2e-9)},
-    {"/covariance: trial 2, step 3 (both counted from 0) holds nan at [1, 1], where the errors",
-     value("covariance", matrix_at(2, 3) + 3, nan)},
-    {"/covariance: trial 2, step 3 (both counted from 0) holds inf at [0, 1], where",
-     value("covariance", matrix_at(2, 3) + 2, infinite)},
-    {"/covariance: trial 2, step 3 (both counted from 0) holds nan at [0, 0], where", [](auto& r) {
-         set_value(r, "covariance", 0, 0);  // failed before
-         set_value(r, "covariance", matrix_at(2, 0), 0);
-         set_value(r, "covariance", matrix_at(2, 3), nan);
-     }},
-    {"/innovation: trial 1, step 0 (both counted from 0) holds an infinite value",
-     value("innovation", vector_at(1, 0), infinite)},
-    {"/innovation_covariance: trial 1, step 3 (both counted from 0) holds nan at [0, 1], where the errors or innov",
-     value("innovation_covariance", matrix_at(1, 3) + 1, nan)},
     {"/innovation_covariance: trial 1, step 3 (both counted from 0) is not symmetric: [0, 1] is 0.5, [1, 0] is 0",
      value("innovation_covariance", matrix_at(1, 3) + 1, 0.5)},
 };
@@ -146,6 +123,27 @@ const std::vector<Damage> shape_damages{
     {"/error: is a link to somewhere else", [](auto& r) {
          remove(r, "error");
          H5Lcreate_soft("/innovation", r.id(), "/error", H5P_DEFAULT, H5P_DEFAULT);
+     }},
+};
+
+std::function<void(const Handle&)> steps(const hdf5::Extents& extents, const std::vector<std::int32_t>& values) {
+    return [=](const Handle& root) {
+        hdf5::write_dataset(root, "steps", hdf5::type_of<std::int32_t>(), values.data(), extents, {"", ""});
+    };
+}
+
+const std::vector<Damage> step_damages{
+    {"/steps: does not fit: it is [2], and there are 3 trials. Write it as [trial]", steps({2}, {4, 4})},
+    {"/steps: does not fit: it is [3, 1], and there are 3 trials", steps({3, 1}, {4, 4, 4})},
+    {"/steps: trial 1 (counted from 0) has 5 steps. Write whole numbers from 1 to 4", steps({3}, {4, 5, 4})},
+    {"/steps: trial 2 (counted from 0) has 0 steps. Write whole numbers", steps({3}, {4, 4, 0})},
+    {"/steps: trial 0 (counted from 0) has 2.5 steps", [](auto& r) {
+         const std::vector<double> values{2.5, 4, 4};
+         hdf5::write_dataset(r, "steps", hdf5::type_of<double>(), values.data(), {3}, {"", ""});
+     }},
+    {"/steps: trial 0 (counted from 0) has nan steps", [](auto& r) {
+         const std::vector<double> values{nan, 4, 4};
+         hdf5::write_dataset(r, "steps", hdf5::type_of<double>(), values.data(), {3}, {"", ""});
      }},
 };
 
@@ -209,7 +207,11 @@ TEST_CASE("record: the plain record itself is judged, and what else a file holds
     CHECK(record.results.figures[2].part == "rest");
 }
 
-TEST_CASE("record: values that are none are refused by dataset, trial and step") { require_refused(value_damages); }
+TEST_CASE("record: a covariance that is not symmetric is refused by dataset, trial and step") {
+    require_refused(value_damages);
+}
+
+TEST_CASE("record: declared steps that no trial can have are refused") { require_refused(step_damages); }
 
 TEST_CASE("record: datasets that do not fit together, reversed dimensions among them, are refused") {
     require_refused(shape_damages);

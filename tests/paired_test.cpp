@@ -72,6 +72,15 @@ TEST_CASE("paired: arms that never differ tie, and no test rejects") {
     CHECK(std::isinf(shifted.variance_reduction));
 }
 
+TEST_CASE("paired: values that are both infinite are no pair, and the ranks come to an end") {
+    const double infinite = std::numeric_limits<double>::infinity();
+    const PairedComparison comparison = compare_paired({infinite, 1, -infinite, 2}, {infinite, 3, -infinite, 5}, 1, "x");
+    CHECK(comparison.pairs == 2);
+    CHECK(comparison.difference.mean == -2.5);
+    CHECK(comparison.wins_a == 1);
+    CHECK(paired_differences({infinite, 1}, {infinite, 3}) == std::vector<double>{-2});
+}
+
 TEST_CASE("paired: without pairs everything is NaN, with one all but its difference and signs") {
     const PairedComparison none = compare_paired({1, missing}, {missing, 2}, 1, "f");
     CHECK(none.pairs == 0);

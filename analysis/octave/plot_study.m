@@ -10,6 +10,9 @@ function plot_study(file, scenario, picture)
   if isempty(arms)
     error('credence:scenario', 'there is no scenario %s in %s', scenario, file);
   end
+  if ~credence_has_run(file, arms{1})
+    error('credence:scenario', '%s is not run yet: %s has no trial of it', scenario, file);
+  end
   across = 4;  % names of arms in a row below the panels, each row half a centimetre high
   names = 0.5 * ceil(numel(arms) / across);
   height = 6 + names;
@@ -30,6 +33,16 @@ function plot_study(file, scenario, picture)
   draw_names(axes('position', [0.03 0 0.95 names / height]), arms, scenario, across);
   print(drawing, picture, '-dsvg');
   close(drawing);
+end
+
+function run = credence_has_run(file, arm)
+  % Whether the file has trials of an arm. All of them may have failed.
+  run = ncreadatt(file, arm, 'counted_trials') > 0;
+  if ~run && credence_keeps_trials(file)
+    run = ncinfo(file, [arm 'trial']).Size > 0;
+  elseif ~run
+    run = sum(double(ncread(file, [arm 'status_count']))) > 0;
+  end
 end
 
 function look = arm_look(i)

@@ -121,10 +121,12 @@ def curves(file, grid, width=style.PAGE):
     for row in axes[[0, -1]] if len(rows) > 2 else axes[:1]:
         style.legend_above(row[0])
     trials = max(results.trials(group) for group in first.values())
+    not_run = sum(not results.trials(next(iter(file[name].values()))) for name in grid.names.flat if name)
     left_out = grid.names.size // grid.coordinates[key].size - len(columns)
     style.headline(figure, f"{grid.of} over {', '.join(grid.coordinates)}, {trials:,} trials each, seed "
                            f"{results.text(file, 'root_seed_text')}; shades: 95 % intervals of the means"
-                           + (f"; {left_out} more in the file" if left_out else ""))
+                           + (f"; {left_out} more in the file" if left_out else "")
+                           + (f"; {not_run} of {grid.names.size} points are not run yet" if not_run else ""))
     return figure
 
 

@@ -8,7 +8,8 @@
 %   h5create(path, '/error', size(e)); h5write(path, '/error', e); h5writeatt(path, '/', 'blocks', blocks);
 
 function write_record(path, e, P, blocks)
-  % e [n, step, trial] = estimate - truth, wrapped where it is an angle; P [n, n, step, trial]; NaN: no such step.
+  % e [n, step, trial] = estimate - truth, wrapped where it is an angle; P [n, n, step, trial]; both NaN: no such
+  % step. A run that ends early counts as failed, unless a dataset "steps" [trial] declares how many steps it has.
   % blocks such as "position 0:2, velocity 2:4", half-open and from 0.
   [n, steps, trials] = size(e);
   nccreate(path, "error", "Dimensions", {"n", n, "step", steps, "trial", trials}, "Format", "netcdf4");

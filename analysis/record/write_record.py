@@ -15,10 +15,11 @@ import h5py
 import numpy as np
 
 
-def write_record(path, error, covariance, innovation=None, innovation_covariance=None, blocks=None):
+def write_record(path, error, covariance, innovation=None, innovation_covariance=None, blocks=None, steps=None):
     """error [trial, step, n] = estimate - truth, in the chart in which covariance [trial, step, n, n] lives (wrap angles!).
     innovation [trial, step, m] and innovation_covariance [trial, step, m, m] if you have them.
-    NaN marks what is not there: all of an error where a run is shorter, an innovation's row that was not observed.
+    NaN marks what is not there: an innovation's row that was not observed, error and covariance of a missing step.
+    steps [trial]: how many steps each run has, where they differ. A run that ends early without it counts as failed.
     blocks: parts of the state to judge by themselves, half-open and from 0, such as "position 0:2, velocity 2:4"."""
     with h5py.File(path, "w") as file:
         file["error"] = np.asarray(error, dtype=float)
@@ -26,6 +27,8 @@ def write_record(path, error, covariance, innovation=None, innovation_covariance
         if innovation is not None:
             file["innovation"] = np.asarray(innovation, dtype=float)
             file["innovation_covariance"] = np.asarray(innovation_covariance, dtype=float)
+        if steps is not None:
+            file["steps"] = np.asarray(steps, dtype=np.int32)
         if blocks:
             file.attrs["blocks"] = blocks
 

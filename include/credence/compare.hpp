@@ -4,6 +4,7 @@
 // Comparison]
 
 #include <credence/comparison.hpp>
+#include <credence/consistency.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ enum class Conclusion {
     higher,     ///< A's mean is higher
     equal,      ///< A and B are equal in every trial
     not_shown,  ///< neither is shown
+    not_run,    ///< A or B has no trial yet
 };
 const std::string& conclusion_name(Conclusion conclusion);
 
@@ -46,6 +48,7 @@ struct ComparedSide {
     std::string file, source;               ///< its path, and `study UUID`
     std::int64_t trials = 0;                ///< of its file
     std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
+    std::int64_t failed_trials() const { return failed + diverged; }
     /// By figure, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some is in no pair.
     std::vector<double> mean;
 };
@@ -61,6 +64,7 @@ struct ComparedPair {
     std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published figures
     Conclusion conclusion = Conclusion::not_shown;
 
+    bool not_run() const { return a.trials == 0 || b.trials == 0; }
     std::int64_t pairs() const { return comparison.figures.front().paired.pairs; }
 };
 
@@ -68,6 +72,7 @@ struct CompareReport {
     std::uint64_t root_seed = 1;
     std::vector<ComparedPair> pairs;    ///< never empty
     std::vector<std::string> left_out;  ///< scenarios that are not compared, and why
+    double failed_limit = Limits().failed;  ///< where a larger share of an arm's trials failed, a warning comes first
 };
 
 /// Compares the arms chosen, in every scenario that has both; scenarios of different files are matched by name. Without

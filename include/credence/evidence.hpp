@@ -76,6 +76,9 @@ struct Whiteness {
     double correlation = 0;                    ///< their mean
     double scaled = 0;                         ///< the same over NIS/m: what is left where S has the wrong size
     double bound = 0, simultaneous_bound = 0;  ///< z/sqrt(count), for this lag and for all of them
+
+    /// False where the S of some step is so ill-conditioned that its innovation has no whitened form.
+    bool known() const;
 };
 
 /// Mean standardised error of one component.
@@ -97,7 +100,10 @@ struct CredibilityEvidence {
 };
 
 struct Evidence {
-    std::int64_t trials = 0;                   ///< that did not fail
+    std::int64_t trials = 0;                   ///< that the figures are of
+    std::int64_t all_trials = 0;
+    std::int64_t left_out = 0;                 ///< trials that failed and are in no figure
+    std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are in the figures
     int steps = 0;
     std::vector<BlockEvidence> blocks;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
@@ -106,6 +112,8 @@ struct Evidence {
     std::vector<BiasEvidence> bias;
     ShapeEvidence shape;
     CredibilityEvidence credibility;
+
+    std::int64_t failed_trials() const { return left_out + diverged; }
 };
 
 /// Reads the evidence off an arm's totals. It knows figures by their roles only.

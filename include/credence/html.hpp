@@ -35,7 +35,7 @@ Html escaped(std::string_view text);
 Html element(std::string_view name, const Html& content, const Html& attributes = {});
 
 /// A number as people read it, with the exact one (`to_text`) in the attribute `value` of a `data` element. `-` for
-/// NaN.
+/// what is not finite.
 Html figure(double value, int digits);
 /// The same with a text of one's own, such as `71 %`.
 Html figure_as(double value, const std::string& text);
@@ -48,7 +48,7 @@ Html figure_interval(const Interval& interval, int digits);
 /// `mean ± half-width`, as in the text report; the mean is a figure.
 Html figure_with_interval(double mean, const Interval& interval);
 
-/// Five significant digits, whole numbers as they are; `-` for NaN. The same in every locale.
+/// Five significant digits, whole numbers as they are; `-` for what is not finite. The same in every locale.
 std::string short_number(double value);
 
 /// A unit or a name with its powers raised: `dm^2` becomes `dm²`.

@@ -33,10 +33,16 @@ struct FigureReport {
 
 struct ArmReport {
     std::string scenario, arm;
-    std::int64_t trials = 0, failed = 0, diverged = 0;
+    std::int64_t trials = 0;                ///< all that are there; 0: the arm is not run yet
+    std::int64_t failed = 0;                ///< of them, those that are in no figure
+    std::int64_t diverged = 0;              ///< of them, those that diverged and are in the figures
     std::vector<FigureReport> figures;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
+
+    bool not_run() const { return trials == 0; }
+    /// What the verdict counts as failed.
+    std::int64_t failed_trials() const { return failed + diverged; }
 };
 
 struct Report {
@@ -45,21 +51,22 @@ struct Report {
     std::int64_t trials = 0;  ///< of each scenario that were asked for
     bool complete = true;
     Keep keep = Keep::trials;
-    double margin = 0;
+    Limits limits;
     std::vector<Declaration> scenarios;
     std::vector<ArmReport> arms;
-    std::vector<RecordTrouble> troubles;    ///< of a record: trials that are in no figure, the first ones
+    std::vector<RecordTrouble> troubles;    ///< of a record: trials that failed, the first ones
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 
-/// Figures of failed trials are left out (they are NaN); their number is given beside.
-Report make_report(const Study& study, double margin);
+/// Figures of failed trials are left out (they are NaN), but for those that diverged; their number is given beside.
+Report make_report(const Study& study, const Limits& limits);
 
 /// The same of a record: one arm, `record`; `path` names it.
-Report make_record_report(JudgedRecord record, const std::string& path, double margin);
+Report make_record_report(JudgedRecord record, const std::string& path, const Limits& limits);
 
 /// One arm's part of a report.
-ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed, double margin);
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
+                     const Limits& limits);
 
 /// For people: the verdicts, why, and where.
 std::string report_text(const Report& report);

@@ -50,6 +50,13 @@ void check_repeats(const Command& command, const Parsed& parsed) {
     }
 }
 
+/// `5%` or `0.05`; nothing where it is neither.
+std::optional<double> parse_share(const std::string& given) {
+    const bool percent = !given.empty() && given.back() == '%';
+    const std::optional<double> number = to_number(percent ? given.substr(0, given.size() - 1) : given);
+    return number ? std::optional(*number / (percent ? 100 : 1)) : std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> Parsed::text(const std::string& option) const {
@@ -156,12 +163,18 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
 
 double parse_margin(const Parsed& parsed) {
     const std::string given = parsed.text("margin").value_or("5%");
-    const bool percent = !given.empty() && given.back() == '%';
-    const std::optional<double> number = to_number(percent ? given.substr(0, given.size() - 1) : given);
-    const double margin = number.value_or(0) / (percent ? 100 : 1);
+    const double margin = parse_share(given).value_or(0);
     if (!(margin > 0 && margin < 1))
         throw invalid_value("--margin", given, "must be between 0 and 100 %, both excluded", "Write 5% or 0.05");
     return margin;
+}
+
+double parse_failed(const Parsed& parsed) {
+    const std::string given = parsed.text("failed").value_or("1%");
+    const double share = parse_share(given).value_or(-1);
+    if (!(share >= 0 && share <= 1))
+        throw invalid_value("--failed", given, "must be from 0 to 100 %", "Write 1% or 0.01");
+    return share;
 }
 
 std::optional<Output> check_output_option(const Parsed& parsed) {
@@ -197,6 +210,10 @@ Option sweep_option() {
 
 Option margin_option() {
     return {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"};
+}
+
+Option failed_option(const std::string& what) {
+    return {"failed", "SHARE", "where more than this share of the trials failed, " + what + " (default 1%)"};
 }
 
 Option output_option(const std::string& help, const std::string& value) { return {"output,o", value, help}; }

@@ -58,8 +58,10 @@ public:
 /// closest known one. Nothing if `--help` was asked for and has been printed.
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments);
 
-/// `5%` or `0.05` as a number in (0, 1); throws InputError.
+/// --margin: `5%` or `0.05` as a number in (0, 1); throws InputError.
 double parse_margin(const Parsed& parsed);
+/// --failed: `1%` or `0.01` as a number in [0, 1]; throws InputError.
+double parse_failed(const Parsed& parsed);
 
 /// Where `-o` says to write, if it is given. Refuses, before any work, what cannot be written, what exists while --overwrite is
 /// not given, and the files that the command reads.
@@ -77,6 +79,8 @@ void write_output(const Parsed& parsed, const std::string& text);
 Option set_option();
 Option sweep_option();
 Option margin_option();
+/// --failed; `what`: what it means that too many failed.
+Option failed_option(const std::string& what);
 Option output_option(const std::string& help, const std::string& value = "FILE");
 /// --overwrite, of the commands that write a report or a trajectory to -o.
 Option overwrite_option();
@@ -86,7 +90,7 @@ Option format_option(const std::vector<std::string>& formats);
 // What report and judge share: how to render, and rendering it. give_report returns the exit code.
 struct ReportRequest {
     std::string format;
-    double margin = 0;
+    Limits limits;
 };
 ReportRequest read_report_request(const Parsed& parsed);
 /// `path` and `run`: where the report's figures came from.

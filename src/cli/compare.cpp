@@ -20,6 +20,7 @@ const Command& compare_command() {
         "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the same world\n"
         "under --set filter.measurement=0.8 shows what that did.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
+         failed_option("a warning comes first"),
          format_option({"text", "json", "csv", "html"}),
          output_option("write there, not to the standard output"),
          overwrite_option()}};
@@ -42,11 +43,13 @@ int compare(const Parsed& parsed) {
     check_paths(parsed.arguments);
     std::optional<ArmsChoice> choice;
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
+    const double failed_limit = parse_failed(parsed);
     check_output_option(parsed);
     for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::results});
     std::vector<StudyFile> files;
     for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path, 0).study});
-    const CompareReport report = compare_studies(files, choice);
+    CompareReport report = compare_studies(files, choice);
+    report.failed_limit = failed_limit;
     write_output(parsed, format == "json"   ? compare_json(report)
                          : format == "csv"  ? compare_csv(report)
                          : format == "html" ? compare_html(report, made_by())

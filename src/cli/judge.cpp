@@ -14,14 +14,16 @@ const Command& judge_command() {
         "RECORD.h5 [options]",
         "the verdict on anyone's filter, from the errors and covariances it made",
         "\nRECORD.h5 holds the datasets\n"
-        "  error                  [trial, step, n]     estimate - truth, in the chart of the covariance; NaN: no such step\n"
-        "  covariance             [trial, step, n, n]\n"
+        "  error                  [trial, step, n]     estimate - truth, in the chart of the covariance\n"
+        "  covariance             [trial, step, n, n]  NaN like the error where the run has no such step\n"
+        "  steps                  [trial]              optional: steps of each run; one that ends early else has failed\n"
         "  innovation             [trial, step, m]     optional; NaN where a row was not observed\n"
         "  innovation_covariance  [trial, step, m, m]  with it\n"
         "and, on the file, the attribute `blocks`, such as \"pose 0:3, feature_1 3:5\" (half-open, from 0): parts of the\n"
         "state that are judged by themselves. analysis/ shows the few lines that write one from Python, Octave and C++.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
+         failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
@@ -38,7 +40,7 @@ int judge(const Parsed& parsed) {
     ProgressLine progress(parsed.has("quiet"));
     JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
     progress.finish();
-    return give_report(parsed, request, make_record_report(std::move(record), path, request.margin), path, {});
+    return give_report(parsed, request, make_record_report(std::move(record), path, request.limits), path, {});
 }
 
 }  // namespace credence::cli

@@ -142,22 +142,30 @@ std::string as_csv(const std::vector<Trajectory>& trajectories) {
     for (const Trajectory& t : trajectories) {
         text += t.scenario.name + "," + arm_name(t.arm) + "," + status_text(t);
         for (int c = column_trace_P; c <= column_nis_ratio; ++c)
-            text += "," + to_text(t.columns[static_cast<std::size_t>(c)]);
+            text += "," + (std::isfinite(t.columns[static_cast<std::size_t>(c)])
+                               ? to_text(t.columns[static_cast<std::size_t>(c)])
+                               : "");
         text += "\n";
     }
     return text;
 }
 
+/// `-` for a figure that a failed trial does not have.
+std::string figure_text(double value, int digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return std::isfinite(value) ? text : "-";
+}
+
 std::string as_text(const std::vector<Trajectory>& trajectories) {
     std::string text;
     for (const Trajectory& t : trajectories) {
-        char line[400];
-        std::snprintf(line, sizeof line,
-                      "%s/%s: %s, trace(P) %.5g %s, unseen %.0f, pose error %.5g, NEES/n %.4g, NIS/m %.4g\n",
-                      t.scenario.name.c_str(), arm_name(t.arm).c_str(), status_text(t).c_str(),
-                      t.columns[column_trace_P], trace_unit(t.scenario).c_str(), t.columns[column_unseen],
-                      t.columns[column_pose_error], t.columns[column_nees_ratio], t.columns[column_nis_ratio]);
-        text += line;
+        const auto figure = [&](ColumnIndex column, int digits) { return figure_text(t.columns[column], digits); };
+        const bool unseen_known = t.columns[column_unseen] >= 0;
+        text += t.scenario.name + "/" + arm_name(t.arm) + ": " + status_text(t) + ", trace(P) " +
+                figure(column_trace_P, 5) + " " + trace_unit(t.scenario) + ", unseen " +
+                (unseen_known ? figure(column_unseen, 15) : "-") + ", pose error " + figure(column_pose_error, 5) +
+                ", NEES/n " + figure(column_nees_ratio, 4) + ", NIS/m " + figure(column_nis_ratio, 4) + "\n";
     }
     return text;
 }

@@ -17,6 +17,7 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
         {margin_option(),
+         failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
          output_option("write there, not to the standard output"),
@@ -25,7 +26,7 @@ const Command& report_command() {
 }
 
 ReportRequest read_report_request(const Parsed& parsed) {
-    const ReportRequest request{parsed.choice("format"), parse_margin(parsed)};
+    const ReportRequest request{parsed.choice("format"), {parse_margin(parsed), parse_failed(parsed)}};
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require");
     return request;
@@ -50,7 +51,7 @@ int report(const Parsed& parsed) {
     const std::string& path = parsed.arguments.front();
     check_kind(path, {FileKind::results});
     const StoredStudy stored = read_results(path, most_totals_in_memory);
-    return give_report(parsed, request, make_report(stored.study, request.margin), path, stored.run);
+    return give_report(parsed, request, make_report(stored.study, request.limits), path, stored.run);
 }
 
 }  // namespace credence::cli

@@ -141,7 +141,7 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
 }
 
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
-    print(report_text(make_report(study, 0.05)) + "\n" + (work.last_look ? stopping_text(*work.last_look) : "") +
+    print(report_text(make_report(study, {})) + "\n" + (work.last_look ? stopping_text(*work.last_look) : "") +
           printable(request.output) +
           (work.changed ? ": " + bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output))) +
                               ", computed in " + duration_text(work.seconds) + " on " + threads_text(request) + " threads\n"

@@ -19,11 +19,11 @@ std::string formatted(const char* format, int digits, double value) {
 }
 
 /// Two significant digits.
-std::string width_text(double width) { return std::isnan(width) ? "unknown" : formatted("%.*g", 2, width); }
+std::string width_text(double width) { return !std::isfinite(width) ? "unknown" : formatted("%.*g", 2, width); }
 
 /// `0.1984 ± 0.0081`: as many decimals as show two digits of the half-width.
 std::string interval_text(const GoalState& state) {
-    if (std::isnan(state.half_width)) return "unknown (" + std::to_string(state.count) + " values)";
+    if (!std::isfinite(state.half_width)) return "unknown (" + std::to_string(state.count) + " values)";
     const double size = state.half_width > 0 ? std::log10(state.half_width) : -3;
     const int decimals = std::clamp(1 - static_cast<int>(std::floor(size)), 0, 12);
     return formatted("%.*f", decimals, state.mean) + " ± " + formatted("%.*f", decimals, state.half_width);

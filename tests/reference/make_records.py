@@ -75,14 +75,16 @@ def hide_rows(rng, record, share):
 
 
 def end_runs(rng, record, first=1):
-    """Runs of different lengths, and one step missing within a run."""
+    """Runs of different lengths, declared, and one step missing within a run."""
     trials, steps, _ = record.error.shape
-    for trial, length in enumerate(rng.integers(first, steps + 1, size=trials)):
+    record.steps = rng.integers(first, steps + 1, size=trials).astype(np.int32)
+    for trial, length in enumerate(record.steps):
         record.error[trial, length:] = np.nan
         record.covariance[trial, length:] = np.nan
     record.error[0, :] = rounded(rng.normal(size=record.error[0].shape))
     record.covariance[0] = np.eye(record.error.shape[2])
-    record.error[0, 2] = np.nan
+    record.steps[0] = steps
+    record.error[0, 2] = record.covariance[0, 2] = np.nan
 
 
 def ragged(rng):
@@ -90,7 +92,41 @@ def ragged(rng):
     hide_rows(rng, record, 0.3)
     end_runs(rng, record)
     record.innovation[3, 0] = np.nan  # a step without any row, in a run that has no other
-    record.error[3, 1:] = np.nan
+    record.error[3, 1:] = np.nan  # the covariance is not: behind the end it is not looked at
+    record.steps[3] = 1
+    record.error[5] = 7           # nor is this
+    record.steps[5] = 1
+    return record
+
+
+def cut(rng):
+    """Runs that end early: most do not say so, and the longest is shorter than the file."""
+    record = gaussian(rng, 40, 8, 2)
+    for trial, length in enumerate([7] * 30 + list(rng.integers(1, 7, size=10))):
+        record.error[trial, length:] = record.covariance[trial, length:] = np.nan
+    return record
+
+
+def broken(rng):
+    """Trials that fail in every way that is not a covariance's, and one that declares steps it does not have."""
+    record = gaussian(rng, 20, 5, 3, 2)
+    record.error[1, 2] = np.nan
+    record.covariance[2, 2] = np.nan
+    record.error[3, 4, 1] = np.nan
+    record.error[4, 0, 2] = -np.inf
+    record.covariance[5, 1, 0, 2] = np.inf
+    record.covariance[6, 1, 1, 1] = np.nan
+    record.innovation[7, 3, 1] = np.inf
+    record.innovation_covariance[8, 3, 0, 1] = np.nan
+    record.error[9, 3, 0] = 2e12                       # diverged: in the figures
+    record.covariance[10, 3:] *= 2.0**50               # the same
+    record.error[11, 1, 0] = 2e12                      # diverged, and then failed
+    record.covariance[11, 4] = 0
+    record.error[12, 4] = record.covariance[12, 4] = np.nan
+    record.error[12, 2] = record.covariance[12, 2] = np.nan
+    record.steps = np.full(20, 5.0)
+    record.steps[13] = 2
+    record.error[13, 3] = np.inf                       # behind its end
     return record
 
 
@@ -133,6 +169,8 @@ def small(folder):
                     dict(attribute=(np.array([b"a 0:2", b"b 1:4"]),), dtype="f4", chunks=(7, 2, 3, 3),
                          compression="gzip")),
         "one": (lambda rng: gaussian(rng, 30, 3, 1, 1), dict(attribute=(h5py.Empty("S1"),))),
+        "cut": (cut, dict(compression="gzip")),
+        "broken": (broken, dict()),
     }
     expected = {}
     for seed, (name, (make, how)) in enumerate(cases.items()):

@@ -11,12 +11,12 @@ CELLS = 4096
 
 class Record:
     def __init__(self, error, covariance, innovation=None, innovation_covariance=None, blocks=None):
-        self.error, self.covariance = error, covariance
+        self.error, self.covariance, self.steps = error, covariance, None
         self.innovation, self.innovation_covariance = innovation, innovation_covariance
         self.blocks = blocks or {}
 
     def datasets(self):
-        names = ["error", "covariance", "innovation", "innovation_covariance"]
+        names = ["error", "covariance", "innovation", "innovation_covariance", "steps"]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
 
@@ -34,17 +34,27 @@ class Expected:
         self.record = record
         self.trials, self.steps, self.n = record.error.shape
         self.blocks = {"all": (0, self.n), **record.blocks}
-        self.there = ~np.isnan(record.error).all(axis=2)
-        self.P = np.where(self.there[..., None, None], record.covariance, np.eye(self.n))
+        known_error = ~np.isnan(record.error).all(axis=2)
+        self.there = known_error | ~np.isnan(record.covariance).all(axis=(2, 3))
+        last = [np.flatnonzero(row)[-1] + 1 if row.any() else 0 for row in known_error]
+        self.ends = np.full(self.trials, max(last)) if record.steps is None else record.steps
+        if record.steps is not None:
+            self.there &= np.arange(self.steps) < record.steps[:, None]
+        finite = np.isfinite(record.error).all(axis=2) & np.isfinite(record.covariance).all(axis=(2, 3))
+        self.broken = self.there & ~finite
+        self.P = np.where((self.there & finite)[..., None, None], record.covariance, np.eye(self.n))
         if record.innovation is not None:
             self.observed = ~np.isnan(record.innovation) & self.there[..., None]
             both = self.observed[..., :, None] & self.observed[..., None, :]
             # A row that is not observed becomes a 0 of variance 1 of its own: it changes neither NIS nor other rows.
-            self.S = np.where(both, record.innovation_covariance, np.eye(both.shape[-1]))
-            self.nu = np.where(self.observed, record.innovation, 0)
+            S, nu = (np.where(where, values, other) for where, values, other in
+                     ((both, record.innovation_covariance, np.eye(both.shape[-1])), (self.observed, record.innovation, 0)))
+            self.broken |= ~(np.isfinite(nu).all(axis=2) & np.isfinite(S).all(axis=(2, 3)))
+            self.S = np.where(self.broken[..., None, None], np.eye(both.shape[-1]), S)
+            self.nu = np.where(self.broken[..., None], 0, nu)
         self.troubles = self.find_troubles()
         self.failed = np.zeros(self.trials, dtype=bool)
-        self.failed[[trouble[0] for trouble in self.troubles]] = True
+        self.failed[[trouble[0] for trouble in self.troubles if trouble[3] >= 2]] = True
         self.there &= ~self.failed[:, None]
         self.values = {}
         self.white = None
@@ -57,21 +67,46 @@ class Expected:
         smallest = [("covariance", smallest_eigenvalues(self.P))]
         if self.record.innovation is not None:
             smallest.append(("innovation covariance", smallest_eigenvalues(self.S)))
-        beyond = np.nan_to_num(np.abs(self.record.error)).max(axis=2) > 1e70
+        error = np.nan_to_num(np.abs(self.record.error)).max(axis=2)
+        beyond, large = error > 1e70, {"error": error > 1e12, "covariance": np.abs(self.P).max(axis=(2, 3)) > 1e12}
         found = []
         for trial in range(self.trials):
-            of_trial = []
+            of_trial, diverged = [], []
             for step in np.flatnonzero(self.there[trial]):
+                if self.broken[trial, step]:
+                    of_trial.append([step, self.what_is_broken(trial, step), 3])
+                    continue
                 for name, value in smallest:
                     if value[trial, step] < 1e-12:
                         worse = value[trial, step] < -1e-12
                         of_trial.append([step, f"{name} is {'not positive definite' if worse else 'singular'}", 2])
                 if beyond[trial, step]:
                     of_trial.append([step, "a figure of this step is beyond 1e140", 3])
-            if not self.there[trial].any():
-                of_trial = [[0, "no step exists: every error is NaN", 3]]
-            found += [[trial, *of_trial[0]]] if of_trial else []
+                diverged += [[step, f"the {what} is beyond 1e12: diverged", 1]
+                             for what, where in large.items() if where[trial, step]]
+            found += [[trial, *one] for one in (of_trial + self.early_end(trial) + diverged)[:1]]
         return found
+
+    def early_end(self, trial):
+        if not self.there[trial].any():
+            return [[0, "no step exists: every error is NaN", 3]]
+        end, asked = int(np.flatnonzero(self.there[trial])[-1]) + 1, int(self.ends[trial])
+        if end >= asked:
+            return []
+        of, unsaid = f"the trial ends after {end} of ", ", and no dataset `steps` declares that it is shorter"
+        return [[end, of + (f"{asked} steps{unsaid}" if self.record.steps is None
+                            else f"the {asked} steps that `steps` declares"), 3]]
+
+    def what_is_broken(self, trial, step):
+        e, P = self.record.error[trial, step], self.record.covariance[trial, step]
+        if np.isnan(e).all():
+            return "the error is NaN, and the covariance is not"
+        if np.isnan(P).all():
+            return "the covariance is NaN, and the error is not"
+        for what, values in (("error", e), ("covariance", P)):
+            if not np.isfinite(values).all():
+                return f"the {what} is not finite"
+        return f"the innovation{'' if np.isinf(self.record.innovation[trial, step]).any() else ' covariance'} is not finite"
 
     def put(self, name, part, values):
         """`values` of the steps that are there, in order."""
