@@ -112,7 +112,7 @@ void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& a
 }
 
 /// There are a journal and a results file that it does not know: its run wrote that and died before the journal was
-/// removed, or someone put it there, such as a merge.
+/// removed, or a merge put it there.
 void StoredRun::choose(const StudyDefinition& asked) {
     Study in_file = stored(asked);
     journal_->load(study_);
