@@ -11,7 +11,7 @@ namespace credence {
 namespace {
 
 const std::string after_release = ": ";
-constexpr std::size_t most_releases = 1000;
+constexpr std::size_t most_releases = 1000, longest_text = std::size_t{16} << 20;
 
 std::string blocks_text(const BlockRanges& blocks) {
     std::string text;
@@ -124,6 +124,7 @@ std::string provenance_text(const Study& study) {
 Provenance read_provenance(const std::string& text, const Study& study) {
     Provenance provenance;
     if (text.empty()) return provenance;
+    if (text.size() > longest_text) throw std::invalid_argument("a list of releases that is too long");
     if (text.rfind(after_release) == std::string::npos) {
         for (std::size_t s = 0; s < study.scenarios.size(); ++s)
             note_computed(provenance, text, s, study.scenarios[s].blocks);
