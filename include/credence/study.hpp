@@ -116,6 +116,7 @@ BlockRanges missing_blocks(const ScenarioResults& results, std::int64_t trials, 
 /// Bytes of memory and of file that `trials` trials of the study take.
 struct Footprint {
     std::int64_t memory = 0, file = 0;
+    std::int64_t cells = 0;  ///< totals by step that are written and reported
 };
 Footprint footprint(const Study& study, std::int64_t trials, int threads);
 

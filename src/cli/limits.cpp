@@ -5,7 +5,11 @@
 #include <omp.h>
 #include <pthread.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 
@@ -35,7 +39,32 @@ std::size_t smallest_stack() {
     return smallest;
 }
 
+/// The number in a file of the control group that this process is in; none where there is no limit.
+std::optional<std::int64_t> number_in(const std::string& path) {
+    std::int64_t number = 0;
+    if (std::ifstream(path) >> number && number > 0) return number;
+    return std::nullopt;
+}
+
 }  // namespace
+
+std::int64_t memory_limit() {
+    std::int64_t least = std::int64_t{sysconf(_SC_PHYS_PAGES)} * sysconf(_SC_PAGESIZE);
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < static_cast<rlim_t>(least))
+        least = static_cast<std::int64_t>(limit.rlim_cur);
+    for (const char* file : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
+        if (const std::optional<std::int64_t> of_group = number_in(file)) least = std::min(least, *of_group);
+    return least;
+}
+
+std::optional<std::int64_t> free_space(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::error_code trouble;
+    const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, trouble);
+    if (trouble) return std::nullopt;
+    return static_cast<std::int64_t>(space.available);
+}
 
 void check_stack() {
     const std::size_t stack = smallest_stack();

@@ -51,6 +51,7 @@ const Command& run_command() {
          {"commit-every", "BLOCKS",
           "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},
+         {"force", "", "start a run that --dry-run says cannot fit"},
          {"quiet", "", "no progress and no table"}}};
     return command;
 }
@@ -174,6 +175,7 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const Interrupt interrupt;
     StoredRun stored = starting_run(request);
     if (parsed.has("dry-run")) return dry_run(request, stored.study());
+    if (!parsed.has("force")) check_fit(request, stored.study());
 
     const Work work = keep(stored, request, ranks.get(), command_line);
     const std::string signal = stopped_by(ranks.get());
