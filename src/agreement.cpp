@@ -107,11 +107,13 @@ void check_arm(const ScenarioResults& results, const ArmResults& arm, const std:
 
 }  // namespace
 
+void check_agreement(const ScenarioResults& results, const std::string& path) {
+    const WithTotals with_totals(results);
+    for (const ArmResults& arm : (*with_totals).arms) check_arm(*with_totals, arm, path);
+}
+
 void check_agreement(const Study& study, const std::string& path) {
-    for (const ScenarioResults& results : study.scenarios) {
-        const WithTotals with_totals(results);
-        for (const ArmResults& arm : (*with_totals).arms) check_arm(*with_totals, arm, path);
-    }
+    for (const ScenarioResults& results : study.scenarios) check_agreement(results, path);
 }
 
 }  // namespace credence

@@ -3,7 +3,6 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
-#include "agreement.hpp"
 #include "merge_scenario.hpp"
 
 #include <algorithm>
@@ -57,17 +56,17 @@ void check_releases(const Study& first, const Study& other, const std::vector<st
 /// What files that are added one after the other make.
 class Merger {
 public:
-    explicit Merger(const std::vector<std::string>& paths) : paths_(paths) {}
+    explicit Merger(const std::vector<std::string>& paths)
+        : paths_(paths), shared_paths_(std::make_shared<const std::vector<std::string>>(paths)) {}
 
     void add(std::size_t file, Study part) {
-        check_agreement(part, paths_[file]);
         if (scenarios_.empty()) begin(part, file);
         check_same_study(study_, part, paths_, file, first_);
         check_releases(study_, part, paths_, first_, file);
         for (std::size_t s = 0; s < scenarios_.size(); ++s) {
             const BlockRanges fresh = part.scenarios[s].blocks.without(scenarios_[s].blocks());
             note_computed(study_.computed_by, part.computed_by, s, fresh);
-            scenarios_[s].add(part, file);
+            scenarios_[s].add(part.scenarios[s], file);
         }
     }
 
@@ -79,7 +78,8 @@ public:
     }
 
     Study merged() {
-        for (std::size_t s = 0; s < scenarios_.size(); ++s) study_.scenarios[s] = scenarios_[s].merged();
+        TotalsInMemory in_memory(most_totals_in_memory);
+        for (std::size_t s = 0; s < scenarios_.size(); ++s) study_.scenarios[s] = scenarios_[s].merged(in_memory);
         study_.complete = missing_text(study_).empty();
         return std::move(study_);
     }
@@ -88,12 +88,13 @@ private:
     void begin(const Study& part, std::size_t file) {
         first_ = file;
         for (std::size_t s = 0; s < part.scenarios.size(); ++s)
-            scenarios_.emplace_back(part.scenarios[s], s, paths_);
+            scenarios_.emplace_back(part.scenarios[s], part.trials, part.root_seed, shared_paths_);
         study_ = part;
         for (ScenarioResults& results : study_.scenarios) results.arms.clear();
     }
 
     const std::vector<std::string>& paths_;
+    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for what is read when the results are written
     std::size_t first_ = 0;
     Study study_;
     std::vector<ScenarioMerger> scenarios_;
@@ -105,7 +106,7 @@ std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
     std::vector<std::pair<std::int64_t, std::size_t>> sizes;
     for (std::size_t file = 0; file < paths.size(); ++file) {
         std::int64_t blocks = 0;
-        for (const ScenarioResults& results : read_results(paths[file]).study.scenarios) blocks += results.blocks.count();
+        for (const ScenarioResults& results : read_results_without_totals(paths[file]).study.scenarios) blocks += results.blocks.count();
         sizes.emplace_back(blocks, file);
     }
     std::sort(sizes.begin(), sizes.end());
@@ -116,7 +117,7 @@ std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
 
 Study merge_shared(const std::vector<std::string>& paths) {
     Merger merger(paths);
-    for (const std::size_t file : by_size(paths)) merger.add(file, read_results(paths[file]).study);
+    for (const std::size_t file : by_size(paths)) merger.add(file, read_results_without_totals(paths[file]).study);
     return merger.merged();
 }
 
@@ -125,7 +126,7 @@ Study merge_shared(const std::vector<std::string>& paths) {
 Study merge_results(const std::vector<std::string>& paths) {
     Merger merger(paths);
     for (std::size_t file = 0; file < paths.size(); ++file) {
-        Study part = read_results(paths[file]).study;
+        Study part = read_results_without_totals(paths[file]).study;
         if (merger.shares(part)) return merge_shared(paths);
         merger.add(file, std::move(part));
     }

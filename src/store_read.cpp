@@ -87,6 +87,7 @@ struct Opened {
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
     Keep keep = Keep::trials;
+    std::optional<std::int64_t> most_totals;  ///< bytes of them that are in memory; nothing: they are not looked at
 };
 
 FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t steps, hsize_t parts) {
@@ -168,7 +169,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
         arm.aggregates = read_aggregates(group, results, read_parts(group));
         check_counted(group, arm, arm.aggregates.counted());
     }
-    read_totals(group, results, arm);
+    if (source.most_totals) read_totals(group, results, arm);
     return arm;
 }
 
@@ -226,7 +227,7 @@ Provenance computed_by(const Study& study, const RunFacts& run) {
                : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
 }
 
-StoredStudy read_study(const Opened& source, std::int64_t most_totals) {
+StoredStudy read_study(const Opened& source) {
     const Handle& root = *source.file;
     StoredStudy stored;
     Study& study = stored.study;
@@ -234,7 +235,7 @@ StoredStudy read_study(const Opened& source, std::int64_t most_totals) {
     if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
         throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
     study.trials = source.asked;
-    TotalsInMemory in_memory(most_totals);
+    TotalsInMemory in_memory(source.most_totals.value_or(0));
     for (const std::string& name : hdf5::link_names(root))
         if (name != run_group) {
             study.scenarios.push_back(read_scenario_results(name, source));
@@ -250,8 +251,8 @@ StoredStudy read_study(const Opened& source, std::int64_t most_totals) {
     return stored;
 }
 
-Opened open_results(const std::string& path) {
-    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials};
+Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
+    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
     check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
@@ -266,7 +267,11 @@ Opened open_results(const std::string& path) {
 }  // namespace
 
 StoredStudy read_results(const std::string& path, std::int64_t most_totals) {
-    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path), most_totals); });
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path, most_totals)); });
+}
+
+StoredStudy read_results_without_totals(const std::string& path) {
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path, std::nullopt)); });
 }
 
 }  // namespace credence

@@ -63,6 +63,9 @@ void write_results(const Output& output, const Study& study, const RunFacts& run
 StoredStudy read_results(const std::string& path,
                          std::int64_t most_totals = std::numeric_limits<std::int64_t>::max());
 
+/// The same, but totals and details stay in the file and are not looked at before load_totals() does, which throws then.
+StoredStudy read_results_without_totals(const std::string& path);
+
 /// Reads a noise record: `odometry` [K, 3], `walk`, `deformation`, `measurement` [K, M, 2], optionally `edge` [K, E,
 /// 2]. Throws InputError where something is missing, has another shape or type, or is not finite.
 NoiseRecord read_noise_record(const std::string& path);
