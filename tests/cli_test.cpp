@@ -255,3 +255,18 @@ TEST_CASE("cli: help for every command, and the version with the facts of the bu
     CHECK(version.exit_code == 0);
     CHECK_THAT(version.out, Contains("credence ") && Contains("compiler") && Contains("instruction_set") && Contains("schema_version"));
 }
+
+TEST_CASE("cli: a run that cannot fit is refused before any work, unless --force is given") {
+    const Workplace here;
+    here.write("small.ini", "[scenario]\nname = small\nposes = 3\n");
+    const std::string run = CREDENCE_PROGRAM " run small.ini --quiet -o x.h5 --threads 1 ";
+    const Outcome disk = here.shell(run + "--trials 1e12");
+    CHECK(disk.exit_code == 2);
+    CHECK_THAT(disk.err, Contains("cannot run") && Contains("--force"));
+    const Outcome memory = here.shell("ulimit -v 400000; " + run + "--set scenario.poses=20000 --trials 256");
+    CHECK(memory.exit_code == 2);
+    CHECK_THAT(memory.err, Contains("of memory") && Contains("--dry-run"));
+    CHECK(here.names() == std::vector<std::string>{"small.ini"});
+    CHECK(here.shell(run + "--trials 1e12 --dry-run").exit_code == 0);
+    CHECK(here.shell("timeout -s INT 0.5 " + run + "--trials 1e12 --force").exit_code == 124);
+}

@@ -155,3 +155,30 @@ TEST_CASE("consistency: a wider margin forgives more", "[long]") {
     s.filter.covariance = 1.1;
     CHECK(verdict_name(verdict_of(s, 20000, 0.15).verdict) == "consistent");
 }
+
+TEST_CASE("consistency: of failed trials exactly the share is not more, whatever the rounding of share times trials") {
+    for (const std::int64_t all : {100LL, 1000LL, 29'000LL, 1'000'000LL, 999'983LL * 1000})
+        for (std::int64_t percent = 0; percent <= 100; ++percent) {
+            const std::int64_t exact = all / 100 * percent;
+            const double share = static_cast<double>(percent) / 100;
+            CAPTURE(all, percent);
+            CHECK_FALSE(too_many_failed(exact, all, share));
+            CHECK(too_many_failed(exact + 1, all, share));
+        }
+    CHECK_FALSE(too_many_failed(0, 0, 0));
+}
+
+TEST_CASE("consistency: trials that are left out and trials that diverged count alike as failed") {
+    Evidence evidence;
+    evidence.all_trials = 200;
+    for (const auto& [left_out, diverged, verdict] : {std::tuple(2, 0, Verdict::undecided), std::tuple(0, 2, Verdict::undecided),
+                                                      std::tuple(3, 0, Verdict::failed), std::tuple(0, 3, Verdict::failed),
+                                                      std::tuple(2, 1, Verdict::failed)}) {
+        CAPTURE(left_out, diverged);
+        evidence.left_out = left_out;
+        evidence.diverged = diverged;
+        evidence.trials = 200 - left_out;
+        CHECK(judge(evidence, 0.05).verdict == verdict);
+        CHECK(judge(evidence, {0.05, 0.02}).verdict == Verdict::undecided);
+    }
+}

@@ -46,7 +46,7 @@ cp usr/share/credence/experiments/own_filter/tracker.hpp own_filter
 block '^int main' >own_filter/main.cpp
 block '^add_executable' >own_filter/CMakeLists.txt
 block '^# tracker.ini' >own_filter/tracker.ini
-{ block '^cmake -S . -B build'; block '^build/tracker run'; } >own_filter/commands
+{ block '^cmake -S . -B build'; block '^[$] build/tracker run' | sed -n 's/^[$] //p'; } >own_filter/commands
 (cd own_filter && HOME=$work bash -e ./commands) >log 2>&1 || { cat log; exit 1; }
 grep -q 'no CMAKE_BUILD_TYPE is given; Release is taken' log || { echo "no build type is taken"; exit 1; }
 grep -rqs -e ' -O3 ' own_filter/build/CMakeFiles/tracker.dir own_filter/build/build.ninja ||

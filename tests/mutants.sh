@@ -42,7 +42,7 @@ nearest() {
     *judge.hpp | *detail.hpp | *chi_square.hpp) echo evidence_test ;;
     *aggregates.cpp | *superaccumulator.hpp | *paired.cpp) echo aggregates_test ;;
     *block_ranges.cpp) echo block_ranges_test ;;
-    *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test goodness_test ;;
+    *evidence*.cpp | *goodness.cpp | *consistency*.cpp) echo evidence_test consistency_test consistency_note_test goodness_test ;;
     *controller.hpp) echo controller_test planner_test "$whole" ;;
     *horizon.hpp) echo horizon_test ;;
     *planner.hpp | *screening.hpp | *measurement_space.hpp | *visible_sets.hpp | *turned_trace.hpp)

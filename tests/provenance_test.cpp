@@ -118,7 +118,7 @@ TEST_CASE("provenance: of a file that has no list the release that wrote it comp
 TEST_CASE("results format: the page shows the list of releases as it is read and written") {
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
     CHECK(says(page, "`computed_by`"));
-    const std::size_t begin = page.find("```\n", page.find("## `/run`")) + 4, end = page.find("\n```", begin);
+    const std::size_t begin = page.find("```text\n", page.find("## `/run`")) + 8, end = page.find("\n```", begin);
     Study study = new_study({scenario("straight"), scenario("circle")}, 1);
     for (ScenarioResults& results : study.scenarios) extend(results, 8 * block_size);
     const std::string list = page.substr(begin, end - begin);
