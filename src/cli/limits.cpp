@@ -62,7 +62,7 @@ std::optional<std::int64_t> free_space(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     std::error_code trouble;
     const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, trouble);
-    if (trouble) return std::nullopt;
+    if (trouble || space.capacity == 0) return std::nullopt;  // such as /proc
     return static_cast<std::int64_t>(space.available);
 }
 

@@ -48,7 +48,7 @@ small_disk() {
       mount -o remount,size=20m ../small || exit 1
       "$@" --resume || exit 1
       cp ../small/* "$OLDPWD"
-      exit $((100 + status))' - "$credence" "${study[@]}" || status=$?
+      exit $((100 + status))' - "$credence" "${study[@]}" --force || status=$?
     [ $status -eq 101 ] || fail "disk of $size: ended with $status"
     check_message "disk of $size" "no space left on device"
     check_whole "disk of $size"
@@ -78,7 +78,7 @@ folder_that_is_read_only() {
 folder_that_goes() {
   start_with ""
   mkdir ../gone
-  "$credence" run ../tiny.ini --trials 100000000 -o ../gone/x.h5 --quiet --commit-every 1 >../said 2>&1 &
+  "$credence" run ../tiny.ini --trials 100000000 --force -o ../gone/x.h5 --quiet --commit-every 1 >../said 2>&1 &
   local run=$! status=0
   until [ -s ../gone/x.h5.journal ]; do sleep 0.01; done
   rm -r ../gone
