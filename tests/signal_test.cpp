@@ -31,7 +31,7 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
         const Workplace here;
         here.write("small world.ini", small_world);
         // As many trials as would take hours.
-        const std::string arguments = "'small world.ini' --trials 1e8 --quiet -o x.h5 --commit-every 1 --threads 2";
+        const std::string arguments = "'small world.ini' --trials 1e8 --force --quiet -o x.h5 --commit-every 1 --threads 2";
         const Outcome stopped = disturbed(here, arguments, "kill -" + name + " $run");
         CAPTURE(name, stopped.err);
         CHECK(stopped.out == "exit code 3\n");
@@ -87,7 +87,7 @@ TEST_CASE("cli: a SIGHUP that nohup ignores stays ignored") {
     const Workplace here;
     here.write("small.ini", small_world);
     const Outcome run =
-        disturbed(here, "small.ini --trials 1e8 --quiet -o x.h5 --commit-every 1",
+        disturbed(here, "small.ini --trials 1e8 --force --quiet -o x.h5 --commit-every 1",
                   "kill -HUP $run; sleep 0.1; kill -HUP $run; sleep 0.1; kill -TERM $run", "trap '' HUP\n");
     CAPTURE(run.err);
     CHECK(run.out == "exit code 3\n");
