@@ -77,8 +77,8 @@ public:
         return false;
     }
 
-    Study merged() {
-        TotalsInMemory in_memory(most_totals_in_memory);
+    Study merged(std::int64_t most_totals) {
+        TotalsInMemory in_memory(most_totals);
         for (std::size_t s = 0; s < scenarios_.size(); ++s) study_.scenarios[s] = scenarios_[s].merged(in_memory);
         study_.complete = missing_text(study_).empty();
         return std::move(study_);
@@ -115,22 +115,22 @@ std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
     return order;
 }
 
-Study merge_shared(const std::vector<std::string>& paths) {
+Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_totals) {
     Merger merger(paths);
     for (const std::size_t file : by_size(paths)) merger.add(file, read_results_without_totals(paths[file]).study);
-    return merger.merged();
+    return merger.merged(most_totals);
 }
 
 }  // namespace
 
-Study merge_results(const std::vector<std::string>& paths) {
+Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals) {
     Merger merger(paths);
     for (std::size_t file = 0; file < paths.size(); ++file) {
         Study part = read_results_without_totals(paths[file]).study;
-        if (merger.shares(part)) return merge_shared(paths);
+        if (merger.shares(part)) return merge_shared(paths, most_totals);
         merger.add(file, std::move(part));
     }
-    return merger.merged();
+    return merger.merged(most_totals);
 }
 
 std::string missing_text(const Study& study) {
