@@ -82,7 +82,7 @@ struct Octets {
         run_square_sums.assign(figures * octet, 0);
         covered.assign(blocks * steps * coverage_level_count, 0);
         if (!detail) {
-            errors = {};  // much room, and seldom wanted
+            errors = std::vector<double>();  // much room, and seldom wanted; {} would keep it
             return;
         }
         errors.resize(components * steps * padded);
@@ -132,6 +132,8 @@ void store_cells(const Octets& from, const EquiprobableCells& cells, const std::
 /// Errors and NEES by trial, rounded to single precision.
 void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock& arm) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    arm.nees.reserve(from.trials * from.steps);
+    arm.errors.reserve(from.trials * from.steps * from.components);
     for (std::size_t trial = 0; trial < from.trials; ++trial) {
         for (std::size_t k = 0; k < from.steps; ++k) {
             arm.nees.push_back(failed[trial] ? nan : static_cast<float>(from.nees[k * from.padded + trial]));

@@ -1,6 +1,7 @@
 #pragma once
 // Room 12: numbers as bytes and back, for the journal. Little-endian, as every machine is that credence runs on.
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,12 @@ public:
     template <class T>
     void set(std::size_t position, T value) {
         std::memcpy(bytes_.data() + position, &value, sizeof value);
+    }
+
+    /// Makes room for so many further bytes.
+    void reserve(std::size_t further) {
+        const std::size_t size = bytes_.size() + further;
+        if (size > bytes_.capacity()) bytes_.reserve(std::max(size, 2 * bytes_.capacity()));
     }
 
     const std::string& bytes() const { return bytes_; }

@@ -23,7 +23,7 @@ void Journal::begin(const JournalHeader& header, Study& study) {
     keep(study);
     file_.cut(0);
     const std::string bytes = header_bytes(header);
-    file_.append(bytes);
+    file_.append({bytes});
     header_size_ = static_cast<std::int64_t>(bytes.size());
     seal_ = checksum(bytes.data(), bytes.size());
     sync_folder(folder_of(file_.path()), file_.path());
@@ -43,6 +43,7 @@ void Journal::take(std::size_t scenario, const Block& block) {
     Kept& kept = kept_[scenario];
     const std::size_t before = kept.pending_values.size();
     kept.pending.push_back(block.index);
+    kept.pending_values.reserve(static_cast<std::size_t>(kept.layout.size({block.index, block.trials})));
     put_block(kept.pending_values, kept.types, block);
     pending_size_ += kept.pending_values.size() - before;
     ++pending_blocks_;
@@ -85,7 +86,7 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     const Keep keep = kept.layout.keep();
     RecordStart start = record_of(kept.pending, study.trials, kept.layout);
     const std::size_t before = record_head_size + record_start_size + block_list_size(start, keep);
-    std::int64_t position = file_.size() + static_cast<std::int64_t>(batch_.size() + before);
+    std::int64_t position = file_.size() + batch_size_ + static_cast<std::int64_t>(before);
     for (const JournalBlock& block : start.blocks) {
         kept.placed.put(block.index, {block.trials, position, false});
         position += kept.layout.size(block);
@@ -97,12 +98,12 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     start.shard = shard_;
     start.release = release_;
     note_computed(computed_by_, release_, scenario, kept.pending);
-    // Moved out, as a string that is only cleared keeps its room: one for every scenario of the study.
-    const std::string values = kept.pending_values.take();
-    batch_ += record_bytes(static_cast<std::uint32_t>(scenario), start, keep, values, totals.bytes());
-    batch_.append(record_tail_size, '\0');
-    ends_.push_back(batch_.size());
     totals_size_ += totals.size();
+    // Moved out: values are large, and a string that is only cleared would keep its room, one for every scenario.
+    batch_.push_back({record_start_bytes(static_cast<std::uint32_t>(scenario), start, keep,
+                                         kept.pending_values.size() + totals.size()),
+                      kept.pending_values.take(), totals.take()});
+    batch_size_ += batch_.back().size() + static_cast<std::int64_t>(record_tail_size);
     kept.pending.clear();
 }
 
@@ -118,17 +119,19 @@ void Journal::prepare(const Study& study) {
 }
 
 void Journal::commit() {
-    std::size_t begin = 0;
-    for (const std::size_t end : ends_) {
-        const std::size_t size = end - begin - record_tail_size;
-        const std::uint32_t crc = checksum(batch_.data() + begin, size);
-        std::memcpy(batch_.data() + begin + size, &crc, sizeof crc);
+    std::vector<std::string> pieces;
+    for (PreparedRecord& record : batch_) {
+        std::uint32_t crc = 0;
+        for (std::string* piece : {&record.start, &record.values, &record.totals}) {
+            crc = checksum(piece->data(), piece->size(), crc);
+            pieces.push_back(std::move(*piece));
+        }
+        pieces.back().append(reinterpret_cast<const char*>(&crc), sizeof crc);
         seal_ = seal_with(seal_, crc);
-        begin = end;
     }
-    if (!batch_.empty()) file_.append(batch_);
+    if (!pieces.empty()) file_.append(pieces);
     batch_.clear();
-    ends_.clear();
+    batch_size_ = 0;
     committing_ = false;
 }
 

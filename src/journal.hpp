@@ -137,8 +137,15 @@ private:
     Provenance computed_by_;
     std::vector<Kept> kept_;
 
-    std::string batch_;              ///< records to be committed, their checksums still missing
-    std::vector<std::size_t> ends_;  ///< of those records in the batch
+    /// A record to be committed, its checksum still missing.
+    struct PreparedRecord {
+        std::string start, values, totals;
+
+        std::int64_t size() const { return static_cast<std::int64_t>(start.size() + values.size() + totals.size()); }
+    };
+
+    std::vector<PreparedRecord> batch_;
+    std::int64_t batch_size_ = 0;    ///< bytes, with their checksums
     std::atomic<bool> committing_ = false;
     std::size_t totals_size_ = 0;    ///< of the last commit
     std::size_t pending_size_ = 0, pending_blocks_ = 0;

@@ -71,17 +71,21 @@ void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) co
     }
 }
 
-void JournalFile::append(const std::string& bytes) {
+void JournalFile::append(const std::vector<std::string>& pieces) {
     if (const std::int64_t there = status_of(file_, path_).st_size; there != size_)
         throw Failure("cannot write " + path_ + " (another program changed it: it has " + std::to_string(there) +
                       " bytes, " + std::to_string(size_) + " were written). Keep other programs from it.");
     const FileSizeSignalIgnored ignored;
     ByteFile file(file_.get());
-    file.write(static_cast<std::uint64_t>(size_), bytes.data(), bytes.size());
+    std::int64_t end = size_;
+    for (const std::string& piece : pieces) {
+        file.write(static_cast<std::uint64_t>(end), piece.data(), piece.size());
+        end += static_cast<std::int64_t>(piece.size());
+    }
     int error = file.error();
     if (error == 0 && fdatasync(file_.get()) != 0) error = errno;
     if (error == 0) {
-        size_ += static_cast<std::int64_t>(bytes.size());
+        size_ = end;
         return;
     }
     // Where even this fails the tail is torn, and cut when the journal is opened again.

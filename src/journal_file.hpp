@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace credence {
 
@@ -41,7 +42,7 @@ public:
     /// Appends and syncs: when it returns the bytes are on the disk. Throws Failure where the system refuses; then what
     /// had been there before is there still, and nothing else. Throws it too where another program cut or lengthened the
     /// file; then nothing is written.
-    void append(const std::string& bytes);
+    void append(const std::vector<std::string>& pieces);
     /// Leaves the first `size` bytes.
     void cut(std::int64_t size);
     /// Removes it, unless its name leads to another file by now. Throws Failure.

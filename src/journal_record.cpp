@@ -217,15 +217,17 @@ RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
     return start;
 }
 
-std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
-                         const std::string& totals) {
+std::string record_start_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, std::size_t size_after) {
     ByteWriter record;
-    const std::size_t payload = record_start_size + block_list_size(start, keep) + values.size() + totals.size();
+    const std::size_t payload = record_start_size + block_list_size(start, keep) + size_after;
     put_record_head(record, {scenario, static_cast<std::int64_t>(payload)});
     put_record_start(record, start, keep);
-    record.put_raw(values.data(), values.size());
-    record.put_raw(totals.data(), totals.size());
     return record.take();
+}
+
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
+                         const std::string& totals) {
+    return record_start_bytes(scenario, start, keep, values.size() + totals.size()) + values + totals;
 }
 
 }  // namespace credence

@@ -110,9 +110,10 @@ RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t tria
 void put_shard(ByteWriter& to, const Shard& shard);
 Shard get_shard(ByteReader& from);
 
-/// A record but for its checksum.
+/// A record but for its checksum; and what of it stands before values and totals of so many bytes.
 std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
                          const std::string& totals);
+std::string record_start_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, std::size_t size_after);
 
 /// CRC-32 of zlib, going on from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);
