@@ -25,9 +25,9 @@ ScenarioFootprint footprint_of(const ScenarioResults& results, std::int64_t tria
     const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
     const std::int64_t shape = shape_counted(results.steps()) ? std::int64_t{results.steps()} * shape_cells * 8 : 0;
     // A thread's running sums of octets, their squares and the figures not yet folded; and details of its block, in the
-    // engine's order and in that of the results, and once more as bytes of a commit.
+    // engine's order and in that of the results. (By the time they are committed, that is free again.)
     const std::int64_t detailed_blocks = std::min<std::int64_t>(threads, (kept + block_size - 1) / block_size);
-    const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * numbers * 16 * detailed_blocks + kept * numbers * 5;
+    const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * numbers * 16 * detailed_blocks;
     return {totals_size(results, kept), arms * (threads * cells * 150 + of_details),
             arms * (trials * column_bytes + cells * 2 * 2 * 8 + (figures + 20) * 1500 + kept * numbers * 4 + shape)};
 }
@@ -49,6 +49,8 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
     // threads have stacks, and blocks wait to be committed.
     total.memory = std::min(totals, most_totals_in_memory + largest) + under_way + static_cast<std::int64_t>(threads) * (16 << 20);
     if (keep_of(study) == Keep::trials) total.memory += 6 * trials * 8;
+    // A scenario's settings, names and places in journal and file: measured with sweeps of 100 to 1,000 points.
+    total.memory += static_cast<std::int64_t>(study.scenarios.size()) * (150 << 10);
     return total;
 }
 

@@ -30,11 +30,15 @@ BlockSeconds seconds_of_a_block(const Declaration& scenario, const RunRequest& r
     const double enough = std::min(0.1, 5 / static_cast<double>(request.scenarios.size()));
     const BlockRunner runner(scenario);
     const std::int64_t last = (request.options.trials - 1) / block_size;
-    double before = 0;
-    for (int trials = octet;; trials *= 2) {
+    const auto seconds_of = [&](int trials) {
         const auto start = std::chrono::steady_clock::now();
         runner.run(request.root_seed, last, trials);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    seconds_of(octet);  // the first run touches its memory for the first time
+    double before = 0;
+    for (int trials = octet;; trials *= 2) {
+        const double seconds = seconds_of(trials);
         const bool last_try = trials >= request.options.trials || trials == block_size;
         if (trials > octet && (last_try || seconds > enough)) {
             const double trial = std::max(0.0, seconds - before) / (trials / 2);
