@@ -1,7 +1,7 @@
 // Whether all contenders do the same trials: their columns, trial by trial, in the run that quotes their ratios.
 
 #include <cmath>
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <sstream>
 #include <stdexcept>
 

@@ -1,7 +1,7 @@
 # The engine without its statistics beyond NEES, NIS and trace(P), so that their cost can be measured against it in one
 # run: a copy of the sources in which the lines below are taken out. Configuring stops where one of them is not found.
 set(bare_folder ${CMAKE_CURRENT_BINARY_DIR}/bare)
-file(COPY ${PROJECT_SOURCE_DIR}/include DESTINATION ${bare_folder})
+file(COPY ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src DESTINATION ${bare_folder})
 
 # without(FILE TEXT [TEXT INSTEAD]...): copies a file of the project with texts replaced.
 function(without file)
@@ -20,7 +20,7 @@ function(without file)
 endfunction()
 
 # Texts without semicolons, which CMake's lists take for their own.
-without(include/credence/judge.hpp
+without(src/slam/trial/step_evaluation.hpp
   "        standardise(i)" "        (void)standardise"
   "(n - i) % 2 == 0) standardise(i + one)" "(n - i) % 2 == 0) (void)0"
   "judgement.standardised_error[0] * judgement.standardised_error[0]" "error[0] * error[0] / P.entry[0][0]"
@@ -30,15 +30,15 @@ without(include/credence/judge.hpp
   "    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]" "    (void)([&](auto i) { return error[i] * error[i]"
   "    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]" "    (void)([&](auto i) { return Real(reported) * belief.covariance.entry[i][i]"
   "    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
-without(include/credence/update.hpp
+without(src/slam/update.hpp
   "return nis_of_edges(belief.covariance, filter, layout, contrasts, work)" "return (void)work, Real(0)"
   "    update.nis_features = update.nis" "    (void)0")
 # What is left: NEES by block, NIS, its rows, trace(P).
-without(include/credence/simulate_batch.hpp
+without(src/engine/simulate_batch.hpp
   "problem.figure_count" "(problem.block_count + 3)"
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
 
 credence_unit(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
-set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES ${bare_folder}/include SOURCES
-  "${PROJECT_SOURCE_DIR}/src/simulate_unit.cpp;${PROJECT_SOURCE_DIR}/src/simulate_landmarks_unit.cpp")
+set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES "${bare_folder}/include;${bare_folder}/src" SOURCES
+  "${PROJECT_SOURCE_DIR}/src/worlds/deformable/unit.cpp;${PROJECT_SOURCE_DIR}/src/worlds/landmarks/unit.cpp")
 target_compile_options(credence_unit_bare PRIVATE -Wno-unused-but-set-variable)

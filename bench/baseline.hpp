@@ -4,7 +4,7 @@
 //   B  fixed sizes, Cholesky instead of an inverse, nothing on the heap (baseline_fixed.cpp)
 // This face names no Eigen, so that the baselines alone are compiled for the machine they run on.
 
-#include <credence/problem.hpp>
+#include "slam/trial/problem.hpp"
 #include <cstdint>
 #include <memory>
 

@@ -2,7 +2,7 @@
 // Where a baseline's standard-normal draws come from: both kinds have the face that the trial asks for.
 
 #include <Eigen/Core>
-#include <credence/draws.hpp>
+#include <credence/detail/draws.hpp>
 #include <random>
 
 namespace credence::bench {

@@ -2,7 +2,7 @@
 // A Real that counts what it is asked to compute: + - * / sqrt as one operation, fma as two. Comparing, selecting,
 // changing a sign and all work on bits (the generator's) count nothing.
 
-#include <credence/draws.hpp>
+#include <credence/detail/draws.hpp>
 
 namespace credence {
 inline namespace CREDENCE_UNIT {

@@ -3,7 +3,7 @@
 
 #include "counted_unit.hpp"
 
-#include <credence/lane.hpp>
+#include "numeric/lane.hpp"
 
 #include "counted.hpp"
 
@@ -17,7 +17,7 @@ struct PackOf<CREDENCE_LANES> {
 }  // namespace credence
 
 #define CREDENCE_WRITTEN_OUT 3
-#include "../src/simulate_unit.cpp"
+#include "../src/worlds/deformable/unit.cpp"
 
 namespace credence::bench {
 

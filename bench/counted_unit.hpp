@@ -1,7 +1,7 @@
 #pragma once
 // The engine on counting numbers: a unit like any other, which gives the same columns and counts its operations.
 
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 
 namespace credence::bench {
 

@@ -1,6 +1,6 @@
 #include "kernels.hpp"
 
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 
 namespace credence {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Parts of the engine by themselves, compiled once for each instruction set like the engine's units.
 
-#include <credence/problem.hpp>
+#include "slam/trial/problem.hpp"
 #include <cstdint>
 #include <string>
 #include <vector>

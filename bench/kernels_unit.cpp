@@ -1,7 +1,7 @@
 // One instruction set's kernels. As in the engine's units, nothing here may emit a symbol outside the namespace.
 
-#include <credence/lane.hpp>
-#include <credence/trial.hpp>
+#include "numeric/lane.hpp"
+#include "slam/trial/trial.hpp"
 
 #include "kernels.hpp"
 

@@ -1,7 +1,7 @@
 // Benchmarks of credence: parts, whole trials against the baselines A and B, growth, threads, the program. Ends with
 // tables, or with the same as JSON.
 
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 #include <cstring>
 #include <fstream>
 #include <iostream>

@@ -2,7 +2,7 @@
 // best unit. All are measured in turns in one process, by the processor's time; medians, since the clock drifts.
 //   credence_bench_planning [ROUNDS]      (default 5)
 
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 
 #include <algorithm>
 #include <cstdio>

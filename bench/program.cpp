@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <credence/store.hpp>
 #include <filesystem>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "rows.hpp"
 
 #include <cmath>
-#include <credence/deformable.hpp>
-#include <credence/scenario_keys.hpp>
+#include "worlds/deformable/deformable.hpp"
+#include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
 
 namespace credence::bench {

@@ -1,7 +1,7 @@
 #pragma once
 // What is measured: scenarios with one arm each.
 
-#include <credence/problem.hpp>
+#include "slam/trial/problem.hpp"
 #include <deque>
 #include <string>
 #include <vector>

@@ -2,8 +2,8 @@
 
 #include "statistics.hpp"
 
-#include <credence/deformable.hpp>
-#include <credence/chi_square.hpp>
+#include "worlds/deformable/deformable.hpp"
+#include "numeric/chi_square.hpp"
 
 namespace credence {
 

@@ -1,6 +1,6 @@
 #include <omp.h>
 
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <credence/study.hpp>
 
 #include "rows.hpp"

@@ -1,7 +1,7 @@
 #include "trials.hpp"
 
 #include <cmath>
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <memory>
 
 #include "baseline.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // The units that are measured: those that the processor runs, and one more.
 
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 
 namespace credence::bench {
 

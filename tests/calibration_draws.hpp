@@ -2,7 +2,7 @@
 // NumPy's normal draws (tests/reference/make_chi_square.py) as the results of a filter: totals put together by hand, as
 // the engine would have folded them.
 
-#include <credence/chi_square.hpp>
+#include "numeric/chi_square.hpp"
 #include <credence/evidence.hpp>
 
 #include "reference.hpp"

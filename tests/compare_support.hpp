@@ -2,7 +2,7 @@
 // Studies and figures for the tests of `compare`.
 
 #include <credence/compare.hpp>
-#include <credence/scenario_keys.hpp>
+#include "worlds/deformable/keys.hpp"
 #include <numeric>
 
 #include "matched.hpp"

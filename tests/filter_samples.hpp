@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-#include <credence/problem.hpp>
+#include "slam/trial/problem.hpp"
 
 #include <random>
 

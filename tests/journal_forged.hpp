@@ -1,7 +1,7 @@
 #pragma once
 // Journals that somebody made up, with right checksums.
 
-#include <credence/watch.hpp>
+#include "report/watch/watch.hpp"
 
 #include "journal_support.hpp"
 

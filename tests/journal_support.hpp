@@ -1,11 +1,11 @@
 #pragma once
 // Runs that end before their end, and journals in bytes, for the tests of what is kept.
 
-#include <credence/scenario_keys.hpp>
-#include <credence/stored_run.hpp>
+#include "worlds/deformable/keys.hpp"
+#include "files/stored_run.hpp"
 
-#include "../src/journal_record.hpp"
-#include "../src/journal_totals.hpp"
+#include "files/journal/commit.hpp"
+#include "files/journal/totals.hpp"
 #include "store_study.hpp"
 #include "study_support.hpp"
 

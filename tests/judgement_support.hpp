@@ -1,7 +1,7 @@
 #pragma once
 // Records for `judge`, made here or by tests/reference/make_records.py.
 
-#include <credence/judgement_record.hpp>
+#include <credence/record.hpp>
 
 #include "reference.hpp"
 #include "store_damage.hpp"

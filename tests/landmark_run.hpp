@@ -1,8 +1,8 @@
 #pragma once
 // One trial among landmarks by the production code, with everything that its filter held.
 
-#include <credence/estimators.hpp>
-#include <credence/landmark_trial.hpp>
+#include "slam/estimators/estimators.hpp"
+#include "worlds/landmarks/trial.hpp"
 
 #include "filter_samples.hpp"
 

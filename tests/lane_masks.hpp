@@ -2,7 +2,7 @@
 // Room 1: masks of packs beside the same comparisons of plain doubles. Included by a test and, compiled for AVX-512, by
 // lane_masks_v4.cpp.
 
-#include <credence/lane.hpp>
+#include "numeric/lane.hpp"
 
 namespace credence {
 inline namespace CREDENCE_UNIT {

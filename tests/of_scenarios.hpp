@@ -1,7 +1,7 @@
 #pragma once
 // Studies of the deformable world, made of its own scenarios.
 
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <credence/study.hpp>
 
 #include <vector>

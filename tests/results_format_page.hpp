@@ -4,7 +4,7 @@
 
 #include <credence/text.hpp>
 
-#include "../src/hdf5_read.hpp"
+#include "files/hdf5/read.hpp"
 
 #include <hdf5_hl.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 // Ways to damage a results file.
 
-#include <credence/scenario_keys.hpp>
+#include "worlds/deformable/keys.hpp"
 
-#include "../src/hdf5_write.hpp"
+#include "files/hdf5/write.hpp"
 #include "store_study.hpp"
 
 #include <functional>

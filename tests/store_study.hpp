@@ -1,7 +1,7 @@
 #pragma once
 // Small studies, folders and damaged files for the tests of the store.
 
-#include <credence/chi_square.hpp>
+#include "numeric/chi_square.hpp"
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
 #include <credence/store.hpp>

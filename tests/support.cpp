@@ -1,9 +1,9 @@
 #include "support.hpp"
 
 #include <credence/error.hpp>
-#include <credence/estimators.hpp>
-#include <credence/scenario_keys.hpp>
-#include <credence/trial.hpp>
+#include "slam/estimators/estimators.hpp"
+#include "worlds/deformable/keys.hpp"
+#include "slam/trial/trial.hpp"
 
 #include <cmath>
 #include <memory>

@@ -4,9 +4,9 @@
 
 #include "oracle/oracle.hpp"
 
-#include <credence/deformable.hpp>
-#include <credence/draws.hpp>
-#include <credence/world.hpp>
+#include "worlds/deformable/deformable.hpp"
+#include <credence/detail/draws.hpp>
+#include "slam/world.hpp"
 
 #include <Eigen/Dense>
 

@@ -3,7 +3,7 @@
 // what is made of them. Fixed seeds; a false-alarm rate is what another seed would have.
 
 #include <cmath>
-#include <credence/draws.hpp>
+#include <credence/detail/draws.hpp>
 #include <cstdint>
 #include <limits>
 #include <vector>

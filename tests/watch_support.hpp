@@ -1,7 +1,7 @@
 #pragma once
 // What a look should say, for the tests of following a run.
 
-#include <credence/watch.hpp>
+#include "report/watch/watch.hpp"
 
 #include "journal_support.hpp"
 

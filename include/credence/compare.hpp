@@ -1,5 +1,5 @@
 #pragma once
-// Room 13: A - B, trial by trial: arms of one results file, or of files whose trials share their draws. What is
+// Module report: A - B, trial by trial: arms of one results file, or of files whose trials share their draws. What is
 // compared is chosen and checked here; comparison.hpp computes it; text, JSON and CSV show it. [docs/statistics.md,
 // Comparison]
 

@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: arms compared by trial: planned against fixed, one estimator against another, one study against another that
+// Module verdict: arms compared by trial: planned against fixed, one estimator against another, one study against another that
 // shares its draws [docs/statistics.md, Comparison].
 
 #include <credence/paired.hpp>

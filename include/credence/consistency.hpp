@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: can the covariance be believed? The verdict of one arm [docs/statistics.md, Verdict].
+// Module verdict: can the covariance be believed? The verdict of one arm [docs/statistics.md, Verdict].
 
 #include <credence/evidence.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: how far the filter's covariance is from the errors it has, on a logarithmic scale [Li and Zhao, Measuring
+// Module statistics: how far the filter's covariance is from the errors it has, on a logarithmic scale [Li and Zhao, Measuring
 // Estimator's Credibility: Noncredibility Index].
 
 #include <cstdint>

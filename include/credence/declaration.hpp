@@ -1,8 +1,8 @@
 #pragma once
-// Room 8: a scenario of any world, as everything from the block up knows it: what it is called, what it reports, and its
+// Module scenario: a scenario of any world, as everything from the block up knows it: what it is called, what it reports, and its
 // settings as text. What the settings mean, its world knows [worlds.hpp].
 
-#include <credence/record.hpp>
+#include <credence/columns.hpp>
 #include <credence/sweep.hpp>
 
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// The two ways in which credence refuses or fails. Numerical trouble inside a trial is neither: it is data
+// Module base: the two ways in which credence refuses or fails. Numerical trouble inside a trial is neither: it is data
 // (record.hpp).
 
 #include <stdexcept>

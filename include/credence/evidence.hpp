@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: what one arm's totals say of its filter: every figure of docs/statistics.md but the verdict. Lists by step
+// Module verdict: what one arm's totals say of its filter: every figure of docs/statistics.md but the verdict. Lists by step
 // have K - 1 entries, for the steps 1 ... K - 1. NaN where there are too few trials.
 
 #include <credence/credibility.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: how the values of a sample are spread, counted in bins of round width.
+// Module statistics: how the values of a sample are spread, counted in bins of round width.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 12: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
+// Module worlds: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
 
 #include <credence/declaration.hpp>
 #include <credence/scenario.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 12: the files of shards, or of interrupted runs, made one study again.
+// Module files: the files of shards, or of interrupted runs, made one study again.
 
 #include <credence/store.hpp>
 

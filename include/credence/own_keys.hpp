@@ -1,5 +1,5 @@
 #pragma once
-// Room 3: the keys of the scenario file of a world of somebody's own.
+// Module worlds: the keys of the scenario file of a world of somebody's own.
 
 #include <credence/declaration.hpp>
 #include <credence/worlds.hpp>

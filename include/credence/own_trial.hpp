@@ -1,5 +1,5 @@
 #pragma once
-// Room 9: one trial of a world of somebody's own, and what the engine makes of it. Who writes such a world reads
+// Module worlds: one trial of a world of somebody's own, and what the engine makes of it. Who writes such a world reads
 // own_world.hpp first.
 //
 //   n  components of the state, m  rows of an innovation; K poses, steps k = 1 ... K - 1

@@ -1,5 +1,5 @@
 #pragma once
-// Room 9: the world contract: what a type provides so that its trials run through the engine, and are judged, stored,
+// Module worlds: the world contract: what a type provides so that its trials run through the engine, and are judged, stored,
 // reported and compared like those of the worlds that are here already. experiments/own_filter is an example.
 //
 // A world is a type W with

@@ -1,8 +1,8 @@
 #pragma once
-// Room 10: two arms compared by trial, as pairs: all arms of a trial share their noise. [docs/statistics.md, Comparison
+// Module statistics: two arms compared by trial, as pairs: all arms of a trial share their noise. [docs/statistics.md, Comparison
 // of arms]
 
-#include <credence/aggregates.hpp>
+#include <credence/detail/aggregates.hpp>
 #include <credence/histogram.hpp>
 #include <credence/statistics.hpp>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: the program credence as a function: with the worlds that were added before, `main` of somebody's own is two
+// Module cli: the program credence as a function: with the worlds that were added before, `main` of somebody's own is two
 // lines.
 
 namespace credence {

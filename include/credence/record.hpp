@@ -1,91 +1,61 @@
 #pragma once
-// Room 8: what a trial reports, declared as data. Engine, statistics, store and report walk these lists and know
-// nothing else about the world.
+// Module files: the record that `credence judge` reads: errors and covariances that any program wrote [docs/statistics.md].
+// It becomes the same results as a run has, so that report and verdict know no difference.
 
-#include <cstddef>
+#include <credence/study.hpp>
+
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace credence {
 
-/// Numerical trouble inside a trial is data. Only the last two exclude a trial from figures.
-enum class Status : std::int8_t {
-    completed = 0,
-    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; figures are kept
-    covariance_not_positive_definite = 2,
-    non_finite = 3,
-};
-inline constexpr double divergence_bound = 1e12;
-
-const std::vector<std::string>& status_names();
-
-inline bool failed(Status status) { return status >= Status::covariance_not_positive_definite; }
-
-enum class ColumnType { real, integer, status };
-
-/// One number per trial.
-struct Column {
-    std::string name, long_name, unit;
-    ColumnType type = ColumnType::real;
-    double fill = 0;                       ///< value of a failed trial: NaN for real columns
+/// Why a trial of a record failed; both counted from 0, as in the file.
+struct RecordTrouble {
+    std::int64_t trial = 0;
+    int step = 0;
+    std::string what;  ///< such as `covariance is singular`
+    Status status = Status::non_finite;  ///< a diverged trial is in the figures, the others are in none
 };
 
-/// What a figure means to the statistics.
-enum class FigureRole {
-    nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
-    standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
-    nis,                 ///< normalised innovation squared, chi-square with as many degrees as it has rows
-    rows,                ///< number of measurement rows
-    squared_error,       ///< |e|^2 of one block of the state
-    variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
-    nees_in_chart,       ///< NEES of a block with its error in another chart: shown beside `nees`, never judged
-    other,
+/// A record read. `results` has one arm, `record`; its scenario only carries a name (the file's stem), a title and
+/// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
+/// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and `run_square_sum` of
+///   real figures (but NIS) are of the trial's mean over its own steps times the number of steps in the file;
+/// - NIS and its figures are only there with innovations, and `products` are of all trials;
+/// - the column `unseen` is unknown (-1), and `pose_error` is of the block `pose`, else of the whole state;
+/// - `shape_distance` is exact up to 2^24 values; beyond it is empty and `cells` tell, but over 4096 steps `cells` are
+///   empty, and `shape_distance` is NaN where the values were too many.
+struct JudgedRecord {
+    ScenarioResults results;
+    bool has_innovations = false;
+    std::vector<RecordTrouble> troubles;  ///< the first 20
+    std::int64_t trouble_count = 0;       ///< trials that failed
 };
 
-/// One number per trial and step k = 1 ... K - 1, of which the file keeps totals over trials.
-struct Figure {
-    std::string name, long_name, unit;
-    FigureRole role = FigureRole::other;
-    int dimension = 0;                     ///< of a block of the state
-    bool integer = false;
-    std::string part;                      ///< block or component of the state, or group of rows, that it is of
-    std::string rows;                      ///< of a nis: the figure that counts its rows; empty where there is none
-    int more_rows = 0;                     ///< of a nis: rows beside those
-};
-
-/// Levels at which the coverage of a NEES is counted: the share of trials below that quantile of chi-square.
-inline constexpr double coverage_levels[] = {0.5, 0.9, 0.95, 0.99};
-inline constexpr int coverage_level_count = 4;
-
-/// Number of first trials of which more is kept: their errors, and how far their innovations are correlated in time. Whole
-/// blocks; 4096, or as many as keep 2^24 numbers an arm.
-int detailed_trials(int steps, int state_size);
-
-/// Lags at which innovations are correlated, 1 ... lag_count.
-inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
-
-/// A contiguous part of the state that is judged by itself.
-struct StateBlock {
-    std::string name;
-    int first = 0, count = 0;
-};
-
-/// A component of the state.
-struct Component {
-    std::string name, unit;
-    friend bool operator==(const Component&, const Component&) = default;
-};
-
-/// Position of the column that says how a trial ended. Every world declares one, and after it the pose at which that
-/// happened.
-std::size_t status_column(const std::vector<Column>& columns);
-
-/// The names and units of the last two columns of every world.
-std::vector<Column> status_columns();
-
-/// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they
-/// are. `values` [columns]. Returns whether the trial failed.
-bool fill_failed(const std::vector<Column>& columns, double* values);
+/// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of
+/// the first `detailed_trials`, by the declared steps of each, and up to 2^24 values of NEES.
+///
+/// - `error` [trial, step, n], n to 1000: estimate - truth, in the chart in which the covariance lives. A step whose
+///   error and covariance are all NaN does not exist; what else the record says of it is not looked at.
+/// - `covariance` [trial, step, n, n]: symmetric to 1e-9 of sqrt(P_ii P_jj); the mean of both halves is used.
+/// - `steps` [trial], optional: how many steps each run has; what is behind them is not looked at.
+/// - both or neither: `innovation` [trial, step, m], m to 2000, NaN in rows that were not observed, and
+///   `innovation_covariance` [trial, step, m, m], of which the observed rows are used.
+/// - the attribute `blocks` of the root, optional, half-open and 0-based: `pose 0:3, feature_1 3:5`.
+/// A record of one trial may leave out the dimension of trials. Anything else in the file is ignored.
+///
+/// A trial with a covariance (of the errors or the observed innovations) that is not positive definite has failed: the
+/// smallest eigenvalue of its correlation matrix is no more than 2 n eps, which rounding alone can make of 0; eps is
+/// 2^-52, or that of the type in the file where it is coarser. So has, as `non_finite`, one with a step of which the
+/// error or the covariance alone is NaN or something is not finite, one whose figures go beyond 1e140, one without
+/// steps, and one that ends before its declared steps or, where none are declared, before the longest trial. They are in
+/// no figure. One whose error or covariance goes beyond 1e12 has `diverged`, and stays in the figures. All are among the
+/// troubles.
+///
+/// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for everything else that is not as above. `progress` may be empty.
+JudgedRecord read_judgement_record(const std::string& path,
+                                   const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

@@ -1,7 +1,7 @@
 #pragma once
-// Room 2: recorded noise with the same face as the keyed draws. Reading it from HDF5: store.hpp.
+// Module slam: recorded noise with the same face as the keyed draws. Reading it from HDF5: store.hpp.
 
-#include <credence/draws.hpp>
+#include <credence/detail/draws.hpp>
 
 #include <string>
 #include <vector>

@@ -1,10 +1,10 @@
 #pragma once
-// Room 13: what people read. A report is computed once from a study and then rendered as text, JSON, CSV or HTML.
+// Module report: what people read. A report is computed once from a study and then rendered as text, JSON, CSV or HTML.
 
 #include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
 #include <credence/histogram.hpp>
-#include <credence/judgement_record.hpp>
+#include <credence/record.hpp>
 #include <credence/store.hpp>
 
 #include <optional>

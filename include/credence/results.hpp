@@ -1,10 +1,10 @@
 #pragma once
-// Room 10: the results of a study in memory: what blocks add up to. It knows columns and figures by declaration only.
+// Module study: the results of a study in memory: what blocks add up to. It knows columns and figures by declaration only.
 
-#include <credence/aggregates.hpp>
-#include <credence/block.hpp>
-#include <credence/block_ranges.hpp>
-#include <credence/exact_sum.hpp>
+#include <credence/detail/aggregates.hpp>
+#include <credence/detail/block.hpp>
+#include <credence/detail/block_ranges.hpp>
+#include <credence/detail/exact_sum.hpp>
 
 #include <cstdint>
 #include <memory>

@@ -1,10 +1,10 @@
 #pragma once
-// Room 3: the scenario, what a study is about. One plain struct per concern; the defaults are the seed's
+// Module slam: the scenario, what a study is about. One plain struct per concern; the defaults are the seed's
 // (heading model, straight path, constant noise). Keys, ranges and texts: scenario_keys.hpp.
 //
 // Units: lengths in `length_unit` (dm in the seed), angles in radians; sigma is a standard deviation.
 
-#include <credence/estimator_list.hpp>
+#include <credence/detail/estimator_list.hpp>
 
 #include <limits>
 #include <optional>

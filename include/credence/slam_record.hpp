@@ -1,7 +1,7 @@
 #pragma once
-// Room 8: what the trials of a SLAM scenario report: columns, figures, components and blocks of its state.
+// Module slam: what the trials of a SLAM scenario report: columns, figures, components and blocks of its state.
 
-#include <credence/record.hpp>
+#include <credence/columns.hpp>
 #include <credence/scenario.hpp>
 
 namespace credence {

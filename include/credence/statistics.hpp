@@ -1,5 +1,5 @@
 #pragma once
-// Room 10: figures of a sample of trials, and of pairs of trials. Every value is one trial's; trials are independent.
+// Module statistics: figures of a sample of trials, and of pairs of trials. Every value is one trial's; trials are independent.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 12: files. The results file is described in docs/results-format.md.
+// Module files: files. The results file is described in docs/results-format.md.
 
 #include <credence/recorded_noise.hpp>
 #include <credence/study.hpp>

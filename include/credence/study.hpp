@@ -1,7 +1,7 @@
 #pragma once
-// Room 11: the study: scenarios under their arms, which blocks to run, and on what.
+// Module study: the study: scenarios under their arms, which blocks to run, and on what.
 
-#include <credence/provenance.hpp>
+#include <credence/detail/provenance.hpp>
 #include <credence/results.hpp>
 
 #include <cstdint>

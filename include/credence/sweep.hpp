@@ -1,5 +1,5 @@
 #pragma once
-// Room 3: sweeps: a grid of values of a scenario's keys, and what a scenario says of its place in one. Texts only: which
+// Module scenario: sweeps: a grid of values of a scenario's keys, and what a scenario says of its place in one. Texts only: which
 // keys there are, and what they take, the scenario's world knows.
 
 #include <cstddef>

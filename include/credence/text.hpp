@@ -1,5 +1,5 @@
 #pragma once
-// Room 3: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same
+// Module base: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same
 // bits.
 
 #include <cstdint>

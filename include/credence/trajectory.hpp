@@ -1,5 +1,5 @@
 #pragma once
-// Room 8: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare
+// Module worlds: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare
 // it.
 
 #include <credence/recorded_noise.hpp>

@@ -1,8 +1,8 @@
 #pragma once
-// Room 9: the worlds that there are, as engine, store and program see them. The one who writes a world of his own reads
+// Module engine: the worlds that there are, as engine, store and program see them. The one who writes a world of his own reads
 // own_world.hpp.
 
-#include <credence/batch.hpp>
+#include <credence/detail/batch.hpp>
 #include <credence/declaration.hpp>
 
 #include <cstddef>

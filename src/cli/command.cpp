@@ -1,4 +1,4 @@
-#include "command.hpp"
+#include "cli/command.hpp"
 
 #include <credence/error.hpp>
 #include <credence/store.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: what the subcommands share. One file a subcommand; main.cpp lists them.
+// What the subcommands share. One file a subcommand; main.cpp lists them.
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>

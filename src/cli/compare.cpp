@@ -3,9 +3,9 @@
 #include <credence/store.hpp>
 #include <set>
 
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/version.hpp"
 
 namespace credence::cli {
 

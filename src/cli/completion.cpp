@@ -1,7 +1,7 @@
 // The script that completes command lines in bash, made of the descriptions that the program itself reads.
 
-#include "command.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>

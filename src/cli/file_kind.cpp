@@ -1,8 +1,8 @@
-#include "file_kind.hpp"
+#include "cli/file_kind.hpp"
 
-#include "../hdf5_read.hpp"
-#include "../readable_file.hpp"
-#include "../store_format.hpp"
+#include "files/hdf5/read.hpp"
+#include "base/readable_file.hpp"
+#include "files/results/format.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: what kind of file a command was given, so that the wrong one is refused with the command that reads it.
+// What kind of file a command was given, so that the wrong one is refused with the command that reads it.
 
 #include <string>
 #include <vector>

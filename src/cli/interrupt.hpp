@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: stopping a run from outside.
+// Stopping a run from outside.
 
 #include <string>
 

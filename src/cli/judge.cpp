@@ -1,9 +1,9 @@
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "progress.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/progress.hpp"
 
 #include <credence/error.hpp>
-#include <credence/judgement_record.hpp>
+#include <credence/record.hpp>
 #include <credence/report.hpp>
 
 namespace credence::cli {

@@ -1,4 +1,4 @@
-#include "limits.hpp"
+#include "cli/limits.hpp"
 
 #include <credence/error.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: limits of the system (ulimit) that the program runs under.
+// Limits of the system (ulimit) that the program runs under.
 
 #include <cstdint>
 #include <optional>

@@ -1,12 +1,12 @@
 // The manual page credence(1), made of the descriptions that the program itself reads.
 
-#include "command.hpp"
-#include "roff.hpp"
+#include "cli/command.hpp"
+#include "cli/roff.hpp"
 
 #include "build_info.hpp"  // made by CMake
 
 #include <credence/error.hpp>
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 #include <credence/worlds.hpp>
 
 #include <iostream>

@@ -1,8 +1,8 @@
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "limits.hpp"
-#include "progress.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/limits.hpp"
+#include "cli/progress.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/merge.hpp>

@@ -1,15 +1,15 @@
 // The program: its subcommands, and what becomes of errors.
 
-#include "command.hpp"
-#include "limits.hpp"
-#include "progress.hpp"
-#include "ranks.hpp"
-#include "streams.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/limits.hpp"
+#include "cli/progress.hpp"
+#include "cli/ranks.hpp"
+#include "cli/streams.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/program.hpp>
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 #include <credence/text.hpp>
 
 #include <hdf5.h>

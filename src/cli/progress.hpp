@@ -3,7 +3,7 @@
 
 #include <credence/study.hpp>
 
-#include "../report_format.hpp"
+#include "report/format.hpp"
 
 namespace credence::cli {
 

@@ -1,10 +1,10 @@
-#include "ranks.hpp"
+#include "cli/ranks.hpp"
 
-#include "../mpi/mpi_post.hpp"
-#include "interrupt.hpp"
+#include "cluster/mpi/mpi_post.hpp"
+#include "cli/interrupt.hpp"
 
 #include <credence/error.hpp>
-#include <credence/launcher.hpp>
+#include "cluster/launcher.hpp"
 
 namespace credence::cli {
 

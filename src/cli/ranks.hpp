@@ -1,9 +1,9 @@
 #pragma once
-// Room 14: whether `credence run` shares its blocks among the ranks of an MPI job.
+// Whether `credence run` shares its blocks among the ranks of an MPI job.
 
-#include "command.hpp"
+#include "cli/command.hpp"
 
-#include <credence/ranks.hpp>
+#include "cluster/ranks.hpp"
 
 #include <memory>
 

@@ -1,9 +1,9 @@
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <credence/store.hpp>
 #include <credence/text.hpp>
 

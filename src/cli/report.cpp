@@ -1,6 +1,6 @@
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "version.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>

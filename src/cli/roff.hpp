@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: text as the macros man(7) of roff want it.
+// Text as the macros man(7) of roff want it.
 
 #include <string>
 

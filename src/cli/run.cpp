@@ -1,9 +1,9 @@
-#include "interrupt.hpp"
-#include "progress.hpp"
-#include "ranks.hpp"
-#include "run_dry.hpp"
-#include "run_until.hpp"
-#include "version.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
+#include "cli/ranks.hpp"
+#include "cli/run_dry.hpp"
+#include "cli/run_until.hpp"
+#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>

@@ -1,7 +1,7 @@
-#include "run_dry.hpp"
+#include "cli/run_dry.hpp"
 
-#include "limits.hpp"
-#include "progress.hpp"
+#include "cli/limits.hpp"
+#include "cli/progress.hpp"
 
 #include <credence/error.hpp>
 

@@ -1,10 +1,10 @@
-#include "run_request.hpp"
+#include "cli/run_request.hpp"
 
-#include "version.hpp"
-#include "file_kind.hpp"
+#include "cli/version.hpp"
+#include "cli/file_kind.hpp"
 
 #include <credence/error.hpp>
-#include <credence/launcher.hpp>
+#include "cluster/launcher.hpp"
 #include <credence/text.hpp>
 
 #include <omp.h>

@@ -1,10 +1,10 @@
 #pragma once
-// Room 14: what `credence run` was asked to do, and the study that it begins with.
+// What `credence run` was asked to do, and the study that it begins with.
 
-#include "command.hpp"
+#include "cli/command.hpp"
 
-#include <credence/stopping.hpp>
-#include <credence/stored_run.hpp>
+#include "study/stopping.hpp"
+#include "files/stored_run.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
-#include "run_until.hpp"
+#include "cli/run_until.hpp"
 
-#include "progress.hpp"
+#include "cli/progress.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: a text that is drawn again and again on a terminal.
+// A text that is drawn again and again on a terminal.
 
 #include <string>
 

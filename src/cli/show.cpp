@@ -1,5 +1,5 @@
-#include "command.hpp"
-#include "file_kind.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
 
 #include <credence/error.hpp>
 #include <credence/worlds.hpp>

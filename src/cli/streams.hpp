@@ -1,5 +1,5 @@
 #pragma once
-// Room 14: the standard streams, which the program may be started without.
+// The standard streams, which the program may be started without.
 
 namespace credence::cli {
 

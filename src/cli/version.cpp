@@ -1,9 +1,9 @@
-#include "version.hpp"
+#include "cli/version.hpp"
 
-#include "../mpi/mpi_post.hpp"
+#include "cluster/mpi/mpi_post.hpp"
 #include "build_info.hpp"  // made by CMake
 
-#include <credence/simulate.hpp>
+#include "worlds/simulate.hpp"
 
 #include <Eigen/Core>
 #include <boost/version.hpp>

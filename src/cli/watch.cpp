@@ -1,11 +1,11 @@
-#include "command.hpp"
-#include "file_kind.hpp"
-#include "interrupt.hpp"
-#include "screen.hpp"
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/screen.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
-#include <credence/watch.hpp>
+#include "report/watch/watch.hpp"
 
 #include <poll.h>
 

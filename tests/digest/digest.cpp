@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <credence/deformable.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
-#include <credence/landmarks.hpp>
-#include <credence/scenario_keys.hpp>
+#include "worlds/landmarks/landmarks.hpp"
+#include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
 #include <cstdio>
 #include <exception>

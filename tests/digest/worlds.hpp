@@ -1,7 +1,7 @@
 #pragma once
 // The small study of the digest: worlds that together reach every branch of the equations.
 
-#include <credence/landmark_scenario.hpp>
+#include "worlds/landmarks/scenario.hpp"
 
 #include <string>
 #include <utility>

@@ -4,13 +4,13 @@
 #include "require.hpp"
 #include "scratch_file.hpp"
 
-#include "../../src/journal_record.hpp"
+#include "files/journal/commit.hpp"
 #include "../of_scenarios.hpp"
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
-#include <credence/stored_run.hpp>
-#include <credence/watch.hpp>
+#include "files/stored_run.hpp"
+#include "report/watch/watch.hpp"
 
 #include <cstring>
 #include <random>

@@ -7,7 +7,7 @@
 #include "scratch_file.hpp"
 
 #include <credence/error.hpp>
-#include <credence/judgement_record.hpp>
+#include <credence/record.hpp>
 #include <credence/report.hpp>
 
 using namespace credence;

@@ -1,6 +1,6 @@
 #include "scenario_mutator.hpp"
 
-#include <credence/scenario_keys.hpp>
+#include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
 
 #include <algorithm>

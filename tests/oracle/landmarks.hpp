@@ -4,7 +4,7 @@
 
 #include "estimators.hpp"
 
-#include <credence/landmark_scenario.hpp>
+#include "worlds/landmarks/scenario.hpp"
 
 namespace credence::oracle {
 

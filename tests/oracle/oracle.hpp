@@ -17,7 +17,7 @@
 //   d, delta   step and turn of the features and the robot; phi_k = delta/2 + k delta
 // Stacked measurements hold the seen features by rising j, two rows each, and then every edge in graph order.
 
-#include <credence/draws.hpp>
+#include <credence/detail/draws.hpp>
 #include <credence/scenario.hpp>
 
 #include <Eigen/Dense>

@@ -1,0 +1,91 @@
+#pragma once
+// Module scenario: what a trial reports, declared as data. Engine, statistics, store and report walk these lists and know
+// nothing else about the world.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Numerical trouble inside a trial is data. Only the last two exclude a trial from figures.
+enum class Status : std::int8_t {
+    completed = 0,
+    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; figures are kept
+    covariance_not_positive_definite = 2,
+    non_finite = 3,
+};
+inline constexpr double divergence_bound = 1e12;
+
+const std::vector<std::string>& status_names();
+
+inline bool failed(Status status) { return status >= Status::covariance_not_positive_definite; }
+
+enum class ColumnType { real, integer, status };
+
+/// One number per trial.
+struct Column {
+    std::string name, long_name, unit;
+    ColumnType type = ColumnType::real;
+    double fill = 0;                       ///< value of a failed trial: NaN for real columns
+};
+
+/// What a figure means to the statistics.
+enum class FigureRole {
+    nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
+    standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
+    nis,                 ///< normalised innovation squared, chi-square with as many degrees as it has rows
+    rows,                ///< number of measurement rows
+    squared_error,       ///< |e|^2 of one block of the state
+    variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
+    nees_in_chart,       ///< NEES of a block with its error in another chart: shown beside `nees`, never judged
+    other,
+};
+
+/// One number per trial and step k = 1 ... K - 1, of which the file keeps totals over trials.
+struct Figure {
+    std::string name, long_name, unit;
+    FigureRole role = FigureRole::other;
+    int dimension = 0;                     ///< of a block of the state
+    bool integer = false;
+    std::string part;                      ///< block or component of the state, or group of rows, that it is of
+    std::string rows;                      ///< of a nis: the figure that counts its rows; empty where there is none
+    int more_rows = 0;                     ///< of a nis: rows beside those
+};
+
+/// Levels at which the coverage of a NEES is counted: the share of trials below that quantile of chi-square.
+inline constexpr double coverage_levels[] = {0.5, 0.9, 0.95, 0.99};
+inline constexpr int coverage_level_count = 4;
+
+/// Number of first trials of which more is kept: their errors, and how far their innovations are correlated in time. Whole
+/// blocks; 4096, or as many as keep 2^24 numbers an arm.
+int detailed_trials(int steps, int state_size);
+
+/// Lags at which innovations are correlated, 1 ... lag_count.
+inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
+
+/// A contiguous part of the state that is judged by itself.
+struct StateBlock {
+    std::string name;
+    int first = 0, count = 0;
+};
+
+/// A component of the state.
+struct Component {
+    std::string name, unit;
+    friend bool operator==(const Component&, const Component&) = default;
+};
+
+/// Position of the column that says how a trial ended. Every world declares one, and after it the pose at which that
+/// happened.
+std::size_t status_column(const std::vector<Column>& columns);
+
+/// The names and units of the last two columns of every world.
+std::vector<Column> status_columns();
+
+/// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they
+/// are. `values` [columns]. Returns whether the trial failed.
+bool fill_failed(const std::vector<Column>& columns, double* values);
+
+}  // namespace credence

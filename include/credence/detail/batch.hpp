@@ -1,0 +1,40 @@
+#pragma once
+// Module engine: consecutive trials of one arm: what a simulation is asked for, and where its results go.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace credence {
+
+/// Sizes of what the trials of a scenario report.
+struct SimulationShape {
+    int poses = 0;          ///< K
+    int state_size = 0;     ///< n
+    int column_count = 0, figure_count = 0;
+    int block_count = 0;    ///< blocks of the state: the first figures are their NEES, the whole state's before all
+};
+
+/// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.
+inline constexpr int octet = 8;
+
+/// Consecutive trials of one arm, and where their results go. Results are the same bits from every unit. Sums are eight
+/// running sums, trial i of the batch going to the one of i mod 8 in trial order; failed trials do not enter them.
+struct Batch {
+    std::uint64_t root_seed = 0;
+    std::int64_t first_trial = 0;
+    int trials = 0;
+    double* columns = nullptr;          ///< [octets, column_count, 8], a failed trial's still unfilled
+    double* sums = nullptr;             ///< [figure_count, K - 1, 8], added to
+    double* square_sums = nullptr;      ///< [figure_count, K - 1, 8], added to
+    double* run_square_sums = nullptr;  ///< [figure_count, 8], added to: of each trial's sum over its steps
+    std::int32_t* covered = nullptr;    ///< [blocks, K - 1, levels], added to: trials below the coverage bounds
+    double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
+    // Of detailed trials only; null for others.
+    double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too
+    double* product_sums = nullptr;     ///< [lags, 8], added to: sums of products of whitened innovations
+    double* product_square_sums = nullptr;  ///< [lags, 8], added to: of each trial's sum, squared
+    double* product_counts = nullptr;   ///< [lags, 8], added to
+    void* workspace = nullptr;          ///< workspace_size bytes from a 64-byte boundary on
+};
+
+}  // namespace credence

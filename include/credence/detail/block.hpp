@@ -1,0 +1,65 @@
+#pragma once
+// Module engine: the block: 256 consecutive trials of one scenario under every arm. A pure function of (scenario, root seed,
+// block index): threads, shards and resumed runs only choose which blocks to run.
+
+#include <credence/worlds.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace credence {
+
+inline constexpr int block_size = 256;
+
+/// One arm's part of a block. Sums run over the trials that did not fail: eight running sums, trial i going to the one
+/// of i mod 8 in trial order, then added up in order. That is the same for every lane width up to 8.
+struct ArmBlock {
+    std::vector<double> columns;            ///< [columns, trials], failed trials filled
+    std::vector<double> sums;               ///< [figure_count, K - 1]
+    std::vector<double> square_sums;        ///< [figure_count, K - 1]
+    std::vector<double> run_square_sums;    ///< [figure_count], of each trial's sum over its steps
+    std::vector<std::int32_t> covered;      ///< [blocks of the state, K - 1, levels] trials below each coverage bound
+    std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
+    int counted = 0;                        ///< trials that did not fail
+
+    // Of detailed trials only, else empty.
+    std::vector<float> errors;              ///< [trials, K - 1, n], NaN if failed
+    std::vector<float> nees;                ///< [trials, K - 1] of the whole state, NaN if failed
+    std::vector<double> product_sums;       ///< [lags] of products of whitened innovations, a lag apart
+    std::vector<double> product_square_sums;///< [lags] of each trial's sum, squared
+    std::vector<double> product_counts;     ///< [lags]
+};
+inline constexpr std::uint16_t no_cell = 0xffff;
+
+struct Block {
+    std::int64_t index = 0;
+    int trials = 0;
+    std::vector<ArmBlock> arms;             ///< in the order of the declaration
+};
+
+/// Number of blocks that hold `trials` trials, and the number of trials in block `index` of them.
+std::int64_t block_count(std::int64_t trials);
+int trials_in_block(std::int64_t trials, std::int64_t index);
+
+/// Whether the trials of a block are detailed ones. A block is so as a whole.
+bool detailed(const SimulationShape& shape, std::int64_t index);
+
+/// A scenario made ready to run its blocks.
+class BlockRunner {
+public:
+    explicit BlockRunner(const Declaration& scenario);
+
+    /// Simulates the first `trials` trials of a block. Thread-safe.
+    Block run(std::uint64_t root_seed, std::int64_t index, int trials) const;
+
+private:
+    std::vector<Column> columns_;
+    std::size_t arms_ = 0;
+    std::unique_ptr<const Simulation> simulation_;
+};
+
+/// The same for any simulation with these columns and this number of arms.
+Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,
+                std::uint64_t root_seed, std::int64_t index, int trials);
+
+}  // namespace credence

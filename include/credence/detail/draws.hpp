@@ -1,0 +1,217 @@
+#pragma once
+// Module numeric: draws. A draw is a pure function of (root seed, trial, pose, source, index, attempt): never of the order of
+// calls, of the thread, or of what an arm saw or planned. All arms of a trial therefore share their noise.
+//
+// The face of a noise source, here and in recorded_noise.hpp:
+//   Vector2<Real> normal(Source, int pose, int index)   two independent standard-normal draws
+//   Real          uniform(Source, int pose, int index)  in [0, 1)
+
+#include <credence/detail/elementary.hpp>
+#include <credence/detail/several.hpp>
+
+namespace credence {
+
+/// What a draw is for. The numbers are part of the key: never renumber them within a schema version.
+enum class Source : std::uint32_t {
+    odometry_heading = 0,   ///< first of the pair; on arrival at the pose, at pose 0 the initial heading
+    odometry_position = 1,  ///< on arrival at the pose, at pose 0 the initial position
+    walk = 2,               ///< by feature, leaving the pose
+    deformation = 3,        ///< by feature
+    measurement = 4,        ///< by feature; at pose 0 the initial estimate
+    edge = 5,               ///< by edge in graph order
+    detection = 6,          ///< by feature, uniform
+    landmark_prior = 7,     ///< by landmark: what is believed of it before it is seen
+};
+
+/// What a draw is keyed by, beside the trial. Its index takes 16 bits.
+struct DrawKey {
+    Source source;
+    int pose, index;
+};
+
+/// How many sources a key can tell apart.
+constexpr int source_count = 16;
+
+/// The largest index of draws that are never truncated.
+constexpr int largest_wide_index = (1 << 27) - 1;
+
+/// The index of a key whose draw is never truncated, from one up to largest_wide_index: the attempt of such a draw is 0,
+/// so that the bits above the sixteenth have room where the attempt is in others. Below 65536 it is the index itself.
+constexpr int wide_index(int index) { return (index & 0xffff) | (index >> 16) << 20; }
+
+inline namespace CREDENCE_UNIT {
+
+/// Four 32-bit words, each in the low half of a 64-bit one (one per lane); the high halves hold nothing in particular.
+template <class Word>
+struct PhiloxBlock {
+    Word word[4];
+};
+
+/// The round keys of Philox4x32-10, in 64 bits as the lanes are.
+struct PhiloxKeys {
+    static constexpr int rounds = 10;
+    std::uint64_t round[rounds][2];
+
+    PhiloxKeys(std::uint32_t key0, std::uint32_t key1) {
+        for (auto& pair : round) {
+            pair[0] = key0;
+            pair[1] = key1;
+            key0 += 0x9E3779B9u;
+            key1 += 0xBB67AE85u;
+        }
+    }
+};
+
+/// Philox4x32-10 [Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3, SC11]: ten rounds of a
+/// keyed bijection on a 128-bit counter. Checked bit for bit against the Random123 library in tests/draws.
+template <class Word>
+PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, const PhiloxKeys& keys) {
+    Word w0 = counter.word[0], w1 = counter.word[1], w2 = counter.word[2], w3 = counter.word[3];
+    each(zero, Known<PhiloxKeys::rounds>{}, [&](auto round) CREDENCE_INLINE_LAMBDA {
+        const Word product0 = widening_product(w0, 0xD2511F53u), product1 = widening_product(w2, 0xCD9E8D57u);
+        w0 = exclusive_or(product1 >> 32, w1, Word(keys.round[round][0]));
+        w2 = exclusive_or(product0 >> 32, w3, Word(keys.round[round][1]));
+        w1 = product1;
+        w3 = product0;
+    });
+    return {{w0, w1, w2, w3}};
+}
+
+/// 52 bits of two words as a number in [1, 2).
+template <class Real>
+Real in_one_to_two(Bits<Real> high, Bits<Real> low) {
+    constexpr std::uint64_t lower_half = 0xffffffff;
+    return from_bits((((high << 32) | (low & lower_half)) >> 12) | 0x3ff0000000000000u);
+}
+
+/// Box and Muller's transform: the radius from one uniform in (0, 1], the angle from another in [0, 1).
+template <class Real>
+Vector2<Real> box_muller(const PhiloxBlock<Bits<Real>>& random) {
+    const Real u1 = Real(2) - in_one_to_two<Real>(random.word[1], random.word[0]);
+    const Real u2 = in_one_to_two<Real>(random.word[3], random.word[2]) - Real(1);
+    const Real radius = sqrt(Real(-2) * log(u1));
+    const Rotation<Real> angle = rotation_of_turns(u2);
+    return {radius * angle.cosine, radius * angle.sine};
+}
+
+/// Keyed noise of one trial (of each lane's trial).
+template <class Real>
+class KeyedDraws {
+public:
+    /// `truncate`: multiple of sigma beyond which a scalar draw is redrawn; infinity for never.
+    KeyedDraws(std::uint64_t root_seed, Bits<Real> trial, double truncate)
+        : keys_(static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32)),
+          trial_(trial),
+          truncates_(truncate < largest_draw),
+          truncate_(truncate) {}
+
+    Vector2<Real> normal(Source source, int pose, int index) const {
+        const DrawKey key{source, pose, index};
+        Vector2<Real> draw = box_muller<Real>(philox(counter_of(key, 0), keys_));
+        if (truncates_) redraw(draw, key);
+        return draw;
+    }
+
+    /// The same for several draws, step by step together. `keys` [count], `draws` [count].
+    template <int count>
+    void normals(const DrawKey* keys, Vector2<Real>* draws) const {
+        using Together = Several<Real, count>;
+        const Vector2<Together> together = box_muller<Together>(random_words<count>(keys));
+        each(zero, Known<count>{}, [&](auto i) { draws[i] = {together.x.part[i], together.y.part[i]}; });
+        if (truncates_)
+            for (int i = 0; i < count; ++i) redraw(draws[i], keys[i]);
+    }
+
+    Real uniform(Source source, int pose, int index) const {
+        const PhiloxBlock<Bits<Real>> random = philox(counter_of({source, pose, index}, 0), keys_);
+        return in_one_to_two<Real>(random.word[1], random.word[0]) - Real(1);
+    }
+
+private:
+    static constexpr std::uint32_t attempts = 4096;
+    /// sqrt(-2 log 2^-52) = 8.5: the transform gives nothing beyond.
+    static constexpr double largest_draw = 9;
+
+    /// Draws again what lies beyond the truncation. Kept out of the way of those who do not truncate.
+    [[gnu::noinline]] void redraw(Vector2<Real>& draw, const DrawKey& key) const {
+        // Each component is redrawn by itself; the attempt's number is part of the key [model.md, Conventions].
+        for (std::uint32_t again = 1; again < attempts; ++again) {
+            const Mask<Real> redraw_x = absolute(draw.x) > truncate_, redraw_y = absolute(draw.y) > truncate_;
+            if (!any(either(redraw_x, redraw_y))) break;
+            const Vector2<Real> next = box_muller<Real>(philox(counter_of(key, again), keys_));
+            draw = {select(redraw_x, next.x, draw.x), select(redraw_y, next.y, draw.y)};
+        }
+    }
+
+    /// Counter: trial (64 bits), pose (32), then attempt (12), source (4) and index (16).
+    PhiloxBlock<Bits<Real>> counter_of(const DrawKey& key, std::uint32_t attempt) const {
+        const std::uint64_t what = std::uint64_t{attempt} << 20 |
+                                   std::uint64_t{static_cast<std::uint32_t>(key.source)} << 16 |
+                                   static_cast<std::uint64_t>(key.index);
+        const Bits<Real> none{};
+        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(key.pose),
+                 none + what}};
+    }
+
+    /// The words of several draws, as many at a time as the registers hold: 32 of 64 bytes, of others 16.
+    template <int count>
+    CREDENCE_INLINE PhiloxBlock<Several<Bits<Real>, count>> random_words(const DrawKey* keys) const {
+        constexpr int held = sizeof(Real) == 64 ? 6 : 3;
+        PhiloxBlock<Several<Bits<Real>, count>> random;
+        if constexpr (count > held) {
+            const auto first = random_words<held>(keys);
+            const auto rest = random_words<count - held>(keys + held);
+            each(zero, Known<4>{}, [&](auto word) {
+                each(zero, Known<held>{}, [&](auto i) { random.word[word].part[i] = first.word[word].part[i]; });
+                each(Known<held>{}, Known<count>{},
+                     [&](auto i) { random.word[word].part[i] = rest.word[word].part[i - held]; });
+            });
+            return random;
+        } else {
+            each(zero, Known<count>{}, [&](auto i) {
+                const PhiloxBlock<Bits<Real>> own = counter_of(keys[i], 0);
+                each(zero, Known<4>{}, [&](auto word) { random.word[word].part[i] = own.word[word]; });
+            });
+            return philox(random, keys_);
+        }
+    }
+
+    PhiloxKeys keys_;
+    Bits<Real> trial_;
+    bool truncates_;
+    Real truncate_;
+};
+
+/// So many draws, from any source of noise. `keys` [count], `draws` [count].
+template <int count, class Noise, class Real>
+void draw_several(const Noise& noise, const DrawKey* keys, Vector2<Real>* draws) {
+    for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);
+}
+
+/// Keyed draws, together; one copy of the code for all who draw.
+template <int count, class Real>
+[[gnu::noinline]] CREDENCE_FLAT void draw_several(const KeyedDraws<Real>& noise, const DrawKey* keys,
+                                                  Vector2<Real>* draws) {
+    noise.template normals<count>(keys, draws);
+}
+
+/// Draws of all keys, six together: fewer leave time unfilled, more do not fit what a processor looks ahead. `keys`
+/// [count], `draws` [count].
+template <class Noise, class Count, class Real>
+void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real>* draws) {
+    constexpr int most = 6;
+    int i = 0;
+    const auto in_groups = [&](auto group) CREDENCE_INLINE_LAMBDA {
+        for (; i + group <= count; i += group) draw_several<group>(noise, keys + i, draws + i);
+    };
+    in_groups(Known<most>{});
+    if constexpr (std::is_same_v<Count, int>) {
+        in_groups(Known<most / 2>{});
+        in_groups(one);
+    } else if constexpr (count % most != 0) {
+        in_groups(Known<count % most>{});
+    }
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,10 @@
+#pragma once
+// What a figure is that does not exist.
+
+#include <limits>
+
+namespace credence {
+
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace credence

@@ -1,0 +1,50 @@
+#include "base/readable_file.hpp"
+
+#include "base/descriptor.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace credence {
+
+Unreadable::Unreadable(int error)
+    : std::runtime_error(error == 0 ? "not a regular file" : words_for(error)), error_(error) {}
+
+bool Unreadable::is_missing() const { return error_ == ENOENT || error_ == ENOTDIR; }
+
+std::string remedy_for_reading(int error) {
+    switch (error) {
+        case EMFILE: return "Raise the number of files that may be open (ulimit -n)";
+        case ENFILE: return "Close some files: the system has no room for more";
+        case EACCES:
+        case EPERM: return "Check its permissions";
+        case EIO: return "Check the disk";
+        default: return "Check the path";
+    }
+}
+
+std::string start_of_file(const std::string& path, std::size_t most) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) throw Unreadable(errno);
+    if (!S_ISREG(status.st_mode)) throw Unreadable(0);
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    if (file.get() < 0) throw Unreadable(errno);
+    if (fstat(file.get(), &status) != 0) throw Unreadable(errno);
+    if (!S_ISREG(status.st_mode)) throw Unreadable(0);  // another one has come under the name
+    std::string bytes(most, '\0');
+    std::size_t size = 0;
+    while (size < most) {
+        const ssize_t got = read(file.get(), bytes.data() + size, most - size);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) throw Unreadable(errno);
+        if (got == 0) break;
+        size += static_cast<std::size_t>(got);
+    }
+    bytes.resize(size);
+    return bytes;
+}
+
+}  // namespace credence

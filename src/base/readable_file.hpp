@@ -1,0 +1,29 @@
+#pragma once
+// Files that are read: regular ones only, and errors of the system by their names.
+
+#include <stdexcept>
+#include <string>
+
+namespace credence {
+
+/// Why a file cannot be read. The message is the system's own, such as `input/output error`.
+class Unreadable : public std::runtime_error {
+public:
+    /// `error` is one of the system; 0 for what is not a regular file.
+    explicit Unreadable(int error);
+    int error() const { return error_; }
+    bool is_missing() const;
+    bool is_irregular() const { return error_ == 0; }
+
+private:
+    int error_;
+};
+
+/// What to do about an error of the system that kept a file from being read.
+std::string remedy_for_reading(int error);
+
+/// The first `most` bytes of a regular file, fewer where it is shorter. It neither waits for the other end of a pipe nor
+/// opens a device. Throws Unreadable.
+std::string start_of_file(const std::string& path, std::size_t most);
+
+}  // namespace credence

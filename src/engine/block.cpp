@@ -1,0 +1,200 @@
+#include <credence/detail/block.hpp>
+
+#include "numeric/chi_square.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <new>
+#include <numeric>
+
+namespace credence {
+
+namespace {
+
+/// Room for a unit, from a 64-byte boundary on as a pack of lanes wants it. It is kept from block to block, and what a
+/// trial does not touch of it is never paid for.
+class WorkRoom {
+public:
+    void* of_size(std::size_t size) {
+        if (size > size_) {
+            bytes_.reset(new (alignment) std::byte[size]);
+            size_ = size;
+        }
+        return bytes_.get();
+    }
+
+private:
+    static constexpr std::align_val_t alignment{64};
+    struct Release {
+        void operator()(std::byte* bytes) const { ::operator delete[](bytes, alignment); }
+    };
+    std::unique_ptr<std::byte[], Release> bytes_;
+    std::size_t size_ = 0;
+};
+
+/// Adds up the eight running sums of each cell, in order.
+std::vector<double> added_up(const std::vector<double>& octets) {
+    std::vector<double> totals(octets.size() / octet);
+    const double* at = octets.data();
+    for (double& total : totals) {
+        total = std::accumulate(at, at + octet, 0.0);
+        at += octet;
+    }
+    return totals;
+}
+
+/// Takes the columns out of their octets and fills those of failed trials.
+void store_columns(const std::vector<Column>& declared, const std::vector<double>& octets, std::size_t trials,
+                   ArmBlock& arm) {
+    const std::size_t count = declared.size();
+    std::vector<double> own(count);
+    arm.columns.resize(count * trials);
+    for (std::size_t trial = 0; trial < trials; ++trial) {
+        const double* in_octet = octets.data() + trial / octet * count * octet + trial % octet;
+        for (std::size_t c = 0; c < count; ++c) own[c] = in_octet[c * octet];
+        arm.counted += !fill_failed(declared, own.data());
+        for (std::size_t c = 0; c < count; ++c) arm.columns[c * trials + trial] = own[c];
+    }
+}
+
+/// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
+struct Octets {
+    std::size_t trials = 0, padded = 0, steps = 0, components = 0;
+    bool detail = false;
+    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
+    std::vector<std::int32_t> covered;
+    std::vector<double> errors, product_sums, product_square_sums, product_counts;
+
+    void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
+        const auto figures = static_cast<std::size_t>(shape.figure_count);
+        const auto blocks = static_cast<std::size_t>(shape.block_count);
+        trials = count;
+        padded = (count + octet - 1) / octet * octet;
+        steps = static_cast<std::size_t>(shape.poses - 1);
+        components = static_cast<std::size_t>(shape.state_size);
+        detail = detailed;
+        columns.resize(padded * static_cast<std::size_t>(shape.column_count));
+        nees.resize(steps * padded);
+        sums.assign(figures * steps * octet, 0);
+        square_sums.assign(sums.size(), 0);
+        run_square_sums.assign(figures * octet, 0);
+        covered.assign(blocks * steps * coverage_level_count, 0);
+        if (!detail) {
+            errors = std::vector<double>();  // much room, and seldom wanted; {} would keep it
+            return;
+        }
+        errors.resize(components * steps * padded);
+        for (auto* products : {&product_sums, &product_square_sums, &product_counts})
+            products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
+    }
+
+    Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
+        Batch batch{root_seed, first_trial, static_cast<int>(trials)};
+        batch.columns = columns.data();
+        batch.sums = sums.data();
+        batch.square_sums = square_sums.data();
+        batch.run_square_sums = run_square_sums.data();
+        batch.covered = covered.data();
+        batch.nees = nees.data();
+        batch.errors = detail ? errors.data() : nullptr;
+        batch.product_sums = product_sums.data();
+        batch.product_square_sums = product_square_sums.data();
+        batch.product_counts = product_counts.data();
+        batch.workspace = workspace;
+        return batch;
+    }
+};
+
+/// Which trials failed: [trials].
+std::vector<bool> failed_trials(const std::vector<Column>& declared, const ArmBlock& arm, std::size_t trials) {
+    const double* status = arm.columns.data() + status_column(declared) * trials;
+    std::vector<bool> all(trials);
+    for (std::size_t trial = 0; trial < trials; ++trial)
+        all[trial] = failed(static_cast<Status>(static_cast<int>(status[trial])));
+    return all;
+}
+
+/// The cell of every NEES.
+void store_cells(const Octets& from, const EquiprobableCells& cells, const std::vector<bool>& failed, ArmBlock& arm) {
+    arm.cells.resize(from.steps * from.trials);
+    const EquiprobableCells::Search search = cells.search();
+    std::uint16_t* next = arm.cells.data();
+    for (std::size_t k = 0; k < from.steps; ++k)
+        for (std::size_t trial = 0; trial < from.trials; ++trial)
+            *next++ = static_cast<std::uint16_t>(search.cell(from.nees[k * from.padded + trial]));
+    for (std::size_t trial = 0; trial < from.trials; ++trial)
+        if (failed[trial])
+            for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
+}
+
+/// Errors and NEES by trial, rounded to single precision.
+void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock& arm) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    arm.nees.reserve(from.trials * from.steps);
+    arm.errors.reserve(from.trials * from.steps * from.components);
+    for (std::size_t trial = 0; trial < from.trials; ++trial) {
+        for (std::size_t k = 0; k < from.steps; ++k) {
+            arm.nees.push_back(failed[trial] ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
+            for (std::size_t i = 0; i < from.components; ++i)
+                arm.errors.push_back(
+                    failed[trial] ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
+        }
+    }
+    arm.product_sums = added_up(from.product_sums);
+    arm.product_square_sums = added_up(from.product_square_sums);
+    arm.product_counts = added_up(from.product_counts);
+}
+
+ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
+                 std::uint64_t root_seed, std::int64_t index, int trials) {
+    const SimulationShape& shape = simulation.shape();
+    thread_local Octets octets;
+    thread_local WorkRoom room;
+    octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
+    void* workspace = room.of_size(simulation.workspace_size(a));
+    simulation.simulate(a, octets.batch(root_seed, index * block_size, workspace));
+    ArmBlock arm;
+    arm.sums = added_up(octets.sums);
+    arm.square_sums = added_up(octets.square_sums);
+    arm.run_square_sums = added_up(octets.run_square_sums);
+    arm.covered = octets.covered;
+    store_columns(columns, octets.columns, octets.trials, arm);
+    const std::vector<bool> failed = failed_trials(columns, arm, octets.trials);
+    if (shape_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);
+    if (detailed(shape, index)) store_details(octets, failed, arm);
+    return arm;
+}
+
+}  // namespace
+
+std::int64_t block_count(std::int64_t trials) { return (trials + block_size - 1) / block_size; }
+
+int trials_in_block(std::int64_t trials, std::int64_t index) {
+    return static_cast<int>(std::min<std::int64_t>(block_size, trials - index * block_size));
+}
+
+bool detailed(const SimulationShape& shape, std::int64_t index) {
+    static_assert(block_size == 256, "detailed_trials counts whole blocks");
+    return index < detailed_trials(shape.poses - 1, shape.state_size) / block_size;
+}
+
+Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,
+                std::uint64_t root_seed, std::int64_t index, int trials) {
+    Block block{index, trials, {}};
+    for (std::size_t a = 0; a < arms; ++a)
+        block.arms.push_back(run_arm(simulation, columns, a, root_seed, index, trials));
+    return block;
+}
+
+BlockRunner::BlockRunner(const Declaration& scenario)
+    : columns_(world_of(scenario).columns(scenario)),
+      arms_(scenario.arms.size()),
+      simulation_(simulation_of(scenario)) {}
+
+Block BlockRunner::run(std::uint64_t root_seed, std::int64_t index, int trials) const {
+    return run_block(*simulation_, columns_, arms_, root_seed, index, trials);
+}
+
+}  // namespace credence

@@ -1,0 +1,76 @@
+#include "files/hdf5/handle.hpp"
+
+#include <credence/error.hpp>
+
+#include "base/readable_file.hpp"
+#include "files/system/system_file.hpp"
+
+#include <cstdlib>
+#include <exception>
+
+namespace credence::hdf5 {
+
+QuietErrors::QuietErrors() : exceptions_(std::uncaught_exceptions()) {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietErrors::~QuietErrors() {
+    H5Eclear2(H5E_DEFAULT);
+    if (std::uncaught_exceptions() == exceptions_) H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
+
+namespace {
+
+/// HDF5 tells of the system's errors in the words of its descriptions alone: `..., errno = 24, error message = ...`.
+herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
+    const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
+    if (const std::size_t at = said.rfind(number); at != std::string::npos)
+        *static_cast<int*>(to) = std::atoi(said.c_str() + at + number.size());
+    return 0;
+}
+
+}  // namespace
+
+Error failure(const std::string& place, const std::string& problem) {
+    int error = 0;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_system_error, &error);
+    if (error == 0) return Error(place, problem);
+    return Error(place, "cannot be read (" + words_for(error) + ")", remedy_for_reading(error));
+}
+
+Handle::Handle(hid_t id, Close close, const std::string& place, const std::string& problem) : id_(id), close_(close) {
+    if (id_ < 0) throw failure(place, problem);
+}
+
+Handle::~Handle() {
+    if (id_ >= 0) close_(id_);
+}
+
+void Handle::close() {
+    const std::string place = place_of(*this);
+    check(close_(std::exchange(id_, H5I_INVALID_HID)), place, "HDF5 could not close it");
+}
+
+void check(herr_t returned, const std::string& place, const std::string& problem) {
+    if (returned < 0) throw failure(place, problem);
+}
+
+std::string place_of(const Handle& object) {
+    const ssize_t length = H5Iget_name(object.id(), nullptr, 0);
+    if (length <= 0) return "/";
+    std::string name(static_cast<std::size_t>(length), '\0');
+    H5Iget_name(object.id(), name.data(), name.size() + 1);
+    return printable(name);
+}
+
+std::string place_of(const Handle& object, const std::string& name) {
+    const std::string place = place_of(object);
+    return (place == "/" ? place : place + "/") + printable(name);
+}
+
+std::string attribute_place(const Handle& object, const std::string& name) {
+    return place_of(object) + "@" + printable(name);
+}
+
+}  // namespace credence::hdf5

@@ -1,0 +1,165 @@
+#include "files/hdf5/read.hpp"
+
+#include "base/readable_file.hpp"
+
+#include <algorithm>
+
+namespace credence::hdf5 {
+
+namespace {
+
+constexpr hsize_t longest_text = hsize_t{64} << 20;
+
+Handle open_attribute(const Handle& object, const std::string& name) {
+    const std::string place = attribute_place(object, name);
+    if (!has_attribute(object, name)) throw Error(place, "is missing");
+    return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it"};
+}
+
+/// What HDF5 answers to whether there is such a thing; throws where it cannot tell.
+bool found(htri_t answer, const std::string& place) {
+    check(answer, place, "cannot be looked up");
+    return answer > 0;
+}
+
+void require_scalar(const Handle& attribute, const std::string& place) {
+    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
+    if (H5Sget_simple_extent_type(space.id()) != H5S_SCALAR) throw Error(place, "is not a scalar");
+}
+
+}  // namespace
+
+hsize_t file_size(const Handle& object) {
+    const Handle file(H5Iget_file_id(object.id()), H5Fclose, place_of(object), "HDF5 does not know its file");
+    hsize_t size = 0;
+    check(H5Fget_filesize(file.id(), &size), place_of(object), "HDF5 does not know its file's size");
+    return size;
+}
+
+std::string kind_text(hid_t type) {
+    const std::size_t bits = 8 * H5Tget_size(type);
+    switch (H5Tget_class(type)) {
+        case H5T_INTEGER:
+            return (H5Tget_sign(type) == H5T_SGN_NONE ? "unsigned " : "") + std::to_string(bits) + "-bit integers";
+        case H5T_FLOAT: return std::to_string(bits) + "-bit floats";
+        case H5T_STRING: return "text";
+        default: return "something else";
+    }
+}
+
+const std::string& hard(const Handle& group, const std::string& name) {
+    const std::string place = place_of(group, name);
+    if (!has_link(group, name)) throw Error(place, "is missing");
+    H5L_info_t info;
+    check(H5Lget_info(group.id(), name.c_str(), &info, H5P_DEFAULT), place, "cannot be looked up");
+    if (info.type != H5L_TYPE_HARD)
+        throw Error(place, "is a link to somewhere else", "Copy what it points to into the file");
+    return name;
+}
+
+namespace {
+
+/// The first bytes of a file, as far as it has them. Throws Error.
+std::string start_of(const std::string& path, std::size_t most) {
+    try {
+        return start_of_file(path, most);
+    } catch (const Unreadable& why) {
+        const std::string whole = "the file";
+        if (why.is_missing()) throw Error(whole, "cannot be found", "Check the path");
+        if (why.is_irregular()) throw Error(whole, "is not a regular file", "Give an HDF5 file");
+        throw Error(whole, std::string("cannot be read (") + why.what() + ")", remedy_for_reading(why.error()));
+    }
+}
+
+}  // namespace
+
+Handle open_file(const std::string& path) {
+    const std::string whole = "the file", signature = "\x89HDF\r\n\x1a\n", start = start_of(path, signature.size());
+    // A workspace that MATLAB saved is HDF5 behind a header of its own; its variables have no attribute on the root.
+    if (start.starts_with("MATLAB"))
+        throw Error(whole, "is a MATLAB workspace", "Write the record with h5create, h5write and h5writeatt");
+    if (start != signature) throw Error(whole, "is not an HDF5 file", "Give an HDF5 file");
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "/", "HDF5 gives no properties");
+#if H5_VERSION_GE(1, 10, 7) && !(H5_VERSION_GE(1, 12, 0) && !H5_VERSION_GE(1, 12, 1))
+    // Finished files appear whole, under their name; locks only fail on file systems that have none.
+    check(H5Pset_file_locking(access.id(), false, true), "/", "HDF5 refuses its access properties");
+#endif
+    // A merge has a thousand files open: what the library keeps of each is not to make up its memory.
+    check(H5Pset_evict_on_close(access.id(), true), "/", "HDF5 refuses its access properties");
+    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, whole, "is truncated or damaged"};
+}
+
+std::vector<std::string> link_names(const Handle& group) {
+    H5G_info_t info;
+    const std::string place = place_of(group);
+    check(H5Gget_info(group.id(), &info), place, "cannot be listed");
+    std::vector<std::string> names;
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+        const auto get = [&](char* to, std::size_t room) {
+            const ssize_t length = H5Lget_name_by_idx(group.id(), ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, to, room,
+                                                      H5P_DEFAULT);
+            if (length <= 0) throw failure(place, "cannot be listed in the order in which it was made");
+            return static_cast<std::size_t>(length);
+        };
+        std::string name(get(nullptr, 0), '\0');
+        get(name.data(), name.size() + 1);
+        // HDF5 writes no such name, and would take it for a path, which could lead through links to other files.
+        if (name.find('/') != std::string::npos) throw Error(place_of(group, name), "has a name with a slash");
+        names.push_back(hard(group, name));
+    }
+    return names;
+}
+
+std::vector<std::string> attribute_names(const Handle& object) {
+    std::vector<std::string> names;
+    const H5A_operator2_t note = [](hid_t, const char* name, const H5A_info_t*, void* to) -> herr_t {
+        static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+        return 0;
+    };
+    hsize_t first = 0;
+    check(H5Aiterate2(object.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, &first, note, &names), place_of(object),
+          "its attributes cannot be listed in the order in which they were made");
+    return names;
+}
+
+bool has_link(const Handle& group, const std::string& name) {
+    const std::string place = place_of(group, name);
+    return found(H5Lexists(group.id(), name.c_str(), H5P_DEFAULT), place);
+}
+
+bool has_attribute(const Handle& object, const std::string& name) {
+    const std::string place = attribute_place(object, name);
+    return found(H5Aexists(object.id(), name.c_str()), place);
+}
+
+Handle open_group(const Handle& parent, const std::string& name) {
+    const std::string place = place_of(parent, name);
+    return {H5Gopen2(parent.id(), hard(parent, name).c_str(), H5P_DEFAULT), H5Gclose, place, "is no readable group"};
+}
+
+std::string read_text(const Handle& object, const std::string& name) {
+    const std::string place = attribute_place(object, name);
+    const Handle attribute = open_attribute(object, name);
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
+    if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0)
+        throw Error(place, "is not text of a fixed length");
+    require_scalar(attribute, place);
+    const std::size_t size = H5Tget_size(type.id());
+    if (size > std::min(file_size(object), longest_text)) throw Error(place, "is longer than it can be");
+    std::string text(size, '\0');
+    check(H5Aread(attribute.id(), type.id(), text.data()), place, "HDF5 cannot read it");
+    text.resize(text.find_last_not_of('\0') + 1);
+    return text;
+}
+
+void read_attribute(const Handle& object, const std::string& name, Type type, void* value) {
+    const std::string place = attribute_place(object, name);
+    const Handle attribute = open_attribute(object, name);
+    const Handle own(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
+    if (H5Tequal(own.id(), type.file) <= 0)
+        throw Error(place, "holds " + kind_text(own.id()) + ", not " + kind_text(type.file));
+    require_scalar(attribute, place);
+    check(H5Aread(attribute.id(), type.memory, value), place, "HDF5 cannot read it");
+}
+
+}  // namespace credence::hdf5

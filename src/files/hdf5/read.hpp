@@ -1,0 +1,124 @@
+#pragma once
+// Reading HDF5. Files are hostile until shown otherwise: kind, type, rank, extents and storage are checked
+// before anything is allocated. HDF5's parser itself has known overflows on crafted files; newer releases have fewer.
+
+#include <credence/error.hpp>
+
+#include "files/hdf5/handle.hpp"
+
+namespace credence::hdf5 {
+
+// All but `read_file` throw Error.
+
+/// Opens a file for reading, after checks of our own: a regular file that starts with HDF5's signature.
+Handle open_file(const std::string& path);
+
+/// Of the file that the object is in.
+hsize_t file_size(const Handle& object);
+
+/// What a type is called in messages, such as `64-bit floats`.
+std::string kind_text(hid_t type);
+
+/// Names of a group's links, and of an object's attributes, in the order in which they were made. Links other than hard
+/// ones could lead to other files and are refused.
+std::vector<std::string> link_names(const Handle& group);
+std::vector<std::string> attribute_names(const Handle& object);
+bool has_link(const Handle& group, const std::string& name);
+bool has_attribute(const Handle& object, const std::string& name);
+
+/// `name`; throws unless it is a hard link. Soft ones could lead anywhere, external ones to other files:
+/// nothing is to be opened by name without this.
+const std::string& hard(const Handle& group, const std::string& name);
+
+Handle open_group(const Handle& parent, const std::string& name);
+
+/// A scalar attribute of fixed-length text, without the nulls that pad it.
+std::string read_text(const Handle& object, const std::string& name);
+
+void read_attribute(const Handle& object, const std::string& name, Type type, void* value);
+
+/// A scalar attribute of exactly T's type.
+template <class T>
+T read_number(const Handle& object, const std::string& name) {
+    T value{};
+    read_attribute(object, name, type_of<T>(), &value);
+    return value;
+}
+
+/// A dataset whose storage could be what its extents say.
+class Dataset {
+public:
+    Dataset(const Handle& group, const std::string& name);
+
+    const std::string& place() const { return place_; }
+    const Extents& extents() const { return extents_; }
+    /// For its attributes.
+    const Handle& object() const { return dataset_; }
+    /// Whether the type in the file is exactly T's.
+    template <class T>
+    bool holds() const {
+        return has_type(type_of<T>().file);
+    }
+    /// Throws where the extents are others; the message shows both.
+    void require_extents(const Extents& extents) const;
+
+    /// All values, row-major; the type in the file must be exactly T's.
+    template <class T>
+    std::vector<T> read() const {
+        require<T>();
+        std::vector<T> values(count_);
+        read_into(type_of<T>().memory, values.data());
+        return values;
+    }
+    /// Of a list: values first ... first + count - 1, which are there; the type as for read().
+    template <class T>
+    std::vector<T> read_some(hsize_t first, hsize_t count) const {
+        require<T>();
+        std::vector<T> values(count);
+        read_some_into(type_of<T>().memory, first, count, values.data());
+        return values;
+    }
+    /// Throws unless the type in the file is exactly T's.
+    template <class T>
+    void require() const {
+        require_type(type_of<T>().file);
+    }
+    /// All values, row-major, of any floating-point type.
+    std::vector<double> read_real() const;
+
+private:
+    H5D_layout_t own_layout(const Handle& creation) const;
+    void check_storage(H5D_layout_t layout) const;
+    bool has_type(hid_t type) const;
+    void require_type(hid_t type) const;
+    void read_into(hid_t memory_type, void* values) const;
+    void read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const;
+
+    std::string place_;
+    Handle dataset_, type_;
+    Extents extents_;
+    std::size_t count_ = 1;
+};
+
+/// `[3, 2]`
+std::string extents_text(const Extents& extents);
+
+/// What `read` returns of a file. Throws its Error as InputError `FILE: PLACE: PROBLEM. REMEDY.`
+template <class Read>
+auto translated(const std::string& path, const std::string& usual_remedy, Read read) {
+    try {
+        const QuietErrors quiet;
+        return read();
+    } catch (const Error& error) {
+        const std::string& remedy = error.remedy().empty() ? usual_remedy : error.remedy();
+        throw InputError(path + ": " + error.what() + ". " + remedy + ".");
+    }
+}
+
+/// Opens a file and returns what `read` makes of it, its errors translated.
+template <class Read>
+auto read_file(const std::string& path, const std::string& usual_remedy, Read read) {
+    return translated(path, usual_remedy, [&] { return read(open_file(path)); });
+}
+
+}  // namespace credence::hdf5

@@ -1,0 +1,40 @@
+#pragma once
+// Reading what other programs wrote: parts of datasets of floating-point numbers, stored in any way, and text
+// of any kind. Checks as in hdf5_read.hpp.
+
+#include "files/hdf5/read.hpp"
+
+namespace credence::hdf5 {
+
+/// Which numbers a dataset may hold.
+enum class Numbers { floating, any };
+
+/// A dataset of numbers of any size that is read in parts, as doubles.
+class RealDataset {
+public:
+    RealDataset(const Handle& group, const std::string& name, Numbers numbers = Numbers::floating);
+
+    const std::string& place() const { return checked_.place(); }
+    const Extents& extents() const { return checked_.extents(); }
+    /// Distance of 1 from the next number in the file's floating type, at least 2^-52.
+    double epsilon() const { return epsilon_; }
+    /// What is stored together: the extents of a chunk, or 1 in each dimension.
+    const Extents& chunk() const { return chunk_; }
+
+    /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
+    void read(const Extents& first, const Extents& count, std::vector<double>& values) const;
+
+private:
+    void require_filters(const Handle& creation) const;
+
+    Dataset checked_;
+    Handle dataset_;
+    Extents chunk_;
+    double epsilon_ = 0;
+};
+
+/// An attribute of text: fixed or variable length, ASCII or UTF-8, a scalar or a list, whose entries are joined by
+/// commas. Without what pads it.
+std::string read_any_text(const Handle& object, const std::string& name);
+
+}  // namespace credence::hdf5

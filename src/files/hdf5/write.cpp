@@ -1,0 +1,112 @@
+#include "files/hdf5/write.hpp"
+
+#include <hdf5_hl.h>
+
+#include <algorithm>
+
+namespace credence::hdf5 {
+
+namespace {
+
+constexpr unsigned creation_order = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
+
+/// Properties of a new file, group or dataset. Tracked creation order also lets an attribute exceed 64 kB.
+Handle creation_properties(hid_t kind, const std::string& place) {
+    Handle properties(H5Pcreate(kind), H5Pclose, place, "HDF5 gives no properties");
+    const std::string problem = "HDF5 refuses its creation properties";
+    check(H5Pset_obj_track_times(properties.id(), false), place, problem);
+    check(H5Pset_attr_creation_order(properties.id(), creation_order), place, problem);
+    if (kind != H5P_DATASET_CREATE) check(H5Pset_link_creation_order(properties.id(), creation_order), place, problem);
+    return properties;
+}
+
+/// No dimensions: a scalar.
+Handle dataspace(const Extents& extents, const std::string& place) {
+    const hid_t space = extents.empty()
+                            ? H5Screate(H5S_SCALAR)
+                            : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+    return {space, H5Sclose, place, "HDF5 refuses its extents"};
+}
+
+}  // namespace
+
+Handle new_group(const Handle& parent, const std::string& name) {
+    const std::string place = place_of(parent, name);
+    const Handle creation = creation_properties(H5P_GROUP_CREATE, place);
+    return {H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, place,
+            "HDF5 could not make this group"};
+}
+
+void write_text(const Handle& object, const std::string& name, const std::string& text) {
+    const std::string place = attribute_place(object, name), problem = "HDF5 could not make this attribute";
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, place, problem);
+    // HDF5 has no empty text: it becomes one null, which is padding.
+    check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)), place, problem);
+    check(H5Tset_cset(type.id(), H5T_CSET_UTF8), place, problem);
+    check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), place, problem);
+    write_attribute(object, name, {type.id(), type.id()}, text.c_str(), {});
+}
+
+void write_attribute(const Handle& object, const std::string& name, Type type, const void* values,
+                     const Extents& extents) {
+    const std::string place = attribute_place(object, name), problem = "HDF5 could not make this attribute";
+    const Handle space = dataspace(extents, place);
+    Handle attribute(H5Acreate2(object.id(), name.c_str(), type.file, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                     place, problem);
+    check(H5Awrite(attribute.id(), type.memory, values), place, problem);
+    attribute.close();
+}
+
+Handle new_dataset(const Handle& group, const std::string& name, Type type, const Extents& extents,
+                   const Description& description) {
+    const std::string place = place_of(group, name), problem = "HDF5 could not make this dataset";
+    const Handle space = dataspace(extents, place), creation = creation_properties(H5P_DATASET_CREATE, place);
+    // Every value is written; without this HDF5 would write its fill values first.
+    check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER), place, problem);
+    Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.file, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+                   H5Dclose, place, problem);
+    write_text(dataset, "long_name", description.long_name);
+    write_text(dataset, "units", description.units);
+    return dataset;
+}
+
+void write_values(const Handle& dataset, Type type, hsize_t first, hsize_t count, const void* values) {
+    const std::string place = place_of(dataset), problem = "HDF5 could not write its values";
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose, place, problem),
+        memory(H5Screate_simple(1, &count, nullptr), H5Sclose, place, problem);
+    check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr), place, problem);
+    check(H5Dwrite(dataset.id(), type.memory, memory.id(), space.id(), H5P_DEFAULT, values), place, problem);
+}
+
+Handle write_dataset(const Handle& group, const std::string& name, Type type, const void* values,
+                     const Extents& extents, const Description& description) {
+    Handle dataset = new_dataset(group, name, type, extents, description);
+    check(H5Dwrite(dataset.id(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), place_of(dataset),
+          "HDF5 could not write its values");
+    return dataset;
+}
+
+Dimension as_dimension(Handle dataset, const std::string& name, hsize_t size) {
+    check(H5DSset_scale(dataset.id(), name.c_str()), place_of(dataset), "HDF5 could not make it a dimension");
+    return {size, std::move(dataset)};
+}
+
+void attach(const Handle& variable, const Dimensions& dimensions) {
+    for (std::size_t i = 0; i < dimensions.size(); ++i)
+        check(H5DSattach_scale(variable.id(), dimensions[i]->scale.id(), static_cast<unsigned>(i)), place_of(variable),
+              "HDF5 could not attach its dimensions");
+}
+
+Extents extents_of(const Dimensions& dimensions, std::size_t count, const std::string& name) {
+    Extents extents;
+    hsize_t room = 1;
+    for (const Dimension* dimension : dimensions) {
+        extents.push_back(dimension->size);
+        room *= dimension->size;
+    }
+    if (room != count)
+        throw Error(name, "has " + std::to_string(count) + " values, its dimensions take " + std::to_string(room));
+    return extents;
+}
+
+}  // namespace credence::hdf5

@@ -1,0 +1,84 @@
+#pragma once
+// Writing HDF5 that is netCDF-4 as well. The same calls give the same bytes: no object times,
+// creation order tracked, contiguous data, no filters.
+
+#include "files/hdf5/handle.hpp"
+
+#include <algorithm>
+
+namespace credence::hdf5 {
+
+/// What every variable says of itself.
+struct Description {
+    std::string long_name, units;
+};
+
+/// A dimension that variables lie along, with its coordinate: an HDF5 dimension scale, a netCDF dimension.
+struct Dimension {
+    hsize_t size;
+    Handle scale;
+};
+using Dimensions = std::vector<const Dimension*>;
+
+Handle new_group(const Handle& parent, const std::string& name);
+
+/// An attribute of fixed-length UTF-8, the one kind of text that every reader gets right.
+void write_text(const Handle& object, const std::string& name, const std::string& text);
+
+// The plain functions below are what the templates stand on.
+void write_attribute(const Handle& object, const std::string& name, Type type, const void* values,
+                     const Extents& extents);
+Handle new_dataset(const Handle& group, const std::string& name, Type type, const Extents& extents,
+                   const Description& description);
+void write_values(const Handle& dataset, Type type, hsize_t first, hsize_t count, const void* values);
+Handle write_dataset(const Handle& group, const std::string& name, Type type, const void* values,
+                     const Extents& extents, const Description& description);
+Dimension as_dimension(Handle dataset, const std::string& name, hsize_t size);
+void attach(const Handle& variable, const Dimensions& dimensions);
+Extents extents_of(const Dimensions& dimensions, std::size_t count, const std::string& name);
+
+/// A scalar attribute.
+template <class T>
+void write_number(const Handle& object, const std::string& name, T value) {
+    write_attribute(object, name, type_of<T>(), &value, {});
+}
+
+/// An attribute that is an array.
+template <class T>
+void write_numbers(const Handle& object, const std::string& name, const std::vector<T>& values) {
+    write_attribute(object, name, type_of<T>(), values.data(), {values.size()});
+}
+
+/// Rows that a dataset along one dimension is written in: they bound the memory that long ones take.
+inline constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
+
+/// A dataset along one dimension of `count` values, `values(first, count)` giving some of them at a time.
+template <class T, class Values>
+Handle new_long_dataset(const Handle& group, const std::string& name, std::int64_t count,
+                        const Description& description, Values values) {
+    Handle dataset = new_dataset(group, name, type_of<T>(), {static_cast<hsize_t>(count)}, description);
+    for (std::int64_t first = 0; first < count; first += rows_at_once) {
+        const std::vector<T> some = values(first, std::min(rows_at_once, count - first));
+        write_values(dataset, type_of<T>(), static_cast<hsize_t>(first), some.size(), some.data());
+    }
+    return dataset;
+}
+
+template <class T>
+Dimension new_dimension(const Handle& group, const std::string& name, const std::vector<T>& coordinate,
+                        const Description& description) {
+    return as_dimension(write_dataset(group, name, type_of<T>(), coordinate.data(), {coordinate.size()}, description),
+                        name, coordinate.size());
+}
+
+/// A variable along dimensions of the same group; `values`, row-major, must fill them.
+template <class T>
+Handle new_variable(const Handle& group, const std::string& name, const std::vector<T>& values,
+                    const Dimensions& dimensions, const Description& description) {
+    Handle variable = write_dataset(group, name, type_of<T>(), values.data(),
+                                    extents_of(dimensions, values.size(), name), description);
+    attach(variable, dimensions);
+    return variable;
+}
+
+}  // namespace credence::hdf5

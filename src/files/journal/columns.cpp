@@ -1,0 +1,116 @@
+// Where the journal has the columns of a run.
+
+#include "files/journal/journal.hpp"
+
+#include <credence/error.hpp>
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+/// An arm's columns while they are in the journal, in the results file that it grows, or in both.
+class ColumnsOfRun : public KeptColumns {
+public:
+    ColumnsOfRun(const Journal& journal, std::size_t scenario, std::size_t arm)
+        : journal_(journal), scenario_(scenario), arm_(arm) {}
+    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
+        return journal_.values(scenario_, arm_, column, first, count);
+    }
+
+private:
+    const Journal& journal_;
+    std::size_t scenario_, arm_;
+};
+
+/// A scenario's totals and details, likewise.
+class TotalsOfRun : public KeptTotals {
+public:
+    TotalsOfRun(const Journal& journal, std::size_t scenario) : journal_(journal), scenario_(scenario) {}
+    void load(ScenarioResults& results) const override { journal_.load_totals(scenario_, results); }
+
+private:
+    const Journal& journal_;
+    std::size_t scenario_;
+};
+
+}  // namespace
+
+/// From here on the study's columns, where they are kept, are read from where the journal has them, and so are totals that
+/// are not in memory.
+void Journal::keep(Study& study) {
+    kept_.clear();
+    computed_by_ = study.computed_by;
+    for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+        ScenarioResults& results = study.scenarios[s];
+        Kept kept{BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
+        kept.placed.blocks = results.blocks;
+        results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
+        const auto note = [&](std::size_t place) {
+            kept.placed.places[results.blocks[place]] = {block_rows(results, place),
+                                                         block_size * static_cast<std::int64_t>(place), true};
+        };
+        const std::size_t blocks = results.blocks.size();
+        const auto with_values = results.keep == Keep::trials
+                                     ? blocks
+                                     : static_cast<std::size_t>(results.blocks.count_below(kept.layout.detailed_blocks()));
+        for (std::size_t place = 0; place < with_values; ++place) note(place);
+        if (results.trials % block_size != 0) note(blocks - 1);
+        for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {
+            kept.in_file.push_back(results.arms[a].kept);
+            results.arms[a].kept = std::make_shared<ColumnsOfRun>(*this, s, a);
+        }
+        kept_.push_back(std::move(kept));
+    }
+}
+
+void Journal::read_values(std::int64_t position, ColumnType type, double* values, std::int64_t count) const {
+    std::string bytes(static_cast<std::size_t>(count * value_size(type)), '\0');
+    file_.read(position, bytes.data(), bytes.size());
+    ByteReader from(bytes.data(), bytes.size());
+    try {
+        get_values(from, type, values, static_cast<std::size_t>(count));
+    } catch (const BadBytes& bad) {
+        throw InputError(file_.path() + ": is damaged: holds " + bad.what() + ". Remove it and run the study again.");
+    }
+}
+
+/// Of `left` rows from row `skip` of block `at` on, those in the results file that can be read there at once: blocks that
+/// follow each other here may do so there.
+std::int64_t Journal::rows_in_file(const Kept& kept, std::size_t at, std::int64_t skip, std::int64_t left) {
+    const BlockPlace& place = kept.rows[at];
+    std::int64_t some = std::min(place.trials - skip, left);
+    while (some < left && ++at < kept.rows.size()) {
+        const BlockPlace& next = kept.rows[at];
+        if (!next.in_file || next.position != place.position + skip + some) break;
+        some = std::min(some + next.trials, left);
+    }
+    return some;
+}
+
+std::vector<double> Journal::values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
+                                    std::int64_t count) const {
+    const Kept& kept = kept_[scenario];
+    std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t row = first, some = 0; row < first + count; row += some) {
+        const auto at = static_cast<std::size_t>(row / block_size);
+        const BlockPlace& place = kept.rows[at];
+        const std::int64_t skip = row % block_size, left = first + count - row;
+        if (place.in_file) {
+            some = rows_in_file(kept, at, skip, left);
+            const std::vector<double> read = kept.in_file[arm]->values(column, place.position + skip, some);
+            values.insert(values.end(), read.begin(), read.end());
+        } else {
+            some = std::min(place.trials - skip, left);
+            values.resize(values.size() + static_cast<std::size_t>(some));
+            const ColumnType type = kept.types[column];
+            read_values(place.position + kept.layout.column_offset(arm, column, place.trials) + skip * value_size(type),
+                        type, values.data() + values.size() - some, some);
+        }
+    }
+    return values;
+}
+
+}  // namespace credence

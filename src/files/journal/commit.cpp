@@ -1,0 +1,233 @@
+#include "files/journal/commit.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+constexpr std::uint32_t record_magic = 0x6b636f6c;
+
+}  // namespace
+
+std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc) {
+    return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const Bytef*>(bytes), size));
+}
+
+void put_shard(ByteWriter& to, const Shard& shard) {
+    to.put(shard.index);
+    to.put(shard.count);
+}
+
+Shard get_shard(ByteReader& from) {
+    const Shard shard{from.get<std::int64_t>(), from.get<std::int64_t>()};
+    if (shard.index < 0 || shard.index >= shard.count) throw BadBytes("an impossible shard");
+    return shard;
+}
+
+BlockLayout::BlockLayout(const ScenarioResults& results)
+    : keep_(results.keep),
+      column_at_{0},
+      arms_(static_cast<std::int64_t>(results.arms.size())),
+      detailed_blocks_(detailed_trials(results.steps(), results.state_size()) / block_size),
+      errors_(std::int64_t{results.steps()} * results.state_size()),
+      nees_(results.steps()) {
+    for (const ColumnType type : kept_types(results)) column_at_.push_back(column_at_.back() + value_size(type));
+}
+
+std::int64_t BlockLayout::column_offset(std::size_t arm, std::size_t column, std::int64_t trials) const {
+    return trials * (static_cast<std::int64_t>(arm) * column_at_.back() + column_at_[column]);
+}
+
+std::int64_t BlockLayout::details_offset(std::size_t arm, std::int64_t trials) const {
+    return trials * arms_ * column_at_.back() + static_cast<std::int64_t>(arm) * details_size(trials);
+}
+
+std::int64_t BlockLayout::details_size(std::int64_t trials) const {
+    return trials * (errors_ + nees_) * static_cast<std::int64_t>(sizeof(float));
+}
+
+std::int64_t BlockLayout::size(const JournalBlock& block) const {
+    return detailed(block.index) ? details_offset(static_cast<std::size_t>(arms_), block.trials)
+                                 : block.trials * arms_ * column_at_.back();
+}
+
+std::int64_t value_size(ColumnType type) {
+    return type == ColumnType::real ? 8 : type == ColumnType::integer ? 4 : 1;
+}
+
+void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (type == ColumnType::real) to.put(values[i]);
+        else if (type == ColumnType::integer) to.put(static_cast<std::int32_t>(values[i]));
+        else to.put(static_cast<std::int8_t>(values[i]));
+    }
+}
+
+void get_values(ByteReader& from, ColumnType type, double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (type == ColumnType::real) values[i] = from.get<double>();
+        else if (type == ColumnType::integer) values[i] = from.get<std::int32_t>();
+        else values[i] = from.get<std::int8_t>();
+        if (type == ColumnType::status && !(values[i] >= 0 && values[i] < static_cast<double>(status_names().size())))
+            throw BadBytes("a status that is none");
+    }
+}
+
+std::vector<ColumnType> kept_types(const ScenarioResults& results) {
+    std::vector<ColumnType> types;
+    if (results.keep == Keep::aggregates) return types;
+    for (const Column& column : results.columns) types.push_back(column.type);
+    return types;
+}
+
+void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block& block) {
+    const auto trials = static_cast<std::size_t>(block.trials);
+    for (const ArmBlock& arm : block.arms)
+        for (std::size_t c = 0; c < types.size(); ++c)
+            put_values(to, types[c], arm.columns.data() + c * trials, trials);
+    for (const ArmBlock& arm : block.arms) {
+        to.put_all(arm.errors);
+        to.put_all(arm.nees);
+    }
+}
+
+void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to) {
+    const auto get = [&](std::vector<double>& all, std::int64_t width) {
+        const std::vector<float> values = from.get_all<float>(static_cast<std::size_t>(trials * width));
+        std::copy(values.begin(), values.end(), all.begin() + row * width);
+    };
+    get(to.errors, layout.errors());
+    get(to.nees, layout.nees());
+}
+
+void put_record_head(ByteWriter& to, const RecordHead& head) {
+    to.put(record_magic);
+    to.put(head.scenario);
+    to.put(head.payload);
+}
+
+namespace {
+
+/// Padded with nulls to its size; what is longer is cut.
+void put_release(ByteWriter& to, std::string release) {
+    release.resize(record_release_size, '\0');
+    to.put_raw(release.data(), release.size());
+}
+
+std::string get_release(ByteReader& from) {
+    std::string release(from.raw(record_release_size), record_release_size);
+    release.resize(std::min(release.find('\0'), release.size()));
+    if (std::any_of(release.begin(), release.end(), [](char c) { return c < ' ' || c > '~'; }))
+        throw BadBytes("an impossible release");
+    return release;
+}
+
+}  // namespace
+
+RecordHead get_record_head(ByteReader& from) {
+    if (from.get<std::uint32_t>() != record_magic) throw BadBytes("no record begins there");
+    RecordHead head;
+    head.scenario = from.get<std::uint32_t>();
+    head.payload = from.get<std::int64_t>();
+    if (head.payload < static_cast<std::int64_t>(record_start_size)) throw BadBytes("a record is too short");
+    return head;
+}
+
+void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep) {
+    to.put(start.trials);
+    to.put(start.counted);
+    put_shard(to, start.shard);
+    put_release(to, start.release);
+    if (keep == Keep::aggregates) {
+        to.put(static_cast<std::uint32_t>(start.ranges.size()));
+        for (const BlockRange& range : start.ranges) {
+            to.put(range.first);
+            to.put(range.last);
+        }
+        return;
+    }
+    to.put(static_cast<std::uint32_t>(start.blocks.size()));
+    for (const JournalBlock& block : start.blocks) {
+        to.put(block.index);
+        to.put(block.trials);
+    }
+}
+
+std::size_t block_list_size(const RecordStart& start, Keep keep) {
+    return keep == Keep::aggregates ? start.ranges.size() * journal_range_size
+                                    : start.blocks.size() * journal_block_size;
+}
+
+RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout) {
+    RecordStart start{trials, 0, {}};
+    BlockRanges without_values;
+    for (const std::int64_t block : blocks) {
+        if (layout.keep() == Keep::aggregates && !layout.detailed(block)) {
+            without_values.add(block);
+            continue;
+        }
+        start.blocks.push_back({block, trials_in_block(trials, block)});
+        if (layout.keep() == Keep::aggregates) start.ranges.push_back({block, block});
+    }
+    const std::vector<BlockRange> others = without_values.ranges();
+    start.ranges.insert(start.ranges.end(), others.begin(), others.end());
+    return start;
+}
+
+namespace {
+
+/// Ranges of a study's blocks, and in `start.blocks` those that have values.
+void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, RecordStart& start) {
+    for (; count > 0; --count) {
+        const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};
+        if (range.first < 0 || range.last < range.first || range.last >= block_count(start.trials))
+            throw BadBytes("a block that the study does not have");
+        start.ranges.push_back(range);
+        for (std::int64_t block = range.first; block <= range.last && layout.detailed(block); ++block)
+            start.blocks.push_back({block, trials_in_block(start.trials, block)});
+        if (std::ssize(start.blocks) > layout.detailed_blocks()) throw BadBytes("a block is there twice");
+    }
+}
+
+}  // namespace
+
+RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
+    RecordStart start;
+    start.trials = from.get<std::int64_t>();
+    start.counted = from.get<std::int64_t>();
+    if (start.trials < 0 || start.trials > most_trials || start.counted < 0 || start.counted > start.trials)
+        throw BadBytes("an impossible number of trials");
+    start.shard = get_shard(from);
+    start.release = get_release(from);
+    const auto count = from.get<std::uint32_t>();
+    if (layout.keep() == Keep::aggregates) {
+        get_ranges(from, count, layout, start);
+        return start;
+    }
+    for (auto left = count; left > 0; --left) {
+        JournalBlock block{from.get<std::int64_t>(), from.get<std::int32_t>()};
+        if (block.index < 0 || block.index >= block_count(start.trials) ||
+            block.trials != trials_in_block(start.trials, block.index))
+            throw BadBytes("a block that the study does not have");
+        start.blocks.push_back(block);
+    }
+    return start;
+}
+
+std::string record_start_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, std::size_t size_after) {
+    ByteWriter record;
+    const std::size_t payload = record_start_size + block_list_size(start, keep) + size_after;
+    put_record_head(record, {scenario, static_cast<std::int64_t>(payload)});
+    put_record_start(record, start, keep);
+    return record.take();
+}
+
+std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
+                         const std::string& totals) {
+    return record_start_bytes(scenario, start, keep, values.size() + totals.size()) + values + totals;
+}
+
+}  // namespace credence

@@ -1,0 +1,138 @@
+#include "files/journal/totals.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+constexpr std::uint64_t most_counted = std::uint64_t{1} << 62;
+
+void put_sum(ByteWriter& to, const ExactSum& sum) {
+    const std::vector<double> parts = sum.parts();
+    to.put_count(parts.size());
+    to.put_all(parts);
+}
+
+ExactSum get_sum(ByteReader& from) {
+    constexpr std::uint64_t most_parts = 64;  // 2098 bits of doubles make no more than 40 that do not overlap
+    const std::uint64_t count = from.get_count();
+    if (count == 0 || count > most_parts) throw BadBytes("a sum has an impossible number of parts");
+    return ExactSum::from_parts(from.get_all<double>(count));
+}
+
+void put_sums(ByteWriter& to, const std::vector<ExactSum>& sums) {
+    for (const ExactSum& sum : sums) put_sum(to, sum);
+}
+
+void get_sums(ByteReader& from, std::vector<ExactSum>& sums) {
+    for (ExactSum& sum : sums) sum = get_sum(from);
+}
+
+std::int64_t get_number(ByteReader& from) {
+    const std::uint64_t value = from.get_count();
+    if (value > most_counted) throw BadBytes("a count is too large");
+    return static_cast<std::int64_t>(value);
+}
+
+/// Counts of which long runs are 0, as those of cells are at first: each 0 is followed by the number of further ones.
+void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
+    for (auto count = counts.begin(); count != counts.end();) {
+        to.put_count(static_cast<std::uint64_t>(*count));
+        if (*count++ != 0) continue;
+        const auto end = std::find_if(count, counts.end(), [](std::int64_t other) { return other != 0; });
+        to.put_count(static_cast<std::uint64_t>(end - count));
+        count = end;
+    }
+}
+
+void get_counts(ByteReader& from, std::vector<std::int64_t>& counts) {
+    for (auto count = counts.begin(); count != counts.end();) {
+        *count++ = get_number(from);
+        if (count[-1] != 0) continue;
+        const std::uint64_t more = from.get_count();
+        if (more > static_cast<std::uint64_t>(counts.end() - count)) throw BadBytes("has too many counts");
+        std::fill_n(count, more, 0);
+        count += static_cast<std::ptrdiff_t>(more);
+    }
+}
+
+void put_moments(ByteWriter& to, const ExactMoments& moments) {
+    to.put_count(static_cast<std::uint64_t>(moments.count));
+    put_sum(to, moments.sum);
+    put_sum(to, moments.square_sum);
+}
+
+void get_moments(ByteReader& from, ExactMoments& moments) {
+    moments.count = get_number(from);
+    moments.sum = get_sum(from);
+    moments.square_sum = get_sum(from);
+}
+
+void put_aggregates(ByteWriter& to, const ArmAggregates& aggregates) {
+    for (const std::int64_t trials : aggregates.statuses) to.put_count(static_cast<std::uint64_t>(trials));
+    for (const ExactMoments& column : aggregates.columns) put_moments(to, column);
+    for (const std::vector<DifferenceTotals>& columns : aggregates.differences)
+        for (const DifferenceTotals& totals : columns) {
+            put_moments(to, totals.difference);
+            to.put_count(static_cast<std::uint64_t>(totals.below));
+            to.put_count(static_cast<std::uint64_t>(totals.above));
+        }
+}
+
+void get_aggregates(ByteReader& from, ArmAggregates& aggregates) {
+    for (std::int64_t& trials : aggregates.statuses) trials = get_number(from);
+    for (ExactMoments& column : aggregates.columns) get_moments(from, column);
+    for (std::vector<DifferenceTotals>& columns : aggregates.differences)
+        for (DifferenceTotals& totals : columns) {
+            get_moments(from, totals.difference);
+            totals.below = get_number(from);
+            totals.above = get_number(from);
+        }
+    if (const char* problem = problem_of(aggregates)) throw BadBytes(problem);
+}
+
+void put_arm(ByteWriter& to, const ArmResults& arm) {
+    to.put(arm.counted);
+    for (const FigureTotals& figure : arm.totals) {
+        put_sums(to, figure.sum);
+        put_sums(to, figure.square_sum);
+        put_sum(to, figure.run_square_sum);
+        put_counts(to, figure.covered);
+    }
+    put_counts(to, arm.cells);
+    put_sums(to, arm.products.sum);
+    put_sums(to, arm.products.square_sum);
+    put_counts(to, arm.products.count);
+    put_aggregates(to, arm.aggregates);
+}
+
+void get_arm(ByteReader& from, ArmResults& arm) {
+    arm.counted = from.get<std::int64_t>();
+    for (FigureTotals& figure : arm.totals) {
+        get_sums(from, figure.sum);
+        get_sums(from, figure.square_sum);
+        figure.run_square_sum = get_sum(from);
+        get_counts(from, figure.covered);
+    }
+    get_counts(from, arm.cells);
+    get_sums(from, arm.products.sum);
+    get_sums(from, arm.products.square_sum);
+    get_counts(from, arm.products.count);
+    if (arm.aggregates.statuses.empty()) return;  // the trials are kept
+    get_aggregates(from, arm.aggregates);
+    if (arm.aggregates.counted() != arm.counted) throw BadBytes("totals of an impossible number of trials");
+}
+
+}  // namespace
+
+void put_totals(ByteWriter& to, const ScenarioResults& results) {
+    for (const ArmResults& arm : results.arms) put_arm(to, arm);
+}
+
+void get_totals(ByteReader& from, ScenarioResults& results) {
+    for (ArmResults& arm : results.arms) get_arm(from, arm);
+    if (from.left() != 0) throw BadBytes("has more than the totals");
+}
+
+}  // namespace credence

@@ -1,0 +1,147 @@
+#include <credence/merge.hpp>
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include "files/merge/scenario.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace credence {
+
+namespace {
+
+/// Throws unless the file is of the study that the first one is of.
+void check_same_study(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t file,
+                      std::size_t first_file) {
+    const auto refuse = [&](const std::string& why) {
+        throw InputError("cannot merge " + paths[file] + " with " + paths[first_file] + " (it is not of the same study: " +
+                         why + "). Merge the shards of one study.");
+    };
+    const std::string difference = difference_of(definition_of(other), definition_of(first));
+    if (!difference.empty()) refuse(difference);
+    if (other.trials != first.trials)
+        refuse("it was asked for " + std::to_string(other.trials) + " trials, not " + std::to_string(first.trials));
+}
+
+/// `3, 7 to 9`; long lists are cut.
+std::string ranges_text(const BlockRanges& blocks) {
+    constexpr std::size_t most = 12;
+    const std::vector<BlockRange> ranges = blocks.ranges();
+    std::vector<std::string> texts;
+    for (const BlockRange& range : ranges) {
+        if (texts.size() == most) break;
+        texts.push_back(std::to_string(range.first) +
+                        (range.count() > 1 ? (range.count() > 2 ? " to " : ", ") + std::to_string(range.last) : ""));
+    }
+    const std::size_t more = ranges.size() - texts.size();
+    return joined(texts, ", ") + (more > 0 ? " and " + std::to_string(more) + " more places" : "");
+}
+
+}  // namespace
+
+namespace {
+
+/// Throws unless trials of the two files may stand in one.
+void check_releases(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t a,
+                    std::size_t b) {
+    for (const ComputedBy& one : other.computed_by)
+        if (const std::string unlike = unmixable(first.computed_by, one.release); !unlike.empty())
+            throw InputError("cannot merge " + paths[b] + " with " + paths[a] + " (" + one.release +
+                             " computed trials of it, and " + unlike +
+                             " of the other; draws and columns may differ between them). Run one of them again.");
+}
+
+/// What files that are added one after the other make.
+class Merger {
+public:
+    explicit Merger(const std::vector<std::string>& paths)
+        : paths_(paths), shared_paths_(std::make_shared<const std::vector<std::string>>(paths)) {}
+
+    void add(std::size_t file, Study part) {
+        if (scenarios_.empty()) begin(part, file);
+        check_same_study(study_, part, paths_, file, first_);
+        check_releases(study_, part, paths_, first_, file);
+        for (std::size_t s = 0; s < scenarios_.size(); ++s) {
+            const BlockRanges fresh = part.scenarios[s].blocks.without(scenarios_[s].blocks());
+            note_computed(study_.computed_by, part.computed_by, s, fresh);
+            scenarios_[s].add(part.scenarios[s], file);
+        }
+    }
+
+    /// Whether a file has a block that another had before.
+    bool shares(const Study& part) const {
+        for (std::size_t s = 0; s < scenarios_.size() && s < part.scenarios.size(); ++s)
+            if (!part.scenarios[s].blocks.common(scenarios_[s].blocks()).empty()) return true;
+        return false;
+    }
+
+    Study merged(std::int64_t most_totals) {
+        TotalsInMemory in_memory(most_totals);
+        for (std::size_t s = 0; s < scenarios_.size(); ++s) study_.scenarios[s] = scenarios_[s].merged(in_memory);
+        study_.complete = missing_text(study_).empty();
+        return std::move(study_);
+    }
+
+private:
+    void begin(const Study& part, std::size_t file) {
+        first_ = file;
+        for (std::size_t s = 0; s < part.scenarios.size(); ++s)
+            scenarios_.emplace_back(part.scenarios[s], part.trials, part.root_seed, shared_paths_);
+        study_ = part;
+        for (ScenarioResults& results : study_.scenarios) results.arms.clear();
+    }
+
+    const std::vector<std::string>& paths_;
+    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for what is read when the results are written
+    std::size_t first_ = 0;
+    Study study_;
+    std::vector<ScenarioMerger> scenarios_;
+};
+
+/// The files by the number of their blocks, those with few first: files that make up another one come before it, and what
+/// they have in common need not be computed.
+std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
+    std::vector<std::pair<std::int64_t, std::size_t>> sizes;
+    for (std::size_t file = 0; file < paths.size(); ++file) {
+        std::int64_t blocks = 0;
+        for (const ScenarioResults& results : read_results_without_totals(paths[file]).study.scenarios) blocks += results.blocks.count();
+        sizes.emplace_back(blocks, file);
+    }
+    std::sort(sizes.begin(), sizes.end());
+    std::vector<std::size_t> order;
+    for (const auto& [blocks, file] : sizes) order.push_back(file);
+    return order;
+}
+
+Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_totals) {
+    Merger merger(paths);
+    for (const std::size_t file : by_size(paths)) merger.add(file, read_results_without_totals(paths[file]).study);
+    return merger.merged(most_totals);
+}
+
+}  // namespace
+
+Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals) {
+    Merger merger(paths);
+    for (std::size_t file = 0; file < paths.size(); ++file) {
+        Study part = read_results_without_totals(paths[file]).study;
+        if (merger.shares(part)) return merge_shared(paths, most_totals);
+        merger.add(file, std::move(part));
+    }
+    return merger.merged(most_totals);
+}
+
+std::string missing_text(const Study& study) {
+    std::vector<std::string> lacking;
+    for (const ScenarioResults& results : study.scenarios) {
+        const BlockRanges missing = missing_blocks(results, study.trials);
+        if (!missing.empty())
+            lacking.push_back("scenario " + results.scenario.name + " lacks blocks " + ranges_text(missing) + " of " +
+                              std::to_string(block_count(study.trials)));
+    }
+    return joined(lacking, "; ");
+}
+
+}  // namespace credence

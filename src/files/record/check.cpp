@@ -1,0 +1,107 @@
+// What a step of a record holds: a covariance that is not symmetric is refused by dataset, trial and step; what is not
+// finite breaks the step, as a filter's failure and not the record's.
+
+#include <credence/text.hpp>
+
+#include "files/hdf5/handle.hpp"
+#include "worlds/own/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Error;
+
+constexpr double largest_asymmetry = 1e-9;
+
+bool any_number(const double* values, std::ptrdiff_t count) {
+    return !std::all_of(values, values + count, [](double value) { return std::isnan(value); });
+}
+
+bool all_finite(const double* values, std::ptrdiff_t count) {
+    return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
+}
+
+void refuse_asymmetry(const char* dataset, const RecordStep& step, int i, int j, double above, double below) {
+    throw Error(dataset,
+                "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
+                    " (both counted from 0) is not symmetric: [" + std::to_string(i) + ", " + std::to_string(j) +
+                    "] is " + to_text(above) + ", [" + std::to_string(j) + ", " + std::to_string(i) + "] is " +
+                    to_text(below),
+                "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
+}
+
+/// The part of a matrix [size, size] in these rows and columns, made symmetric; false where some of it is not finite.
+bool read_symmetric(const char* dataset, const RecordStep& step, const double* values, std::ptrdiff_t size,
+                    const std::vector<int>& rows, Eigen::MatrixXd& symmetric) {
+    const auto at = [&](int i, int j) { return values[i * size + j]; };
+    for (const int i : rows)
+        for (const int j : rows)
+            if (!std::isfinite(at(i, j))) return false;
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    symmetric.resize(count, count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+        for (Eigen::Index b = 0; b <= a; ++b) {
+            const int i = rows[static_cast<std::size_t>(b)], j = rows[static_cast<std::size_t>(a)];
+            const double above = at(i, j), below = at(j, i), difference = std::abs(above - below);
+            // First the cheap bound; the other one forgives the rounding of entries that should be 0.
+            if (difference > largest_asymmetry * std::max(std::abs(above), std::abs(below)) &&
+                !(difference <= largest_asymmetry * std::sqrt(std::abs(at(i, i))) * std::sqrt(std::abs(at(j, j)))))
+                refuse_asymmetry(dataset, step, i, j, above, below);
+            symmetric(a, b) = symmetric(b, a) = above / 2 + below / 2;
+        }
+    }
+    return true;
+}
+
+std::vector<int> counted_up(int count) {
+    std::vector<int> all(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) all[static_cast<std::size_t>(i)] = i;
+    return all;
+}
+
+/// The observed rows of the innovation, and their covariance. What is wrong with them; empty where nothing is.
+std::string read_innovation(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
+    checked.rows.clear();
+    for (int row = 0; row < shape.m; ++row)
+        if (!std::isnan(step.innovation[row])) checked.rows.push_back(row);
+    checked.nu.resize(static_cast<Eigen::Index>(checked.rows.size()));
+    for (std::size_t i = 0; i < checked.rows.size(); ++i)
+        checked.nu(static_cast<Eigen::Index>(i)) = step.innovation[checked.rows[i]];
+    if (!checked.nu.allFinite()) return "the innovation is not finite";
+    return read_symmetric("/innovation_covariance", step, step.innovation_covariance, shape.m, checked.rows, checked.S)
+               ? ""
+               : "the innovation covariance is not finite";
+}
+
+/// The same of the error and its covariance, some of which is a number.
+std::string read_state(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
+    const std::ptrdiff_t n = shape.n;
+    if (!any_number(step.error, n)) return "the error is NaN, and the covariance is not";
+    if (!any_number(step.covariance, n * n)) return "the covariance is NaN, and the error is not";
+    if (!all_finite(step.error, shape.n)) return "the error is not finite";
+    checked.e = Eigen::Map<const Eigen::VectorXd>(step.error, shape.n);
+    return read_symmetric("/covariance", step, step.covariance, shape.n, counted_up(shape.n), checked.P)
+               ? ""
+               : "the covariance is not finite";
+}
+
+}  // namespace
+
+Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
+    if (!any_number(step.error, shape.n) && !any_number(step.covariance, std::ptrdiff_t{shape.n} * shape.n))
+        return Presence::absent;
+    checked.broken = read_state(step, shape, checked);
+    if (checked.broken.empty() && shape.has_innovations()) checked.broken = read_innovation(step, shape, checked);
+    return checked.broken.empty() ? Presence::there : Presence::broken;
+}
+
+std::string divergence_of(const CheckedStep& step) {
+    if (step.e.cwiseAbs().maxCoeff() > divergence_bound) return "the error is beyond 1e12: diverged";
+    return step.P.cwiseAbs().maxCoeff() > divergence_bound ? "the covariance is beyond 1e12: diverged" : "";
+}
+
+}  // namespace credence

@@ -1,0 +1,182 @@
+#include "files/record/totals.hpp"
+
+#include "numeric/chi_square.hpp"
+#include "statistics/goodness.hpp"
+#include <credence/slam_record.hpp>
+
+#include "files/record/results.hpp"
+#include "base/nan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< of NEES that are kept, and of cells
+constexpr std::size_t most_troubles = 20;
+
+std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
+
+}  // namespace
+
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
+    : shape_(shape),
+      figures_(record_figures(shape_)),
+      judge_(shape_, figures_),
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m)) {
+    record_.results = empty_record_results(shape_, figures_.list, path);
+    record_.has_innovations = shape.has_innovations();
+    keeps_nees_ = shape.trials <= most_values / shape.steps;
+    keeps_cells_ = std::int64_t{shape.steps} * shape_cells <= most_values;
+    if (keeps_nees_) nees_.resize(size(shape.steps));
+    if (keeps_cells_) arm().cells.resize(size(shape.steps) * shape_cells);
+    for (const StateBlock& block : shape.blocks)
+        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    values_.resize(size(shape.steps) * figures_.list.size());
+}
+
+void RecordTotals::add(const RecordStep& step) {
+    if (step.step == 0) start_trial();
+    if (!failed(status_)) add_covered(step);  // what a filter says after it failed is not looked at
+    if (step.step + 1 < shape_.steps) return;
+    if (!failed(status_)) check_end(step.trial);
+    end_trial(step.trial);
+}
+
+void RecordTotals::add_covered(const RecordStep& step) {
+    const bool covered = shape_.covers(step.trial, step.step);
+    switch (covered ? check_step(step, shape_, checked_) : Presence::absent) {
+        case Presence::there: return add_figures(step, checked_);
+        case Presence::broken: return note(step, Status::non_finite, checked_.broken);
+        case Presence::absent: break;
+    }
+    products_.leave_out(size(step.step));
+}
+
+/// A trial that ends before it should has failed, unless the record declares that it is a shorter one.
+void RecordTotals::check_end(std::int64_t trial) {
+    if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);
+    if (end == asked) return;
+    const std::string of = "the trial ends after " + std::to_string(end) + " of ";
+    const bool declared = !shape_.declared.empty();
+    note({trial, end}, Status::non_finite,
+         of + (declared ? "the " : "") + std::to_string(asked) + " steps" +
+             (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
+}
+
+void RecordTotals::start_trial() {
+    status_ = Status::completed;
+    present_.clear();
+    products_.start_trial();
+}
+
+void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
+    const std::size_t k = size(step.step);
+    double* values = &figure(0, k);
+    const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
+    if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
+    if (!figures_add_up(values, figures_.list.size()))
+        return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
+    if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
+        note(step, Status::diverged, beyond);
+    present_.push_back(k);
+    keep_details(step.trial, k, checked);
+    products_.correlate(k);
+}
+
+void RecordTotals::note(const RecordStep& step, Status status, const std::string& what) {
+    status_ = status;
+    trouble_ = {step.trial, step.step, what, status};
+}
+
+void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
+    if (trial >= record_.results.detailed()) return;
+    const std::size_t at = size(trial) * size(shape_.steps) + k;
+    arm().nees[at] = figure(0, k);
+    std::copy(checked.e.begin(), checked.e.end(), arm().errors.begin() + static_cast<std::ptrdiff_t>(at) * shape_.n);
+}
+
+void RecordTotals::end_trial(std::int64_t trial) {
+    add_columns(trial);
+    if (status_ != Status::completed) {
+        ++record_.trouble_count;
+        if (record_.troubles.size() < most_troubles) record_.troubles.push_back(trouble_);
+    }
+    if (!failed(status_)) return add_totals();
+    if (trial >= record_.results.detailed()) return;
+    const auto forget = [&](std::vector<double>& values, std::size_t row) {
+        const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
+        std::fill(first, first + static_cast<std::ptrdiff_t>(row), nan);
+    };
+    forget(arm().nees, size(shape_.steps));
+    forget(arm().errors, size(shape_.steps) * size(shape_.n));
+}
+
+void RecordTotals::add_columns(std::int64_t trial) {
+    double row[column_count];
+    const auto over_steps = [&](std::size_t f) {
+        double sum = 0;
+        for (const std::size_t k : present_) sum += figure(f, k);
+        return sum;
+    };
+    const double count = static_cast<double>(present_.size());
+    row[column_status] = static_cast<double>(status_);
+    row[column_status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
+    row[column_unseen] = -1;
+    if (!fill_failed(record_.results.columns, row)) {
+        row[column_trace_P] = figure(figures_.variance, present_.back());
+        row[column_mean_trace_P] = over_steps(figures_.variance) / count;
+        row[column_pose_error] = over_steps(figures_.squared_error + pose_block(shape_));
+        row[column_nees_ratio] = over_steps(0) / count / shape_.n;
+        row[column_nis_ratio] = record_.has_innovations ? over_steps(figures_.nis) / over_steps(figures_.rows) : nan;
+    }
+    for (std::size_t c = 0; c < column_count; ++c) arm().columns[c][size(trial)] = row[c];
+}
+
+void RecordTotals::add_totals() {
+    ++arm().counted;
+    const double count = static_cast<double>(present_.size()), steps = shape_.steps;
+    for (std::size_t f = 0; f < figures_.list.size(); ++f) {
+        FigureTotals& totals = arm().totals[f];
+        const bool innovations = record_.has_innovations && (f == figures_.nis || f == figures_.rows);
+        double run = 0;
+        for (const std::size_t k : present_) {
+            const double value = figure(f, k);
+            run += value;
+            totals.sum[k].add(value);
+            if (!figures_.list[f].integer) totals.square_sum[k].add(value * value);
+            for (std::size_t l = 0; f < shape_.blocks.size() && l < coverage_level_count; ++l)
+                totals.covered[k * coverage_level_count + l] += value < bounds_[f * coverage_level_count + l];
+        }
+        if (!innovations) run *= steps / count;
+        totals.run_sum->add(run);
+        totals.run_square_sum.add(run * run);
+    }
+    add_shape();
+    for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
+        arm().products.sum[lag].add(products_.sum[lag]);
+        arm().products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
+        arm().products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
+    }
+}
+
+void RecordTotals::add_shape() {
+    const auto cells = equiprobable_cells(shape_.n);
+    for (const std::size_t k : present_) {
+        ++arm().present[k];
+        if (keeps_cells_) ++arm().cells[k * shape_cells + size(cells->cell(figure(0, k)))];
+        if (keeps_nees_) nees_[k].push_back(figure(0, k));
+    }
+}
+
+JudgedRecord RecordTotals::finish() {
+    if (keeps_nees_ || !keeps_cells_) arm().shape_distance.assign(size(shape_.steps), nan);
+    for (std::size_t k = 0; k < nees_.size(); ++k)
+        arm().shape_distance[k] = chi_square_distance(std::move(nees_[k]), shape_.n);
+    return std::move(record_);
+}
+
+}  // namespace credence

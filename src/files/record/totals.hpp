@@ -1,0 +1,67 @@
+#pragma once
+// What the trials of a record add up to.
+
+#include <credence/record.hpp>
+
+#include "files/record/file.hpp"
+#include "worlds/own/step.hpp"
+#include "worlds/own/lag_products.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Takes a record's steps one after the other, and makes results of them.
+class RecordTotals {
+public:
+    /// `path` names the scenario.
+    RecordTotals(const RecordShape& shape, const std::string& path);
+    RecordTotals(const RecordTotals&) = delete;
+    RecordTotals& operator=(const RecordTotals&) = delete;
+
+    /// Adds a step; every step of every trial comes once, in order. Throws hdf5::Error for bad input.
+    void add(const RecordStep& step);
+
+    /// The results, after the last step.
+    JudgedRecord finish();
+
+private:
+    ArmResults& arm() { return record_.results.arms.front(); }
+    double& figure(std::size_t f, std::size_t k) { return values_[k * figures_.list.size() + f]; }
+
+    void start_trial();
+    void add_covered(const RecordStep& step);
+    void add_figures(const RecordStep& step, const CheckedStep& checked);
+    void note(const RecordStep& step, Status status, const std::string& what);
+    void check_end(std::int64_t trial);
+    void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
+    void end_trial(std::int64_t trial);
+    void add_columns(std::int64_t trial);
+    void add_totals();
+    void add_shape();
+
+    RecordShape shape_;
+    StateFigures figures_;
+    StepJudge judge_;
+    JudgedRecord record_;
+    bool keeps_nees_ = false, keeps_cells_ = false;
+    std::vector<std::vector<double>> nees_;      ///< [steps] of the whole state, all trials; for the exact distance
+    std::vector<double> bounds_;                 ///< [blocks, levels] NEES below them counts as covered
+
+    // Of the trial under way.
+    CheckedStep checked_;
+    Status status_ = Status::completed;
+    RecordTrouble trouble_;                      ///< why it failed, if it did
+    std::vector<std::size_t> present_;           ///< steps that exist, in order
+    std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
+    LagProducts products_;
+};
+
+/// Reads a whole record, part by part. The same for parts of any size.
+JudgedRecord read_record(const RecordFile& file, const std::string& path,
+                         const std::function<void(const Progress&)>& progress = {});
+
+}  // namespace credence

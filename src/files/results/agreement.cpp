@@ -1,0 +1,119 @@
+#include "files/results/agreement.hpp"
+
+#include <credence/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace credence {
+
+namespace {
+
+/// Which steps of a figure a column is the sum of, over `per` of the figure's values.
+enum class Steps { all, last };
+
+/// A column that says of each trial what the totals of a figure say of all trials.
+struct Relation {
+    std::size_t column, figure;
+    Steps steps;
+    double per;  ///< the column times this is the sum of the figure over those steps
+};
+
+std::optional<std::size_t> figure_of(const ScenarioResults& results, FigureRole role, const std::string& part) {
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        if (results.figures[f].role == role && results.figures[f].part == part) return f;
+    return std::nullopt;
+}
+
+std::optional<std::size_t> figure_named(const ScenarioResults& results, const std::string& name) {
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        if (results.figures[f].name == name) return f;
+    return std::nullopt;
+}
+
+/// Those of the columns and figures that worlds have in common, and that this one has.
+std::vector<Relation> relations(const ScenarioResults& results) {
+    std::vector<Relation> all;
+    const auto add = [&](const std::string& name, std::optional<std::size_t> figure, Steps steps, double per) {
+        for (std::size_t c = 0; c < results.columns.size() && figure; ++c)
+            if (results.columns[c].name == name) all.push_back({c, *figure, steps, per});
+    };
+    const std::optional<std::size_t> variance = figure_of(results, FigureRole::variance, "all");
+    add("nees_ratio", 0, Steps::all, static_cast<double>(results.steps()) * results.state_size());
+    add("mean_trace_P", variance, Steps::all, results.steps());
+    add("trace_P", variance, Steps::last, 1);
+    add("unseen", figure_named(results, "unseen_features"), Steps::all, 1);
+    add("squared_error", figure_of(results, FigureRole::squared_error, "all"), Steps::all, 1);
+    return all;
+}
+
+/// Sums over the trials that did not fail.
+struct Sums {
+    double value = 0, square = 0;
+};
+
+Sums sums_of_column(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
+    if (results.keep == Keep::aggregates) {
+        const ExactMoments& moments = arm.aggregates.columns[column];
+        return {moments.sum.rounded(), moments.square_sum.rounded()};
+    }
+    constexpr std::int64_t at_once = std::int64_t{1} << 16;
+    const std::size_t status = status_column(results.columns);
+    Sums sums;
+    for (std::int64_t first = 0; first < results.trials; first += at_once) {
+        const std::int64_t count = std::min(at_once, results.trials - first);
+        const std::vector<double> values = column_values(arm, column, first, count),
+                                  ends = column_values(arm, status, first, count);
+        Sums some;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (failed(static_cast<Status>(static_cast<int>(ends[i])))) continue;
+            some.value += values[i];
+            some.square += values[i] * values[i];
+        }
+        sums.value += some.value;
+        sums.square += some.square;
+    }
+    return sums;
+}
+
+/// The same of the figure; `square` only where the column is its sum over all steps.
+Sums sums_of_figure(const FigureTotals& totals, Steps steps) {
+    if (steps == Steps::last) return {totals.sum.back().rounded(), totals.square_sum.back().rounded()};
+    ExactSum sum;
+    for (const ExactSum& step : totals.sum) sum.add(step);
+    return {sum.rounded(), totals.run_square_sum.rounded()};
+}
+
+/// The columns were rounded, and their sums are. What is not finite says nothing.
+bool agree(double column, double figure) {
+    constexpr double tolerance = 1e-9;
+    return !std::isfinite(column) || !std::isfinite(figure) || std::abs(column - figure) <= tolerance * std::abs(column);
+}
+
+void check_arm(const ScenarioResults& results, const ArmResults& arm, const std::string& path) {
+    for (const Relation& relation : relations(results)) {
+        const Sums column = sums_of_column(results, arm, relation.column),
+                   figure = sums_of_figure(arm.totals[relation.figure], relation.steps);
+        if (agree(column.value * relation.per, figure.value) &&
+            agree(column.square * relation.per * relation.per, figure.square))
+            continue;
+        throw InputError(path + ": /" + results.scenario.name + "/" + arm.name + ": the totals of " +
+                         results.figures[relation.figure].name + " are not those of the trials' " +
+                         results.columns[relation.column].name + ". Run the study again, or give an undamaged copy.");
+    }
+}
+
+}  // namespace
+
+void check_agreement(const ScenarioResults& results, const std::string& path) {
+    const WithTotals with_totals(results);
+    for (const ArmResults& arm : (*with_totals).arms) check_arm(*with_totals, arm, path);
+}
+
+void check_agreement(const Study& study, const std::string& path) {
+    for (const ScenarioResults& results : study.scenarios) check_agreement(results, path);
+}
+
+}  // namespace credence

@@ -1,0 +1,159 @@
+#include "files/results/evidence.hpp"
+
+#include "numeric/chi_square.hpp"
+
+#include "files/results/format.hpp"
+#include "files/results/sums.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Error;
+using hdf5::Handle;
+
+const std::vector<double> levels(std::begin(coverage_levels), std::end(coverage_levels));
+
+std::size_t lags(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
+
+const std::string& first_nees(const ScenarioResults& results) { return results.figures.front().name; }
+
+std::string coverage_name(const Figure& figure) { return figure.name + "_covered"; }
+std::string cells_name(const ScenarioResults& results) { return first_nees(results) + "_cells"; }
+
+/// They were rounded to single precision when they were kept. NaNs come with different bits from different processors.
+std::vector<float> single(const std::vector<double>& values) {
+    std::vector<float> singles;
+    singles.reserve(values.size());
+    for (const double value : values)
+        singles.push_back(value == value ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
+    return singles;
+}
+
+std::vector<double> read_single(const Handle& group, const std::string& name, const hdf5::Extents& extents) {
+    const std::vector<float> values = read_as<float>(group, name, extents);
+    return {values.begin(), values.end()};
+}
+
+void write_coverage(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
+                    const ArmResults& arm) {
+    const auto level =
+        hdf5::new_dimension(group, "level", levels, {"share of chi-square below the coverage bound", "1"});
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        if (const Figure& figure = results.figures[f]; figure.role == FigureRole::nees)
+            hdf5::new_variable(group, coverage_name(figure), arm.totals[f].covered, {&step, &level},
+                               {figure.long_name + ": counted trials below that quantile of chi-square", "1"});
+}
+
+void write_products(const Handle& group, const hdf5::Dimension& part, const ScenarioResults& results,
+                    const ArmResults& arm) {
+    if (lags(results) == 0) return;
+    const auto lag = numbered<std::int32_t>(group, "lag", 1, lags(results), "steps between two whitened innovations");
+    const std::string what = "products of whitened innovations, over the detailed trials, their steps and rows";
+    hdf5::new_variable(group, "whiteness_total", parts_of(arm.products.sum, part.size), {&lag, &part},
+                       {"total of " + what, "1"});
+    hdf5::new_variable(group, "whiteness_square_total", parts_of(arm.products.square_sum, part.size), {&lag, &part},
+                       {"total over the trials of the square of each one's sum of " + what, "1"});
+    hdf5::new_variable(group, "whiteness_count", arm.products.count, {&lag}, {"number of " + what, "1"});
+}
+
+void write_errors(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
+                  const ArmResults& arm) {
+    const auto detailed =
+        hdf5::new_dimension(group, "detailed_trial", trial_numbers(results, 0, results.detailed()),
+                            {"trials whose errors are kept: of the first ones of the study those in the file", "1"});
+    const auto component = new_component_dimension(group, results.scenario.components, "component", "component of the state");
+    const float fill = std::numeric_limits<float>::quiet_NaN();
+    const Handle nees = hdf5::new_variable(group, "detailed_nees", single(arm.nees), {&detailed, &step},
+                                           {"normalised estimation error squared of the whole state", "1"});
+    hdf5::write_numbers<float>(nees, "_FillValue", {fill});
+    const Handle errors = hdf5::new_variable(group, "detailed_error", single(arm.errors),
+                                             {&detailed, &step, &component},
+                                             {"error of the state after the update, estimate - truth",
+                                              state_units(results.scenario.components)});
+    hdf5::write_numbers<float>(errors, "_FillValue", {fill});
+}
+
+void read_coverage(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
+    if (read_as<double>(group, "level", {levels.size()}) != levels)
+        throw Error(hdf5::place_of(group, "level"), "does not hold the levels of this version");
+    for (std::size_t f = 0; f < results.figures.size(); ++f) {
+        if (results.figures[f].role != FigureRole::nees) continue;
+        const std::string name = coverage_name(results.figures[f]);
+        auto& covered = arm.totals[f].covered;
+        covered = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), levels.size()});
+        for (std::size_t i = 0; i < covered.size(); ++i)
+            if (covered[i] < (i % levels.size() == 0 ? 0 : covered[i - 1]) || covered[i] > arm.counted)
+                throw Error(hdf5::place_of(group, name), "its counts do not rise from 0 to the counted trials");
+    }
+}
+
+void read_cells(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
+    const std::string name = cells_name(results);
+    arm.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), shape_cells});
+    for (auto row = arm.cells.begin(); row != arm.cells.end(); row += shape_cells) {
+        std::int64_t left = arm.counted;
+        for (auto count = row; count != row + shape_cells; ++count) {
+            if (*count < 0 || *count > left) throw Error(hdf5::place_of(group, name), "its counts do not add up");
+            left -= *count;
+        }
+        if (left != 0) throw Error(hdf5::place_of(group, name), "its counts do not add up to the counted trials");
+    }
+}
+
+void read_products(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm) {
+    const hsize_t count = lags(results);
+    if (count == 0) return;
+    arm.products = {read_sums(group, "whiteness_total", {count, parts}),
+                    read_sums(group, "whiteness_square_total", {count, parts}),
+                    read_as<std::int64_t>(group, "whiteness_count", {count})};
+    for (const std::int64_t products : arm.products.count)
+        if (products < 0) throw Error(hdf5::place_of(group, "whiteness_count"), "is negative");
+}
+
+}  // namespace
+
+std::vector<std::string> evidence_links(const ScenarioResults& results) {
+    std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
+    if (shape_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
+    for (const Figure& figure : results.figures)
+        if (figure.role == FigureRole::nees) names.push_back(coverage_name(figure));
+    if (lags(results) > 0)
+        names.insert(names.end(), {"lag", "whiteness_total", "whiteness_square_total", "whiteness_count"});
+    return names;
+}
+
+void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
+                    const ArmResults& arm) {
+    write_coverage(group, dimensions.step, results, arm);
+    if (shape_counted(results.steps())) {
+        const auto cell = numbered<std::int32_t>(group, "cell", 0, shape_cells,
+                                                 "cell of chi-square; every one is as probable as any other");
+        hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
+                           {results.figures.front().long_name + ": counted trials by cell", "1"});
+    }
+    write_products(group, dimensions.part, results, arm);
+    write_errors(group, dimensions.step, results, arm);
+}
+
+void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm) {
+    const auto steps = static_cast<hsize_t>(results.steps()), size = static_cast<hsize_t>(results.state_size()),
+               detailed = static_cast<hsize_t>(results.detailed());
+    read_coverage(group, results, arm);
+    if (shape_counted(results.steps())) {
+        check_numbered<std::int32_t>(group, "cell", 0, shape_cells);
+        read_cells(group, results, arm);
+    }
+    if (lags(results) > 0) check_numbered<std::int32_t>(group, "lag", 1, lags(results));
+    read_products(group, results, parts, arm);
+    if (read_as<std::int64_t>(group, "detailed_trial", {detailed}) != trial_numbers(results, 0, results.detailed()))
+        throw Error(hdf5::place_of(group, "detailed_trial"), "does not name the first of the trials that are there");
+    check_numbered<std::int32_t>(group, "component", 0, size);
+    arm.nees = read_single(group, "detailed_nees", {detailed, steps});
+    arm.errors = read_single(group, "detailed_error", {detailed, steps, size});
+}
+
+}  // namespace credence

@@ -1,0 +1,29 @@
+#pragma once
+// What an arm's group holds beside columns and totals: coverage, the shape of NEES, whiteness, and the errors
+// of the detailed trials [docs/results-format.md, Coverage, Shape, Whiteness, Errors].
+
+#include <credence/results.hpp>
+
+#include "files/hdf5/read.hpp"
+#include "files/hdf5/write.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+struct EvidenceDimensions {
+    const hdf5::Dimension& step;
+    const hdf5::Dimension& part;
+};
+
+/// Names of the datasets that belong to it, coordinates included.
+std::vector<std::string> evidence_links(const ScenarioResults& results);
+
+void write_evidence(const hdf5::Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
+                    const ArmResults& arm);
+
+/// Fills what `write_evidence` wrote; results.trials and arm.counted are known. Throws Error where it is damaged.
+void read_evidence(const hdf5::Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm);
+
+}  // namespace credence

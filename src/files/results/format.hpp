@@ -1,0 +1,123 @@
+#pragma once
+// What the two files that the store writes have in common. docs/results-format.md describes them.
+
+#include <credence/error.hpp>
+#include <credence/store.hpp>
+#include <credence/text.hpp>
+
+#include "files/system/durable_file.hpp"
+#include "files/hdf5/driver.hpp"
+#include "files/hdf5/write.hpp"
+#include "base/nan.hpp"
+#include "files/results/sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+inline const std::string results_format = "credence results", trajectories_format = "credence trajectories";
+inline const std::string run_group = "run";
+/// Facts of /run that say which release computed which blocks, and which one wrote the file.
+inline const std::string computed_by_fact = "computed_by", version_fact = "credence_version",
+                         revision_fact = "git_revision";
+
+/// NaNs come with different bits from different processors; files hold one of them.
+inline double one_nan(double value) { return value == value ? value : nan; }
+
+/// The group /run would be mistaken for a scenario, and the other way round.
+inline void refuse_reserved_name(const Declaration& scenario) {
+    if (scenario.name == run_group)
+        throw invalid_value("scenario.name", scenario.name, "the file keeps that group for facts of the machine",
+                            "Give another name");
+}
+
+inline void write_header(const hdf5::Handle& root, const std::string& format, const std::string& title) {
+    hdf5::write_text(root, "format", format);
+    hdf5::write_number<std::int32_t>(root, "schema_version", schema_version);
+    hdf5::write_text(root, "title", title);
+}
+
+/// Blocks of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the whole state.
+inline std::string blocks_text(const std::vector<StateBlock>& blocks) {
+    std::vector<std::string> texts;
+    for (const StateBlock& block : blocks)
+        if (block.name != "all")
+            texts.push_back(block.name + " " + std::to_string(block.first) + ":" +
+                            std::to_string(block.first + block.count));
+    return joined(texts);
+}
+
+inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Declaration& scenario) {
+    hdf5::Handle group = hdf5::new_group(root, scenario.name);
+    hdf5::write_text(group, "title", scenario.title);
+    hdf5::write_text(group, "length_unit", scenario.length_unit);
+    hdf5::write_text(group, "scenario", scenario_text(scenario));
+    hdf5::write_text(group, "blocks", blocks_text(scenario.blocks));
+    write_sweep(group, scenario.sweep);
+    return group;
+}
+
+inline void write_run_facts(const hdf5::Handle& root, const RunFacts& run) {
+    const hdf5::Handle group = hdf5::new_group(root, run_group);
+    for (const auto& [name, text] : run) hdf5::write_text(group, name, text);
+}
+
+/// The pose, trial, step or feature numbers of a dimension: first, first + 1 ...
+template <class T>
+hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T first, std::size_t count,
+                         const std::string& long_name) {
+    std::vector<T> values(count);
+    for (T& value : values) value = first++;
+    return hdf5::new_dimension(group, name, values, {long_name, "1"});
+}
+
+/// What the codes of a variable mean that are statuses.
+inline void write_status_flags(const hdf5::Handle& variable) {
+    std::vector<std::int8_t> codes;
+    for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
+    hdf5::write_numbers(variable, "flag_values", codes);
+    hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
+}
+
+/// What `units` says of a state, whose components differ in units where one is a heading.
+inline std::string state_units(const std::vector<Component>& components) {
+    const std::string& first = components.front().unit;
+    const bool one = std::all_of(components.begin(), components.end(),
+                                 [&](const Component& component) { return component.unit == first; });
+    return one ? first : "see component_units";
+}
+
+/// A dimension along the components of the state, which says what they are and in which units.
+inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const std::vector<Component>& components,
+                                               const std::string& name, const std::string& long_name) {
+    std::vector<std::string> names, units;
+    for (const Component& component : components) {
+        names.push_back(component.name);
+        units.push_back(component.unit);
+    }
+    hdf5::Dimension dimension = numbered<std::int32_t>(group, name, 0, names.size(), long_name);
+    hdf5::write_text(dimension.scale, "component_names", joined(names, " "));
+    hdf5::write_text(dimension.scale, "component_units", joined(units, " "));
+    return dimension;
+}
+
+/// Builds an HDF5 file aside and puts it under its name. HDF5 itself only refuses for want of memory.
+template <class Build>
+void write_file(const Output& output, Build build) {
+    write_durably(output, [&](int descriptor) {
+        ByteFile bytes(descriptor);
+        try {
+            const hdf5::QuietErrors quiet;
+            hdf5::Handle root = hdf5::new_file(bytes);
+            build(root);
+            root.close();
+        } catch (const hdf5::Error& error) {
+            if (bytes.error() == 0)
+                throw Failure("cannot write " + output.path + " (" + error.what() + "). Free some memory.");
+        }
+        return bytes.error();
+    });
+}
+
+}  // namespace credence

@@ -1,0 +1,277 @@
+#include <credence/store.hpp>
+
+#include <credence/text.hpp>
+
+#include "files/hdf5/read.hpp"
+#include "files/results/aggregates.hpp"
+#include "files/results/columns.hpp"
+#include "files/results/declared.hpp"
+#include "files/results/evidence.hpp"
+#include "files/results/format.hpp"
+#include "files/results/sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Dataset;
+using hdf5::Error;
+using hdf5::Extents;
+using hdf5::Handle;
+
+/// Throws unless the group holds exactly what it should.
+void require_links(const Handle& group, std::vector<std::string> expected) {
+    std::vector<std::string> found = hdf5::link_names(group);
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    std::vector<std::string> missing, foreign;
+    std::set_difference(expected.begin(), expected.end(), found.begin(), found.end(), std::back_inserter(missing));
+    std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(), std::back_inserter(foreign));
+    if (!missing.empty()) throw Error(hdf5::place_of(group, missing.front()), "is missing");
+    if (!foreign.empty()) throw Error(hdf5::place_of(group, foreign.front()), "does not belong here");
+}
+
+/// Reads a coordinate that must count from `first`, and returns its length.
+template <class T>
+hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
+    const Dataset dataset(group, name);
+    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
+    for (const T value : dataset.read<T>())
+        if (value != first++) throw Error(dataset.place(), "does not count on by one");
+    return dataset.extents()[0];
+}
+
+/// Names of the datasets that the group of the next arm holds.
+std::vector<std::string> arm_links(const ScenarioResults& results) {
+    std::vector<std::string> names{"step", "part"};
+    if (results.keep == Keep::trials) {
+        names.push_back("trial");
+        for (const Column& column : results.columns) names.push_back(column.name);
+    } else {
+        const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
+        names.insert(names.end(), aggregates.begin(), aggregates.end());
+    }
+    for (const Figure& figure : results.figures) {
+        names.push_back(figure.name + "_total");
+        if (!figure.integer) names.push_back(figure.name + "_square_total");
+        names.push_back(figure.name + "_run_square_total");
+    }
+    const std::vector<std::string> evidence = evidence_links(results);
+    names.insert(names.end(), evidence.begin(), evidence.end());
+    return names;
+}
+
+/// Throws where the totals are of another number of trials than those that did not fail.
+void check_counted(const Handle& group, const ArmResults& arm, std::int64_t counted) {
+    if (counted != arm.counted)
+        throw Error(hdf5::attribute_place(group, "counted_trials"),
+                    "is " + std::to_string(arm.counted) + ", but " + std::to_string(counted) + " trials did not fail");
+}
+
+/// Throws where the arm's columns are not those of its scenario, or hold another number of trials than the totals.
+void check_columns(const Handle& group, const ScenarioResults& results, const ArmResults& arm) {
+    for (const Column& column : results.columns) {
+        const std::optional<std::int64_t> counted = check_column(group, column, results.trials);
+        if (counted) check_counted(group, arm, *counted);
+    }
+}
+
+/// A study and the file that it is read from.
+struct Opened {
+    std::shared_ptr<const Handle> file;
+    std::string path;
+    std::int64_t asked = 0;  ///< trials of each scenario that were asked for
+    Keep keep = Keep::trials;
+    std::optional<std::int64_t> most_totals;  ///< bytes of them that are in memory; nothing: they are not looked at
+};
+
+FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t steps, hsize_t parts) {
+    const std::string total = figure.name + "_total", square = figure.name + "_square_total";
+    FigureTotals totals;
+    totals.sum = figure.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
+    if (!figure.integer) totals.square_sum = read_sums(group, square, {steps, parts});
+    totals.run_square_sum = read_sums(group, figure.name + "_run_square_total", {parts}).front();
+    return totals;
+}
+
+/// How many parts an exact total has.
+hsize_t read_parts(const Handle& group) {
+    const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
+    if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
+    return parts;
+}
+
+/// Totals, but those of the columns, and details.
+void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
+    const hsize_t parts = read_parts(group);
+    for (const Figure& figure : results.figures)
+        arm.totals.push_back(read_figure(group, figure, static_cast<hsize_t>(results.steps()), parts));
+    read_evidence(group, results, parts, arm);
+}
+
+/// Those of a scenario in a file that stays open for them.
+class TotalsOfFile : public KeptTotals {
+public:
+    TotalsOfFile(const Opened& source, const ScenarioResults& results) : source_(source), blocks_(results.blocks) {
+        for (const ArmResults& arm : results.arms) {
+            counted_.push_back(arm.counted);
+            aggregates_.push_back(arm.aggregates);
+        }
+    }
+
+    void load(ScenarioResults& results) const override {
+        set_blocks(results, blocks_, source_.asked);
+        hdf5::translated(source_.path, another_copy, [&] {
+            const Handle scenario = hdf5::open_group(*source_.file, results.scenario.name);
+            for (std::size_t a = 0; a < results.arms.size(); ++a) {
+                ArmResults& arm = results.arms[a];
+                arm.counted = counted_[a];
+                arm.aggregates = aggregates_[a];
+                arm.totals.clear();
+                read_totals(hdf5::open_group(scenario, arm.name), results, arm);
+            }
+        });
+    }
+
+private:
+    Opened source_;
+    BlockRanges blocks_;
+    std::vector<std::int64_t> counted_;       ///< by arm
+    std::vector<ArmAggregates> aggregates_;  ///< likewise
+};
+
+/// The first arm tells which trials are there, the others must agree.
+ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
+                    const Opened& source) {
+    const Handle group = hdf5::open_group(scenario_group, name);
+    require_links(group, arm_links(results));
+    const bool trials = results.keep == Keep::trials;
+    const BlockRanges blocks = trials ? read_blocks(group, source.asked) : read_block_ranges(group, source.asked);
+    if (results.arms.empty()) set_blocks(results, blocks, source.asked);
+    if (blocks != results.blocks)
+        throw Error(hdf5::place_of(group, trials ? "trial" : "first_block"), "is not the same in every arm");
+    read_numbered<std::int32_t>(group, "step", 1);
+    Dataset(group, "step").require_extents({static_cast<hsize_t>(results.steps())});
+
+    ArmResults arm;
+    arm.name = name;
+    arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
+    if (trials) {
+        check_columns(group, results, arm);
+        const std::string place = results.scenario.name + "/" + name;
+        arm.kept = columns_of_file(source.file, source.path, place, results.columns);
+    } else {
+        arm.aggregates = read_aggregates(group, results, read_parts(group));
+        check_counted(group, arm, arm.aggregates.counted());
+    }
+    if (source.most_totals) read_totals(group, results, arm);
+    return arm;
+}
+
+ScenarioResults read_scenario_results(const std::string& name, const Opened& source) {
+    const Handle group = hdf5::open_group(*source.file, name);
+    ScenarioResults results = read_declared(group, source.path, source.keep);
+    const Declaration& scenario = results.scenario;
+    const auto agree = [&](const std::string& attribute, const std::string& found, const std::string& expected) {
+        if (found != expected)
+            throw Error(hdf5::attribute_place(group, attribute), "does not agree with the group's name and attributes");
+    };
+    agree("scenario", scenario.name, name);
+    agree("title", hdf5::read_text(group, "title"), scenario.title);
+    agree("length_unit", hdf5::read_text(group, "length_unit"), scenario.length_unit);
+    check_sweep(group, scenario.sweep);
+    require_links(group, scenario.arms);
+    for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
+    results.kept_totals = std::make_shared<TotalsOfFile>(source, results);
+    return results;
+}
+
+void check_header(const Handle& root) {
+    if (!hdf5::has_attribute(root, "format") || hdf5::read_text(root, "format") != results_format)
+        throw Error("the file", "is not a results file", "Give a file that credence run wrote");
+    const int version = hdf5::read_number<std::int32_t>(root, "schema_version");
+    if (version != schema_version)
+        throw Error("/@schema_version",
+                    "is " + std::to_string(version) + ", this program's is " + std::to_string(schema_version),
+                    "Use the release that wrote the file, or run the study again");
+}
+
+/// Whether every trial that was asked for is there. Throws where the file says so of one that lacks some.
+bool read_complete(const Handle& root, const Study& study) {
+    const int complete = hdf5::read_number<std::int8_t>(root, "complete");
+    if (complete != 0 && complete != 1) throw Error("/@complete", "is neither 0 nor 1");
+    for (const ScenarioResults& results : study.scenarios)
+        if (complete == 1 && results.blocks.size() != static_cast<std::size_t>(block_count(study.trials)))
+            throw Error("/@complete", "is 1, but trials are missing");
+    return complete == 1;
+}
+
+/// Where the file does not say which release computed its blocks, the one that wrote it did.
+Provenance computed_by(const Study& study, const RunFacts& run) {
+    const auto fact = [&](const std::string& name) {
+        const auto found = std::find_if(run.begin(), run.end(), [&](const auto& one) { return one.first == name; });
+        return found == run.end() ? "" : found->second;
+    };
+    if (const std::string releases = fact(computed_by_fact); !releases.empty()) try {
+            return read_provenance(releases, study);
+        } catch (const std::invalid_argument&) {
+            throw Error("/run/@" + computed_by_fact, "is no list of releases and of blocks that are there");
+        }
+    return fact(version_fact).empty()
+               ? Provenance{}
+               : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
+}
+
+StoredStudy read_study(const Opened& source) {
+    const Handle& root = *source.file;
+    StoredStudy stored;
+    Study& study = stored.study;
+    study.root_seed = hdf5::read_number<std::uint64_t>(root, "root_seed");
+    if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
+        throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
+    study.trials = source.asked;
+    TotalsInMemory in_memory(source.most_totals.value_or(0));
+    for (const std::string& name : hdf5::link_names(root))
+        if (name != run_group) {
+            study.scenarios.push_back(read_scenario_results(name, source));
+            in_memory.limit(study.scenarios.back());
+        }
+    if (hdf5::read_text(root, "study_hash") != study_hash(study))
+        throw Error("/@study_hash", "does not belong to these scenarios and this root seed");
+    study.complete = read_complete(root, study);
+    const Handle run = hdf5::open_group(root, run_group);
+    for (const std::string& name : hdf5::attribute_names(run))
+        stored.run.emplace_back(name, hdf5::read_text(run, name));
+    study.computed_by = computed_by(study, stored.run);
+    return stored;
+}
+
+Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
+    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
+    check_header(*source.file);
+    source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
+    if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
+    // Only a file that keeps no trials says what it keeps.
+    if (!hdf5::has_attribute(*source.file, "keep")) return source;
+    if (hdf5::read_text(*source.file, "keep") != keep_name(Keep::aggregates))
+        throw Error("/@keep", "is not aggregates");
+    source.keep = Keep::aggregates;
+    return source;
+}
+
+}  // namespace
+
+StoredStudy read_results(const std::string& path, std::int64_t most_totals) {
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path, most_totals)); });
+}
+
+StoredStudy read_results_without_totals(const std::string& path) {
+    return hdf5::translated(path, another_copy, [&] { return read_study(open_results(path, std::nullopt)); });
+}
+
+}  // namespace credence

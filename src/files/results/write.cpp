@@ -1,0 +1,175 @@
+#include <credence/store.hpp>
+
+#include <credence/text.hpp>
+
+#include "files/results/aggregates.hpp"
+#include "files/results/evidence.hpp"
+#include "files/results/format.hpp"
+#include "files/results/sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Dimension;
+using hdf5::Handle;
+
+/// A column's values in the type of the file.
+template <class T>
+hdf5::Handle write_values(const Handle& group, const Column& column, const ScenarioResults& results,
+                          const ArmResults& arm, std::size_t c) {
+    return hdf5::new_long_dataset<T>(group, column.name, results.trials, {column.long_name, column.unit},
+                                     [&](std::int64_t first, std::int64_t count) {
+                                         const std::vector<double> values = column_values(arm, c, first, count);
+                                         std::vector<T> converted(values.size());
+                                         std::transform(values.begin(), values.end(), converted.begin(),
+                                                        [](double value) { return static_cast<T>(one_nan(value)); });
+                                         return converted;
+                                     });
+}
+
+void write_column(const Handle& group, const Dimension& trial, const ScenarioResults& results, const ArmResults& arm,
+                  std::size_t c) {
+    const Column& column = results.columns[c];
+    switch (column.type) {
+        case ColumnType::real: {
+            const Handle variable = write_values<double>(group, column, results, arm, c);
+            hdf5::attach(variable, {&trial});
+            return hdf5::write_numbers<double>(variable, "_FillValue", {one_nan(column.fill)});
+        }
+        case ColumnType::integer: {
+            const Handle variable = write_values<std::int32_t>(group, column, results, arm, c);
+            hdf5::attach(variable, {&trial});
+            return hdf5::write_numbers<std::int32_t>(variable, "_FillValue", {static_cast<std::int32_t>(column.fill)});
+        }
+        case ColumnType::status: break;
+    }
+    const Handle variable = write_values<std::int8_t>(group, column, results, arm, c);
+    hdf5::attach(variable, {&trial});
+    write_status_flags(variable);
+}
+
+std::string role_name(FigureRole role) {
+    switch (role) {
+        case FigureRole::nees: return "nees";
+        case FigureRole::standardised_error: return "standardised_error";
+        case FigureRole::nis: return "nis";
+        case FigureRole::rows: return "rows";
+        case FigureRole::squared_error: return "squared_error";
+        case FigureRole::variance: return "variance";
+        case FigureRole::nees_in_chart: return "nees_in_chart";
+        case FigureRole::other: break;
+    }
+    return "other";
+}
+
+std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : "(" + unit + ")^2"; }
+
+/// What a reader needs to know of a figure beside its total.
+void write_role(const Handle& variable, const Figure& figure) {
+    hdf5::write_text(variable, "figure", figure.name);
+    hdf5::write_text(variable, "role", role_name(figure.role));
+    if (!figure.part.empty()) hdf5::write_text(variable, "part_of", figure.part);
+    if (figure.dimension > 0) hdf5::write_number<std::int32_t>(variable, "dimension", figure.dimension);
+    if (figure.role != FigureRole::nis) return;
+    hdf5::write_text(variable, "rows", figure.rows);
+    hdf5::write_number<std::int32_t>(variable, "more_rows", figure.more_rows);
+}
+
+std::size_t largest_part_count(const ArmResults& arm) {
+    std::size_t largest = largest_part_count(arm.aggregates);
+    const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
+    for (const FigureTotals& totals : arm.totals) {
+        std::for_each(totals.sum.begin(), totals.sum.end(), note);
+        std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
+        note(totals.run_square_sum);
+    }
+    std::for_each(arm.products.sum.begin(), arm.products.sum.end(), note);
+    std::for_each(arm.products.square_sum.begin(), arm.products.square_sum.end(), note);
+    return largest;
+}
+
+void write_figure(const Handle& group, const Dimension& step, const Dimension& part, const Figure& figure,
+                  const FigureTotals& totals) {
+    const std::string total = figure.long_name + ": total over the counted trials", square = squared_unit(figure.unit);
+    const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
+                                 const hdf5::Dimensions& dimensions, const hdf5::Description& description) {
+        write_role(hdf5::new_variable(group, figure.name + suffix, parts_of(sums, part.size), dimensions, description),
+                   figure);
+    };
+    if (figure.integer) {
+        std::vector<std::int64_t> sums;
+        for (const ExactSum& sum : totals.sum) sums.push_back(whole_number(sum, figure.name));
+        write_role(hdf5::new_variable(group, figure.name + "_total", sums, {&step}, {total, figure.unit}),
+                   figure);
+    } else {
+        write_parts("_total", totals.sum, {&step, &part}, {total, figure.unit});
+        write_parts("_square_total", totals.square_sum, {&step, &part}, {total + " of its square", square});
+    }
+    write_parts("_run_square_total", {totals.run_square_sum}, {&part},
+                {total + " of the square of its sum over a trial's steps", square});
+}
+
+Dimension new_trial_dimension(const Handle& group, const ScenarioResults& results) {
+    return hdf5::as_dimension(
+        hdf5::new_long_dataset<std::int64_t>(
+            group, "trial", results.trials, {"trial, counted over the whole study", "1"},
+            [&](std::int64_t first, std::int64_t count) { return trial_numbers(results, first, count); }),
+        "trial", static_cast<hsize_t>(results.trials));
+}
+
+void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
+    const Handle group = hdf5::new_group(scenario_group, arm.name);
+    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
+    std::optional<Dimension> trial;  // the first link, where the trials are kept
+    if (results.keep == Keep::trials)
+        trial.emplace(new_trial_dimension(group, results));
+    else
+        write_block_ranges(group, results.blocks);
+    const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
+                                                  "pose that the step leads to");
+    const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
+                                                  "part of an exact total: 0 the total, the others what rounding left");
+    if (trial)
+        for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
+    else
+        write_aggregates(group, part, results, arm);
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        write_figure(group, step, part, results.figures[f], arm.totals[f]);
+    write_evidence(group, {step, part}, results, arm);
+}
+
+void write_study(const Handle& root, const Study& study, const RunFacts& run) {
+    write_header(root, results_format, "Monte Carlo trials of EKF-SLAM and totals over them");
+    hdf5::write_text(root, "study_hash", study_hash(study));
+    hdf5::write_number<std::uint64_t>(root, "root_seed", study.root_seed);
+    hdf5::write_text(root, "root_seed_text", std::to_string(study.root_seed));
+    hdf5::write_number<std::int64_t>(root, "trials", study.trials);
+    hdf5::write_number<std::int8_t>(root, "complete", study.complete ? 1 : 0);
+    if (keep_of(study) != Keep::trials) hdf5::write_text(root, "keep", keep_name(keep_of(study)));
+    for (const ScenarioResults& results : study.scenarios) {
+        const Handle group = new_scenario_group(root, results.scenario);
+        const WithTotals with_totals(results);
+        for (const ArmResults& arm : (*with_totals).arms) write_arm(group, *with_totals, arm);
+    }
+    RunFacts facts = run;
+    if (const std::string releases = provenance_text(study); !releases.empty())
+        facts.emplace_back(computed_by_fact, releases);
+    write_run_facts(root, facts);
+}
+
+}  // namespace
+
+void write_results(const Output& output, const Study& study, const RunFacts& run, const std::function<void()>& check) {
+    for (const ScenarioResults& results : study.scenarios) refuse_reserved_name(results.scenario);
+    write_file(output, [&](const Handle& root) {
+        write_study(root, study, run);
+        if (check) check();
+    });
+}
+
+}  // namespace credence

@@ -1,0 +1,208 @@
+#include "files/stored_run.hpp"
+
+#include <credence/error.hpp>
+
+#include "files/results/agreement.hpp"
+#include "files/journal/journal.hpp"
+#include "files/system/system_file.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace credence {
+
+namespace {
+
+bool exists(const std::string& path) {
+    std::error_code none;
+    return std::filesystem::exists(std::filesystem::symlink_status(path, none));
+}
+
+/// Refuses to go on with another study, saying what differs.
+void check_same_study(const StudyDefinition& there, const StudyDefinition& asked, const std::string& path,
+                      const std::string& remedy) {
+    const std::string difference = difference_of(there, asked);
+    if (!difference.empty())
+        throw InputError("cannot resume " + path + " (it holds another study: " + difference + "). " + remedy + ".");
+}
+
+/// Whether every trial of `part`, of the same study, is in `whole` too.
+bool holds(const ScenarioResults& whole, const ScenarioResults& part) {
+    if (!part.blocks.without(whole.blocks).empty()) return false;
+    if (part.blocks.empty()) return true;
+    const auto rows = [&](const ScenarioResults& results) {
+        return block_rows(results, static_cast<std::size_t>(*results.blocks.place_of(part.blocks.back())));
+    };
+    return rows(whole) >= rows(part);
+}
+
+bool holds(const Study& whole, const Study& part) {
+    return std::equal(whole.scenarios.begin(), whole.scenarios.end(), part.scenarios.begin(), part.scenarios.end(),
+                      [](const ScenarioResults& a, const ScenarioResults& b) { return holds(a, b); });
+}
+
+/// As a journal's header has it.
+FileIdentity without_device(FileIdentity file) {
+    file.device = 0;
+    return file;
+}
+
+}  // namespace
+
+std::string journal_path_of(const std::string& path) { return Output(path).target + ".journal"; }
+
+StoredRun::Contents StoredRun::Contents::of(const Study& study) {
+    Contents contents{study.trials, {}};
+    for (const ScenarioResults& results : study.scenarios) contents.blocks.push_back(results.blocks);
+    return contents;
+}
+
+StoredRun::StoredRun(const std::string& path, Study study, Start start, const std::string& release)
+    : output_(check_output(path, start != Start::fresh, "Give another name, --resume or --overwrite")),
+      journal_path_(journal_path_of(path)),
+      start_(start),
+      release_(release.substr(0, record_release_size)),  // as a journal has it
+      study_(std::move(study)) {
+    if (exists(journal_path_)) open_journal();
+    if (start_ == Start::resume) go_on();
+}
+
+StoredRun::StoredRun(StoredRun&&) noexcept = default;
+
+StoredRun::~StoredRun() = default;
+
+void StoredRun::open_journal() {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(journal_path_, none))
+        throw InputError("cannot write " + output_.path + " (" + journal_path_ +
+                         " is in the way of its journal). Remove that, or give another name.");
+    if (start_ == Start::fresh)
+        throw InputError("cannot write " + output_.path + " (an interrupted run left " + journal_path_ +
+                         "). Give another name, --resume or --overwrite.");
+    if (start_ == Start::resume) journal_ = std::make_unique<Journal>(journal_path_);
+}
+
+void StoredRun::go_on() {
+    const StudyDefinition asked = definition_of(study_);
+    if (journal_ && journal_->header()) go_on_with(*journal_->header(), asked);
+    else if (output_.there) read_file(asked);
+    check_releases();
+}
+
+void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& asked) {
+    check_same_study(header.study, asked, journal_path_,
+                     "Finish that study first, remove the journal if it is not to be finished, or name another output");
+    if (header.base != JournalBase::grown) {
+        // A file that --overwrite is to replace says nothing to the run.
+        const bool unexpected = output_.there && !(header.base == JournalBase::replaced && is_base_of(header));
+        return unexpected ? choose(asked) : journal_->load(study_);
+    }
+    if (!output_.there)
+        throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
+                         ", which it goes on with, is gone). Put that back, or remove the journal and start anew.");
+    read_file(asked);
+    try {
+        journal_->load(study_);
+    } catch (const InputError&) {
+        if (is_base_of(header)) throw;
+        throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
+                         " is not the file that it goes on with). Put that back, or remove the journal to go on with " +
+                         output_.path + " as it is.");
+    }
+}
+
+/// There are a journal and a results file that it does not know: its run wrote that and died before the journal was
+/// removed, or a merge put it there.
+void StoredRun::choose(const StudyDefinition& asked) {
+    Study in_file = stored(asked);
+    journal_->load(study_);
+    if (holds(in_file, study_)) {
+        study_ = std::move(in_file);
+        in_file_ = Contents::of(study_);
+        journal_is_over_ = true;
+    } else if (!holds(study_, in_file)) {
+        throw InputError("cannot resume " + output_.path + " (it and " + journal_path_ +
+                         " each have trials that the other lacks). Move it away, --resume, and merge both.");
+    }
+}
+
+Study StoredRun::stored(const StudyDefinition& asked) const {
+    Study study = read_results(output_.target, most_totals_in_memory).study;
+    check_same_study(definition_of(study), asked, output_.path,
+                     journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
+    check_agreement(study, output_.path);
+    return study;
+}
+
+void StoredRun::read_file(const StudyDefinition& asked) {
+    study_ = stored(asked);
+    in_file_ = Contents::of(study_);
+}
+
+/// Whether the file is the one that was there when the journal was begun.
+bool StoredRun::is_base_of(const JournalHeader& header) const {
+    return output_.there && without_device(*output_.there) == header.base_file;
+}
+
+void StoredRun::check_releases() const {
+    const std::string other = unmixable(study_.computed_by, release_);
+    if (!other.empty())
+        throw InputError("cannot resume " + output_.path + " (" + other + " computed trials of it, and this is " + release_ +
+                         "; draws and columns may differ between them). Go on with that release, or name another output.");
+}
+
+BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, const Shard& shard) {
+    const bool goes_on = journal_ && journal_->header() && !journal_is_over_;
+    // The journal of a file that others may not read is not for them either.
+    if (!journal_) journal_ = std::make_unique<Journal>(journal_path_, permissions_of(output_.target));
+    if (!goes_on) {
+        if (start_ != Start::overwrite && journal_->header() && !journal_is_over_)
+            throw InputError("cannot write " + output_.path + " (another run has just begun " + journal_path_ +
+                             "). Let it end, or give another name.");
+        const JournalBase base = in_file_                     ? JournalBase::grown
+                                 : start_ == Start::overwrite ? JournalBase::replaced
+                                                              : JournalBase::none;
+        const FileIdentity base_file = without_device(output_.there.value_or(FileIdentity{}));
+        journal_->begin({base, base_file, std::max(trials, study_.trials), shard, definition_of(study_)}, study_);
+        journal_is_over_ = false;
+    }
+    journal_->commit_every(commit_every);
+    journal_->works_on(shard, release_);
+    return *journal_;
+}
+
+/// Throws Failure where what was read back in order to write the results is not what was there before.
+void StoredRun::check_unchanged() const {
+    if (in_file_ && identity_of(output_.target) != output_.there)
+        throw Failure("cannot write " + output_.path + " (another program changed, replaced or removed it while the run "
+                      "went on with it). Put back what was there.");
+    if (journal_) journal_->check_unchanged();
+}
+
+void StoredRun::write(const RunFacts& facts) {
+    if (journal_) study_.computed_by = journal_->computed_by();
+    try {
+        write_results(output_, study_, facts, [this] { check_unchanged(); });
+    } catch (const InputError& error) {  // what was to be read back is damaged
+        check_unchanged();
+        throw Failure(error.what());
+    }
+}
+
+bool StoredRun::finish(const RunFacts& facts) {
+    const bool changed = in_file_ != Contents::of(study_);
+    if (changed) write(facts);
+    if (journal_) journal_->remove();
+    return changed;
+}
+
+bool StoredRun::keeps_something() {
+    if (in_file_ || (journal_ && journal_->has_commits())) return true;
+    try {
+        if (journal_) journal_->remove();
+    } catch (const Failure&) {  // what failed before is what is to be said
+    }
+    return false;
+}
+
+}  // namespace credence

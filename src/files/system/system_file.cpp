@@ -1,0 +1,124 @@
+#include "files/system/system_file.hpp"
+
+#include <credence/error.hpp>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+namespace credence {
+
+namespace {
+
+std::string remedy_for(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT: return "Free some space, or write to another place";
+        case EFBIG: return "Raise the limit on the size of files (ulimit -f), or write to another place";
+        case EACCES:
+        case EPERM:
+        case EROFS: return "Write to a folder that you may write to";
+        case ENOENT: return "Make its folder first";
+        case ENAMETOOLONG: return "Give a shorter name";
+        case EEXIST: return "Move that away, or write to another place";
+        case EWOULDBLOCK: return "Let it end, or write to another place";
+        default: return "Write to another place";
+    }
+}
+
+}  // namespace
+
+void fail_to_write(const std::string& path, const std::string& why, int error) {
+    throw Failure("cannot write " + path + " (" + why + "). " + remedy_for(error) + ".");
+}
+
+void fail_to_write(const std::string& path, int error) { fail_to_write(path, words_for(error), error); }
+
+bool same_file(const Descriptor& opened, const std::string& path) {
+    struct stat own {}, named {};
+    return fstat(opened.get(), &own) == 0 && stat(path.c_str(), &named) == 0 && own.st_ino == named.st_ino &&
+           own.st_dev == named.st_dev;
+}
+
+namespace {
+
+void lock_for_writing(const Descriptor& file, const std::string& target) {
+    // File systems without locks are no reason not to write.
+    if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        throw InputError("cannot write " + target +
+                         " (another program is writing it). Let it end, or write to another place.");
+}
+
+}  // namespace
+
+Descriptor open_locked(const std::string& path, const std::string& target, mode_t mode) {
+    for (;;) {
+        Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, mode));
+        if (file.get() < 0) fail_to_write(target, errno);
+        lock_for_writing(file, target);
+        if (same_file(file, path)) return file;
+    }
+}
+
+Descriptor open_new_locked(const std::string& path, const std::string& target) {
+    for (;;) {
+        Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        if (file.get() >= 0) {
+            lock_for_writing(file, target);
+            if (same_file(file, path)) return file;
+        } else if (errno == EEXIST) {
+            const Descriptor left = open_locked(path, target);
+            unlink(path.c_str());
+        } else {
+            fail_to_write(target, errno);
+        }
+    }
+}
+
+mode_t permissions_of(const std::string& path) {
+    struct stat status {};
+    return stat(path.c_str(), &status) == 0 ? status.st_mode & 0777 : 0666;
+}
+
+void take_owner_and_permissions(const Descriptor& file, const std::string& other) {
+    struct stat own {}, theirs {};
+    if (fstat(file.get(), &own) != 0 || stat(other.c_str(), &theirs) != 0) return;
+    [[maybe_unused]] int refused = 0;  // only root may give a file away, and not every file system has permissions
+    if (own.st_uid != theirs.st_uid || own.st_gid != theirs.st_gid)
+        refused = fchown(file.get(), theirs.st_uid, theirs.st_gid);
+    refused = fchmod(file.get(), theirs.st_mode & 07777);
+}
+
+int rename_to_free_name(const std::string& from, const std::string& to) {
+    if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+    // The file system cannot do both in one step.
+    struct stat status {};
+    if (lstat(to.c_str(), &status) == 0) return EEXIST;
+    return rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
+std::filesystem::path followed(std::filesystem::path path) {
+    constexpr int most = 40;  // links that the system follows
+    std::error_code trouble;
+    for (int links = 0; links < most && std::filesystem::is_symlink(path, trouble); ++links)
+        path = path.parent_path() / std::filesystem::read_symlink(path, trouble);
+    return path;
+}
+
+void sync_folder(const std::filesystem::path& folder, const std::string& path) {
+    const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (opened.get() < 0 || fsync(opened.get()) == 0) return;
+    if (errno != EINVAL && errno != ENOTSUP) fail_to_write(path, errno);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace credence

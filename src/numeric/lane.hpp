@@ -1,0 +1,292 @@
+#pragma once
+// W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving
+// the bits that a plain double would. The only place with intrinsics; everything else is the compiler's vector
+// extension.
+
+#include <credence/detail/real.hpp>
+
+#if defined(__AVX512F__) || defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+template <int W>
+struct LaneTypes {
+    typedef double Doubles __attribute__((vector_size(8 * W)));
+    typedef std::int64_t Integers __attribute__((vector_size(8 * W)));
+    typedef std::uint64_t Unsigned __attribute__((vector_size(8 * W)));
+};
+
+/// One bool per lane: all bits set, or none; with AVX-512 a bit each.
+template <int W>
+struct LaneMask {
+    using M = typename LaneTypes<W>::Integers;
+    M m;
+};
+#if defined(__AVX512F__)
+template <>
+struct LaneMask<8> {
+    using M = __mmask8;
+    M m;
+};
+#endif
+
+/// One unsigned 64-bit integer per lane.
+template <int W>
+struct LaneBits {
+    using V = typename LaneTypes<W>::Unsigned;
+    V v;
+    LaneBits() = default;
+    LaneBits(V raw) : v(raw) {}
+    LaneBits(std::uint64_t one) : v(V{} + one) {}
+
+    friend LaneBits operator+(LaneBits a, LaneBits b) { return a.v + b.v; }
+    friend LaneBits operator-(LaneBits a, LaneBits b) { return a.v - b.v; }
+    friend LaneBits operator*(LaneBits a, LaneBits b) { return a.v * b.v; }
+    friend LaneBits operator&(LaneBits a, LaneBits b) { return a.v & b.v; }
+    friend LaneBits operator|(LaneBits a, LaneBits b) { return a.v | b.v; }
+    friend LaneBits operator^(LaneBits a, LaneBits b) { return a.v ^ b.v; }
+    friend LaneBits operator<<(LaneBits a, int n) { return a.v << n; }
+    friend LaneBits operator>>(LaneBits a, int n) { return a.v >> n; }
+    friend LaneMask<W> operator!=(LaneBits a, LaneBits b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmpneq_epi64_mask((__m512i)a.v, (__m512i)b.v)};
+        else
+#endif
+        return {a.v != b.v};
+    }
+};
+
+template <int W>
+struct Lane {
+    using V = typename LaneTypes<W>::Doubles;
+    V v;
+    Lane() = default;
+    Lane(V raw) : v(raw) {}
+    explicit Lane(double one) : v(one - V{}) {}  // unlike one + V{}, exact for -0: nothing is left to compute
+    explicit Lane(int one) : Lane(static_cast<double>(one)) {}
+
+    friend Lane operator+(Lane a, Lane b) { return a.v + b.v; }
+    friend Lane operator-(Lane a, Lane b) { return a.v - b.v; }
+    friend Lane operator*(Lane a, Lane b) { return a.v * b.v; }
+    friend Lane operator/(Lane a, Lane b) { return a.v / b.v; }
+    friend Lane operator-(Lane a) { return -a.v; }
+    friend LaneMask<W> operator<(Lane a, Lane b) { return b > a; }
+    friend LaneMask<W> operator<=(Lane a, Lane b) { return b >= a; }
+    friend LaneMask<W> operator>(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_GT_OQ)};
+        else
+#endif
+        return {a.v > b.v};
+    }
+    friend LaneMask<W> operator>=(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_GE_OQ)};
+        else
+#endif
+        return {a.v >= b.v};
+    }
+    friend LaneMask<W> operator==(Lane a, Lane b) {
+#if defined(__AVX512F__)
+        if constexpr (W == 8) return {_mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_EQ_OQ)};
+        else
+#endif
+        return {a.v == b.v};
+    }
+};
+
+/// Trials in a Real.
+template <class Real>
+inline constexpr int lanes = static_cast<int>(sizeof(Real) / sizeof(double));
+
+/// W trials at once; one of them is a plain double.
+template <int W>
+struct PackOf {
+    using type = Lane<W>;
+};
+template <>
+struct PackOf<1> {
+    using type = double;
+};
+template <int W>
+using Pack = typename PackOf<W>::type;
+
+template <int W>
+struct BitsOf<Lane<W>> {
+    using type = LaneBits<W>;
+};
+
+template <int W>
+LaneBits<W> bits_of(Lane<W> x) { return __builtin_bit_cast(typename LaneTypes<W>::Unsigned, x.v); }
+template <int W>
+Lane<W> from_bits(LaneBits<W> x) { return __builtin_bit_cast(typename LaneTypes<W>::Doubles, x.v); }
+
+template <int W>
+LaneBits<W> widening_product(LaneBits<W> a, std::uint32_t b) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return (typename LaneBits<W>::V)_mm512_maskz_mul_epu32(0xff, (__m512i)a.v, _mm512_set1_epi64(b));
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) return (typename LaneBits<W>::V)_mm256_mul_epu32((__m256i)a.v, _mm256_set1_epi64x(b));
+#endif
+    return (a.v & std::uint64_t{0xffffffff}) * std::uint64_t{b};
+}
+
+/// a ^ b ^ c, one instruction where there is one.
+template <int W>
+LaneBits<W> exclusive_or(LaneBits<W> a, LaneBits<W> b, LaneBits<W> c) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return (typename LaneBits<W>::V)_mm512_ternarylogic_epi64((__m512i)a.v, (__m512i)b.v, (__m512i)c.v, 0x96);
+#endif
+    return a.v ^ b.v ^ c.v;
+}
+
+template <int W>
+LaneMask<W> both(LaneMask<W> a, LaneMask<W> b) { return {static_cast<typename LaneMask<W>::M>(a.m & b.m)}; }
+template <int W>
+LaneMask<W> either(LaneMask<W> a, LaneMask<W> b) { return {static_cast<typename LaneMask<W>::M>(a.m | b.m)}; }
+template <int W>
+LaneMask<W> negated(LaneMask<W> a) { return {static_cast<typename LaneMask<W>::M>(~a.m)}; }
+
+/// The lanes of a mask as bits, lane 0 lowest.
+inline unsigned lane_bits(bool mask) { return mask; }
+template <int W>
+unsigned lane_bits(LaneMask<W> mask) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) return mask.m;
+    else
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask.m));
+    else
+#endif
+    {
+        unsigned bits = 0;
+        for (int i = 0; i < W; ++i) bits |= static_cast<unsigned>(mask.m[i] & 1) << i;
+        return bits;
+    }
+}
+
+/// The mask that is true in the lanes of these bits.
+template <class Real>
+Mask<Real> mask_of_bits(unsigned bits) {
+    if constexpr (lanes<Real> == 1) {
+        return bits & 1;
+#if defined(__AVX512F__)
+    } else if constexpr (lanes<Real> == 8) {
+        return {static_cast<__mmask8>(bits)};
+#endif
+    } else {
+        typename LaneTypes<lanes<Real>>::Unsigned own;
+        for (int i = 0; i < lanes<Real>; ++i) own[i] = std::uint64_t{1} << i;
+        return {(own & std::uint64_t{bits}) != std::uint64_t{0}};
+    }
+}
+
+/// In how many lanes a mask is true.
+inline int lane_count(bool mask) { return mask; }
+template <int W>
+int lane_count(LaneMask<W> mask) {
+    const unsigned bits = lane_bits(mask);
+#if defined(__POPCNT__)
+    return __builtin_popcount(bits);
+#else
+    int count = 0;  // the builtin would be a call into a library
+    for (int i = 0; i < W; ++i) count += static_cast<int>(bits >> i & 1);
+    return count;
+#endif
+}
+
+template <int W>
+bool any(LaneMask<W> mask) { return lane_bits(mask) != 0; }
+
+template <int W>
+Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return (typename Lane<W>::V)_mm512_mask_blend_pd(mask.m, (__m512d)no.v, (__m512d)yes.v);
+    else
+#endif
+    return mask.m ? yes.v : no.v;
+}
+
+/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, NaN last, and what lies below
+/// `low` comes out above everything, so that one comparison does.
+template <int W>
+LaneMask<W> within(Lane<W> x, Lane<W> low, Lane<W> high) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8)
+        return {_mm512_cmple_epu64_mask((__m512i)(bits_of(x) - bits_of(low)).v,
+                                        (__m512i)(bits_of(high) - bits_of(low)).v)};
+    else
+#endif
+        return both(x >= low, x <= high);
+}
+
+/// A pack from its doubles in memory, wherever they lie.
+template <class Real>
+Real load(const double* from) {
+    Real pack;
+    __builtin_memcpy(static_cast<void*>(&pack), from, sizeof pack);
+    return pack;
+}
+template <class Real>
+void store(const Real& pack, double* to) {
+    __builtin_memcpy(to, &pack, sizeof pack);
+}
+
+/// One lane's number.
+inline double lane_of(double x, int) { return x; }
+template <int W>
+double lane_of(const Lane<W>& x, int lane) { return x.v[lane]; }
+inline void set_lane(double& x, int, double value) { x = value; }
+template <int W>
+void set_lane(Lane<W>& x, int lane, double value) { x.v[lane] = value; }
+
+template <int W>
+Lane<W> fma(Lane<W> a, Lane<W> b, Lane<W> c) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) return (typename Lane<W>::V)_mm512_fmadd_pd((__m512d)a.v, (__m512d)b.v, (__m512d)c.v);
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) return (typename Lane<W>::V)_mm256_fmadd_pd((__m256d)a.v, (__m256d)b.v, (__m256d)c.v);
+#endif
+    Lane<W> r;
+    for (int i = 0; i < W; ++i) r.v[i] = __builtin_fma(a.v[i], b.v[i], c.v[i]);
+    return r;
+}
+
+template <int W>
+Lane<W> fnma(Lane<W> a, Lane<W> b, Lane<W> c) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) return (typename Lane<W>::V)_mm512_fnmadd_pd((__m512d)a.v, (__m512d)b.v, (__m512d)c.v);
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) return (typename Lane<W>::V)_mm256_fnmadd_pd((__m256d)a.v, (__m256d)b.v, (__m256d)c.v);
+#endif
+    return fma(-a, b, c);
+}
+
+template <int W>
+Lane<W> sqrt(Lane<W> x) {
+#if defined(__AVX512F__)
+    if constexpr (W == 8) return (typename Lane<W>::V)_mm512_maskz_sqrt_pd(0xff, (__m512d)x.v);
+#endif
+#if defined(__AVX2__)
+    if constexpr (W == 4) return (typename Lane<W>::V)_mm256_sqrt_pd((__m256d)x.v);
+#endif
+    Lane<W> r;
+    for (int i = 0; i < W; ++i) r.v[i] = __builtin_sqrt(x.v[i]);
+    return r;
+}
+
+template <int W>
+Lane<W> absolute(Lane<W> x) { return from_bits(bits_of(x) & LaneBits<W>(0x7fffffffffffffffu)); }
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

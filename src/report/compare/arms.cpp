@@ -1,0 +1,66 @@
+// `--arms A,B` as it is written.
+
+#include <algorithm>
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+#include <filesystem>
+
+#include "report/compare/choice.hpp"
+
+namespace credence {
+
+namespace {
+
+const char* const how_to_write =
+    "Write --arms A,B, such as greedy.ekf,fixed.ekf, or FILE:ARM for an arm of one of several files";
+
+InputError refused(const std::string& text, const std::string& why) {
+    return invalid_value("--arms", text, why, how_to_write);
+}
+
+/// `ARM` or `FILE:ARM`; of an arm alone the file is `own`, and there is none where that is not clear.
+ArmChoice read_arm(const std::string& part, const std::string& text, const std::vector<std::string>& paths,
+                   std::optional<std::size_t> own) {
+    const std::size_t colon = part.rfind(':');
+    if (colon == std::string::npos) {
+        if (!own) throw refused(text, part + " does not say of which file it is");
+        return {*own, part};
+    }
+    const std::string name = trimmed(part.substr(0, colon)), arm = trimmed(part.substr(colon + 1));
+    if (name.empty() || arm.empty()) throw refused(text, "an empty name");
+    const std::vector<std::string> labels = file_labels(paths);
+    for (std::size_t file = 0; file < paths.size(); ++file)
+        if (name == paths[file] || name == labels[file]) return {file, arm};
+    throw invalid_value("--arms", text, name + " is none of the files", "The files are " + joined(labels));
+}
+
+}  // namespace
+
+std::vector<std::string> file_labels(const std::vector<std::string>& paths) {
+    std::vector<std::string> stems;
+    for (const std::string& path : paths) stems.push_back(std::filesystem::path(path).stem().string());
+    std::vector<std::string> labels;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+        labels.push_back(printable(std::count(stems.begin(), stems.end(), stems[i]) == 1 ? stems[i] : paths[i]));
+    return labels;
+}
+
+ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths) {
+    const std::vector<std::string> parts = split_list(text);
+    if (parts.size() != 2) throw refused(text, "not two arms with a comma between them");
+    if (parts[0].empty() || parts[1].empty()) throw refused(text, "an empty name");
+    // An arm alone is of the first file or, of two files with both arms alone, B is of the second.
+    const bool alone = parts[0].find(':') == std::string::npos && parts[1].find(':') == std::string::npos;
+    std::optional<std::size_t> own_a, own_b;
+    if (paths.size() == 1)
+        own_a = own_b = 0;
+    else if (paths.size() == 2 && alone)
+        own_a = 0, own_b = 1;
+    ArmsChoice choice{text, read_arm(parts[0], text, paths, own_a), read_arm(parts[1], text, paths, own_b)};
+    for (std::size_t file = 0; file < paths.size(); ++file)
+        if (file != choice.a.file && file != choice.b.file)
+            throw invalid_value("--arms", text, paths[file] + " takes no part", "Leave that file out");
+    return choice;
+}
+
+}  // namespace credence

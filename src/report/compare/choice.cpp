@@ -1,0 +1,167 @@
+#include "report/compare/choice.hpp"
+
+#include <algorithm>
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+#include <set>
+
+namespace credence {
+
+namespace {
+
+bool one_of(const std::string& word, const std::vector<std::string>& words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The names of all arms of a file, each once.
+std::vector<std::string> arm_names(const StudyFile& file) {
+    std::vector<std::string> names;
+    for (const ScenarioResults& results : file.study.scenarios)
+        for (const ArmResults& arm : results.arms)
+            if (!one_of(arm.name, names)) names.push_back(arm.name);
+    return names;
+}
+
+std::string contents(const StudyFile& file) {
+    std::vector<std::string> scenarios;
+    for (const ScenarioResults& results : file.study.scenarios) scenarios.push_back(results.scenario.name);
+    return file.path + " has " + joined(arm_names(file)) + " in " + joined(scenarios);
+}
+
+/// The arm that a name means, its own or the only one of that controller; nullptr for none.
+const ArmResults* named_arm(const ScenarioResults& results, const std::string& name, const ArmsChoice& choice) {
+    const std::vector<const ArmResults*> meant = arms_meant(results, name);
+    if (meant.size() > 1) {
+        std::vector<std::string> names;
+        for (const ArmResults* arm : meant) names.push_back(arm->name);
+        throw invalid_value("--arms", choice.text,
+                            name + " in scenario " + results.scenario.name + " is " + joined(names, " or "),
+                            "Give the arm's whole name");
+    }
+    return meant.empty() ? nullptr : meant.front();
+}
+
+/// Collects the pairs of two files, or of one with itself.
+class Chooser {
+public:
+    Chooser(const std::vector<StudyFile>& files, std::vector<std::string>& left_out)
+        : files_(files), left_out_(left_out) {
+        std::vector<std::string> paths;
+        for (const StudyFile& file : files) paths.push_back(file.path);
+        labels_ = file_labels(paths);
+    }
+
+    std::vector<ChosenPair> take() { return std::move(pairs_); }
+
+    void planned_against_partners() {
+        for (const ScenarioResults& results : files_[0].study.scenarios) {
+            const std::size_t before = pairs_.size();
+            for (const ArmResults& arm : results.arms)
+                if (const ArmResults* partner = partner_of(results, arm)) add(0, results, arm, 0, results, *partner);
+            if (pairs_.size() == before) leave_out(results, "no planned arm has one to compare with");
+        }
+        if (pairs_.empty())
+            throw InputError("nothing to compare in " + files_[0].path +
+                             " (no greedy arm has a fixed one of the same estimator beside it, and no horizon a greedy one). Give --arms A,B: " +
+                             contents(files_[0]) + ".");
+    }
+
+    /// Every arm of a later file against the first file's of the same name.
+    void same_arms(std::size_t later) {
+        const std::size_t before = pairs_.size();
+        for_matches(later, 0, [&](const ScenarioResults& a, const ScenarioResults& b) {
+            const std::size_t had = pairs_.size();
+            for (const ArmResults& arm : a.arms)
+                for (const ArmResults& other : b.arms)
+                    if (arm.name == other.name) add(later, a, arm, 0, b, other);
+            if (pairs_.size() == had) leave_out(a, "no arm has the same name in both files");
+        });
+        if (pairs_.size() == before)
+            throw InputError("cannot compare " + files_[later].path + " with " + files_[0].path +
+                             " (no scenario of the same name has an arm of the same name). Give --arms A,B or other "
+                             "files: " +
+                             contents(files_[0]) + "; " + contents(files_[later]) + ".");
+    }
+
+    void chosen(const ArmsChoice& choice) {
+        for_matches(choice.a.file, choice.b.file, [&](const ScenarioResults& in_a, const ScenarioResults& in_b) {
+            const ArmResults* a = named_arm(in_a, choice.a.arm, choice);
+            const ArmResults* b = named_arm(in_b, choice.b.arm, choice);
+            if (a != nullptr && a == b)
+                throw invalid_value("--arms", choice.text, "both are the same arm", "Give two arms");
+            if (a != nullptr && b != nullptr)
+                add(choice.a.file, in_a, *a, choice.b.file, in_b, *b);
+            else
+                leave_out(in_a, "no arm " + (a == nullptr ? choice.a.arm : choice.b.arm));
+        });
+        if (pairs_.empty()) refuse(choice);
+    }
+
+private:
+    void add(std::size_t file_a, const ScenarioResults& in_a, const ArmResults& a, std::size_t file_b,
+             const ScenarioResults& in_b, const ArmResults& b) {
+        const auto label = [&](std::size_t file, const ArmResults& arm) {
+            return files_.size() == 1 ? arm.name : labels_[file] + ":" + arm.name;
+        };
+        const ChosenPair pair{{in_a, a, label(file_a, a)}, {in_b, b, label(file_b, b)}, files_[file_a], files_[file_b]};
+        if (file_a != file_b) check_same_world(pair);
+        pairs_.push_back(pair);
+    }
+
+    void leave_out(const ScenarioResults& results, const std::string& why) {
+        left_out_.push_back(results.scenario.name + " (" + why + ")");
+    }
+
+    /// Calls `match` for the scenarios of the same name.
+    template <class Match>
+    void for_matches(std::size_t file_a, std::size_t file_b, const Match& match) {
+        std::set<std::string> matched;
+        for (const ScenarioResults& a : files_[file_a].study.scenarios)
+            for (const ScenarioResults& b : files_[file_b].study.scenarios)
+                if (a.scenario.name == b.scenario.name) matched.insert(a.scenario.name), match(a, b);
+        const auto leave_unmatched = [&](std::size_t file, std::size_t other) {
+            for (const ScenarioResults& results : files_[file].study.scenarios)
+                if (matched.count(results.scenario.name) == 0) leave_out(results, "not in " + files_[other].path);
+        };
+        leave_unmatched(file_a, file_b);
+        leave_unmatched(file_b, file_a);
+    }
+
+    [[noreturn]] void refuse(const ArmsChoice& choice) const {
+        std::string why = "no scenario has both", meant;
+        for (const ArmChoice& side : {choice.a, choice.b}) {
+            std::vector<std::string> names = arm_names(files_[side.file]);
+            for (std::size_t i = names.size(); i-- > 0;) names.push_back(controller_of(names[i]));
+            if (one_of(side.arm, names)) continue;
+            why = "no scenario of " + files_[side.file].path + " has " + side.arm;
+            meant = closest(side.arm, names);
+            break;
+        }
+        std::string there = contents(files_[choice.a.file]);
+        if (choice.a.file != choice.b.file) there += "; " + contents(files_[choice.b.file]);
+        throw invalid_value("--arms", choice.text, why,
+                            (meant.empty() ? "" : "Did you mean " + meant + "? ") + "The arms there are: " + there);
+    }
+
+    const std::vector<StudyFile>& files_;
+    std::vector<std::string>& left_out_;
+    std::vector<std::string> labels_;
+    std::vector<ChosenPair> pairs_;
+};
+
+}  // namespace
+
+std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice,
+                                     std::vector<std::string>& left_out) {
+    check_same_draws(files);
+    Chooser chooser(files, left_out);
+    if (choice)
+        chooser.chosen(*choice);
+    else if (files.size() == 1)
+        chooser.planned_against_partners();
+    else
+        for (std::size_t later = 1; later < files.size(); ++later) chooser.same_arms(later);
+    return chooser.take();
+}
+
+}  // namespace credence

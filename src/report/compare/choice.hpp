@@ -1,0 +1,34 @@
+#pragma once
+// Which arms of which files are compared.
+
+#include <credence/compare.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// Two arms to be compared, and the files that they are of.
+struct ChosenPair {
+    ComparedArm a, b;
+    const StudyFile &file_a, &file_b;
+};
+
+/// What files are called: their stems, or their paths where two stems are the same.
+std::vector<std::string> file_labels(const std::vector<std::string>& paths);
+
+/// Checks that the files can be compared, and lists the pairs that were chosen. Scenarios without a partner are
+/// added to `left_out`, with the reason. Throws InputError where no pair is left.
+std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice,
+                                     std::vector<std::string>& left_out);
+
+/// Throws InputError where the files' root seeds differ.
+void check_same_draws(const std::vector<StudyFile>& files);
+
+/// Throws InputError naming the first key that gives the scenarios of two files another truth or other draws.
+void check_same_world(const ChosenPair& pair);
+
+/// The keys in which two resolved scenarios differ, but for titles and published figures.
+std::vector<KeyDifference> shown_differences(const Declaration& a, const Declaration& b);
+
+}  // namespace credence

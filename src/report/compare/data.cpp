@@ -1,0 +1,86 @@
+// The comparison for programs: JSON and CSV.
+
+#include <cmath>
+#include <credence/compare.hpp>
+#include <credence/text.hpp>
+
+#include "report/data/json.hpp"
+
+namespace credence {
+
+namespace {
+
+Json side_json(const ComparedSide& side) {
+    return {{"file", side.file},
+            {"source", side.source},
+            {"trials", side.trials},
+            {"failed", side.failed},
+            {"diverged", side.diverged},
+            {"failed_trials", side.failed_trials()}};
+}
+
+Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
+    Json json{{"scenario", pair.comparison.scenario},
+              {"a", pair.comparison.a},
+              {"b", pair.comparison.b},
+              {"trials", pair.trials},
+              {"pairs", pair.pairs()},
+              {"conclusion", conclusion_name(pair.conclusion)}};
+    json.update(comparison_json(pair.comparison));
+    for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
+        Json& figure = json[pair.comparison.figures[f].name];
+        figure["mean_a"] = pair.a.mean[f];
+        figure["mean_b"] = pair.b.mean[f];
+    }
+    json["differences"] = Json::object();
+    for (const KeyDifference& key : pair.differences) json["differences"][key.key] = Json::array({key.a, key.b});
+    json["of_a"] = side_json(pair.a);
+    json["of_b"] = side_json(pair.b);
+    json["root_seed"] = root_seed;
+    json["complete"] = pair.complete;
+    return json;
+}
+
+/// Quoted where CSV needs it [RFC 4180]: labels hold the names of files.
+std::string csv_text(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string csv_row(const ComparedPair& pair, std::size_t figure) {
+    const ComparedFigure& compared = pair.comparison.figures[figure];
+    const PairedComparison& paired = compared.paired;
+    const Summary& difference = paired.difference;
+    std::string text = csv_text(pair.comparison.scenario) + "," + csv_text(pair.comparison.a) + "," +
+                       csv_text(pair.comparison.b) + "," + csv_text(compared.name) + "," + csv_text(compared.unit) +
+                       "," + std::to_string(paired.pairs);
+    for (const double value :
+         {pair.a.mean[figure], pair.b.mean[figure], difference.mean, difference.standard_error, difference.ci95.low,
+          difference.ci95.high, paired.bootstrap95.low, paired.bootstrap95.high, difference.median,
+          difference.standard_deviation, paired.wins_a, paired.wins_b, paired.ties, paired.wilcoxon_z,
+          paired.wilcoxon_p, compared.holm_p, paired.effect_size, paired.variance_reduction})
+        text += "," + (std::isfinite(value) ? to_text(value) : "");
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string compare_json(const CompareReport& report) {
+    Json array = Json::array();
+    for (const ComparedPair& pair : report.pairs) array.push_back(pair_json(pair, report.root_seed));
+    // A file's name may be no UTF-8.
+    return array.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string compare_csv(const CompareReport& report) {
+    std::string text =
+        "scenario,a,b,figure,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
+        "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
+    for (const ComparedPair& pair : report.pairs)
+        for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) text += csv_row(pair, f);
+    return text;
+}
+
+}  // namespace credence

@@ -1,0 +1,194 @@
+// The comparison for people: conclusions first, then the figures.
+
+#include <algorithm>
+#include <cmath>
+#include <credence/compare.hpp>
+#include <credence/text.hpp>
+
+#include "report/compare/words.hpp"
+#include "report/format.hpp"
+#include "report/words.hpp"
+
+namespace credence {
+
+namespace {
+
+/// Decimals that show two digits of the mean difference's uncertainty.
+int decimals_of(const PairedComparison& paired) {
+    return decimals_for(half_width(paired.difference.ci95));
+}
+
+/// `10000 pairs`, or from the fewest to the most; of several comparisons that have run also how many.
+std::string pairs_text(const CompareReport& report) {
+    std::vector<std::int64_t> pairs;
+    for (const ComparedPair& pair : report.pairs)
+        if (!pair.not_run()) pairs.push_back(pair.pairs());
+    if (pairs.empty()) return "not run yet";
+    const auto [least, most] = std::minmax_element(pairs.begin(), pairs.end());
+    return (*least == *most ? "" : std::to_string(*least) + " to ") + std::to_string(*most) +
+           (*most == 1 ? " pair" : " pairs") +
+           (pairs.size() > 1 ? " in each of " + std::to_string(pairs.size()) + " comparisons" : "");
+}
+
+/// Which of the two has no trial yet.
+std::string not_run_text(const ComparedPair& pair) {
+    if (pair.b.trials > 0) return pair.comparison.a + " is not run yet";
+    return (pair.a.trials > 0 ? "" : pair.comparison.a + " and ") + pair.comparison.b +
+           (pair.a.trials > 0 ? " is" : " are") + " not run yet";
+}
+
+/// How the ranks stand to a mean difference that is not shown.
+std::string despite(const Comparison& comparison) {
+    const PairedComparison& paired = comparison.figures.front().paired;
+    if (!(comparison.figures.front().holm_p <= 0.05)) return "";
+    const bool below = paired.wilcoxon_z < 0;
+    return "; yet " + comparison.a + " is " + (below ? "lower" : "higher") + " in " +
+           percent(below ? paired.wins_a : paired.wins_b) + " of trials (p " +
+           p_text(comparison.figures.front().holm_p) + ")";
+}
+
+std::string conclusions(const CompareReport& report) {
+    int width = 0;
+    for (const ComparedPair& pair : report.pairs)
+        width = std::max(width, static_cast<int>(pair.comparison.scenario.size()) + 2);
+    std::string text;
+    for (const ComparedPair& pair : report.pairs)
+        text += "  " + wrapped(padded(pair.comparison.scenario, width, false) + conclusion_text(pair), 2) + "\n";
+    return text;
+}
+
+std::string row_label(const ComparedFigure& figure) {
+    return "    " + padded(figure.unit == "1" ? figure.name : figure.name + " [" + figure.unit + "]", 30, false);
+}
+
+/// How large the differences are.
+std::string sizes(const ComparedPair& pair) {
+    std::string text = "  " + padded("how much", 32, false) + padded("A", 11) + padded("B", 11) +
+                       padded("A - B ± 95 %", 22) + padded("bootstrap 95 %", 24) + padded("median", 12) + "\n";
+    for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
+        const ComparedFigure& figure = pair.comparison.figures[f];
+        const PairedComparison& paired = figure.paired;
+        const int digits = decimals_of(paired);
+        text += row_label(figure) + padded(number(pair.a.mean[f], digits), 11) +
+                padded(number(pair.b.mean[f], digits), 11) +
+                padded(with_interval(paired.difference.mean, paired.difference.ci95), 22) +
+                padded(bracketed(paired.bootstrap95, digits), 24) +
+                padded(number(paired.difference.median, digits), 12) +
+                (paired.pairs == pair.pairs() ? "" : "\n      of " + std::to_string(paired.pairs) + " pairs") + "\n";
+    }
+    return text;
+}
+
+/// How sure they are, and how regular.
+std::string tests(const ComparedPair& pair) {
+    std::string text = "  " + padded("how surely", 32, false) + padded("A below", 11) + padded("A above", 11) +
+                       padded("equal", 10) + padded("Wilcoxon z", 12) + padded("p (Holm)", 12) + padded("d_z", 9) +
+                       padded("reduction", 15) + "\n";
+    for (const ComparedFigure& figure : pair.comparison.figures) {
+        const PairedComparison& paired = figure.paired;
+        text += row_label(figure) + padded(percent(paired.wins_a), 11) + padded(percent(paired.wins_b), 11) +
+                padded(percent(paired.ties), 10) + padded(number(paired.wilcoxon_z, 2), 12) +
+                padded(p_text(figure.holm_p), 12) + padded(number(paired.effect_size, 3), 9) +
+                padded(number(paired.variance_reduction, 2), 15) + "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string compare_head(const CompareReport& report) {
+    const ComparedPair& first_pair = report.pairs.front();
+    const Comparison& first = first_pair.comparison;
+    const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
+                                 [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
+    std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
+    text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
+    const bool trials = first_pair.keep == Keep::trials;
+    return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
+           "). Intervals are two-sided 95 %" +
+           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures below"
+                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: credence run --keep trials") +
+           (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
+}
+
+std::string conclusion_text(const ComparedPair& pair) {
+    const Comparison& comparison = pair.comparison;
+    const PairedComparison& paired = comparison.figures.front().paired;
+    const int digits = decimals_of(paired);
+    const double mean = paired.difference.mean;
+    const Interval& interval = paired.difference.ci95;
+    const std::string text = comparison.figures.front().name + ": ", both = comparison.a + " and " + comparison.b;
+    if (pair.not_run()) return text + not_run_text(pair);
+    if (paired.pairs == 0) return text + "no pairs, nothing to compare";
+    if (pair.conclusion == Conclusion::not_shown && !std::isfinite(mean))
+        return text + "no difference shown (the mean of " + comparison.name() + " is not finite)";
+    if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
+    if (pair.conclusion == Conclusion::not_shown)
+        return text + "no difference shown (" + comparison.name() + " is " + number(mean, digits) +
+               (paired.pairs == 1                       ? ", one pair"
+                : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
+                                                      : "") + ")" +
+               despite(comparison);
+    const bool lower = pair.conclusion == Conclusion::lower;
+    const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
+    const Interval size = lower ? Interval{-interval.high, -interval.low} : interval;
+    return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
+           number(std::abs(mean), digits) + " " + bracketed(size, digits) +
+           (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
+           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "");
+}
+
+std::string compare_notes(const CompareReport& report) {
+    std::string text;
+    const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
+        const FailureWords words{"are left out, with their partners", "are compared"};
+        for (const std::string& line :
+             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.diverged},
+                           report.failed_limit, words))
+            text += line + "\n";
+    };
+    bool complete = true;
+    std::size_t not_run = 0;
+    for (const ComparedPair& pair : report.pairs) {
+        note(pair, pair.a, pair.comparison.a);
+        note(pair, pair.b, pair.comparison.b);
+        complete = complete && pair.complete;
+        not_run += pair.not_run();
+    }
+    if (!complete)
+        text += "note: a study is not complete" +
+                (not_run == 0 ? "" : ": " + std::to_string(not_run) + " of " + std::to_string(report.pairs.size()) +
+                                         " comparisons are not run yet") + ".\n";
+    if (!report.left_out.empty()) text += wrapped_list("note: left out:", report.left_out, 0) + "\n";
+    return text;
+}
+
+std::string pair_head(const ComparedPair& pair) {
+    const Comparison& comparison = pair.comparison;
+    std::string text = "\n" + wrapped(comparison.scenario + (pair.title.empty() ? "" : ": " + pair.title)) + "\n";
+    std::string sides = "A = " + comparison.a + ", B = " + comparison.b + ": " +
+                        (pair.not_run() ? not_run_text(pair) : std::to_string(pair.pairs()) + " pairs");
+    if (pair.a.trials != pair.b.trials)
+        sides += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
+                 ", B has " + std::to_string(pair.b.trials);
+    text += "  " + wrapped(sides, 2) + "\n";
+    std::vector<std::string> parts;
+    for (const KeyDifference& key : pair.differences)
+        parts.push_back(key.key + " (" + key.a + " in A, " + key.b + " in B)");
+    if (!parts.empty())
+        text += "  " + wrapped_list("they differ in", parts, 2) + "\n";
+    else if (pair.a.file != pair.b.file)
+        text += "  the scenario is the same in both files\n";
+    return text;
+}
+
+std::string compare_text(const CompareReport& report) {
+    std::string text = compare_head(report) + compare_notes(report) + "\n" + conclusions(report);
+    for (const ComparedPair& pair : report.pairs)
+        text += pair_head(pair) + (pair.not_run() ? "" : sizes(pair) + tests(pair));
+    return text +
+           "\nd_z: mean of the differences / their standard deviation. reduction: (V_A + V_B) / V_(A-B): arms with "
+           "draws of their own\nwould need that many times the trials. nees_ratio and nis_ratio are best at 1.\n";
+}
+
+}  // namespace credence

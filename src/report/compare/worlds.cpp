@@ -1,0 +1,55 @@
+// Whether trials of different files share their draws and their world.
+
+#include <credence/error.hpp>
+
+#include "report/compare/choice.hpp"
+
+namespace credence {
+
+namespace {
+
+/// Whether scenarios of different files may differ in a key and still have the same truth and the same draws. Every
+/// other key shapes the world.
+bool may_differ(const std::string& key) {
+    if (key == "scenario.name" || key == "scenario.title") return true;
+    const std::string section = key.substr(0, key.find('.'));
+    for (const char* free : {"filter", "control", "planner", "arms", "published"})
+        if (section == free) return true;
+    return false;
+}
+
+}  // namespace
+
+void check_same_draws(const std::vector<StudyFile>& files) {
+    const StudyFile& first = files.front();
+    for (const StudyFile& file : files)
+        if (file.study.root_seed != first.study.root_seed)
+            throw InputError("cannot compare " + file.path + " with " + first.path + " (its root seed is " +
+                             std::to_string(file.study.root_seed) + ", not " + std::to_string(first.study.root_seed) +
+                             ": their trials do not share their draws). Run both with the same --seed.");
+}
+
+void check_same_world(const ChosenPair& pair) {
+    for (const StudyFile* file : {&pair.file_a, &pair.file_b})
+        if (keep_of(file->study) == Keep::aggregates)
+            throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " trial by trial (" +
+                             file->path + " keeps aggregates: no trials, and differences of its own arms only). Run it " +
+                             "with --keep trials, or compare arms of one file.");
+    const Declaration &a = pair.a.results.scenario, &b = pair.b.results.scenario;
+    for (const KeyDifference& difference : key_differences(a, b))
+        if (!may_differ(difference.key))
+            throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
+                             a.name + " is another world: " + difference.key + " is " + printable(difference.a) +
+                             " in " + pair.file_a.path + " and " + printable(difference.b) + " in " + pair.file_b.path +
+                             "). Compare runs that differ in filter, control, planner or arms only.");
+}
+
+std::vector<KeyDifference> shown_differences(const Declaration& a, const Declaration& b) {
+    std::vector<KeyDifference> differences = key_differences(a, b);
+    std::erase_if(differences, [](const KeyDifference& difference) {
+        return difference.key == "scenario.title" || difference.key.starts_with("published.");
+    });
+    return differences;
+}
+
+}  // namespace credence

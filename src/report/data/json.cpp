@@ -1,0 +1,150 @@
+#include "report/data/json.hpp"
+
+#include <credence/consistency.hpp>
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+Json intervals_json(const std::vector<Interval>& intervals) {
+    Json json = Json::array();
+    for (const Interval& interval : intervals) json.push_back(interval_json(interval));
+    return json;
+}
+
+/// One member of each of a list, as a list.
+template <class T, class Get>
+Json each_json(const std::vector<T>& list, const Get& get) {
+    Json json = Json::array();
+    for (const T& item : list) json.push_back(get(item));
+    return json;
+}
+
+Json banded_json(const BandedRatio& ratio) {
+    return {{"degrees", ratio.degrees},
+            {"ratio", ratio.ratio},
+            {"band95", intervals_json(ratio.band)},
+            {"simultaneous_band95", intervals_json(ratio.simultaneous_band)},
+            {"steps", ratio.observed},
+            {"steps_outside", ratio.outside},
+            {"steps_outside_simultaneous", ratio.outside_simultaneous}};
+}
+
+Json coverage_json(const Coverage& coverage) {
+    return {{"level", coverage.level},
+            {"mean", coverage.over_steps},
+            {"share", coverage.share},
+            {"ci95", intervals_json(coverage.interval)}};
+}
+
+Json accuracy_json(const Accuracy& accuracy) {
+    return {{"unit_of_square", accuracy.unit},       {"rmse", accuracy.over_steps}, {"rmse_ratio", accuracy.ratio},
+            {"rmse_ratio_ci95", interval_json(accuracy.ratio_ci95)},
+            {"rmse_by_step", accuracy.rmse},         {"predicted_by_step", accuracy.predicted}};
+}
+
+/// What a block's NEES is in any chart.
+template <class Ratios>
+Json ratios_json(const Ratios& of) {
+    return {{"block", of.block},
+            {"dimension", of.dimension},
+            {"nees_ratio", of.run.mean},
+            {"se", of.run.standard_error},
+            {"ci95", interval_json(t_interval(of.run))},
+            {"anees", banded_json(of.anees)},
+            {"anees_se", each_json(of.step, [](const Moments& step) { return step.standard_error; })}};
+}
+
+Json block_json(const BlockEvidence& block) {
+    Json json = ratios_json(block);
+    json["variance_ratio"] = block.variance_ratio;
+    json["coverage"] = each_json(block.coverage, coverage_json);
+    json["accuracy"] = accuracy_json(block.accuracy);
+    return json;
+}
+
+Json chart_json(const ChartEvidence& chart) {
+    Json json = ratios_json(chart);
+    json["chart"] = chart.chart;
+    return json;
+}
+
+Json nis_json(const NisEvidence& nis) {
+    return {{"rows", nis.part}, {"degrees", nis.degrees}, {"ratio", nis.ratio},
+            {"ratio_ci95", interval_json(nis.ratio95)}, {"scale95", interval_json(nis.scale95)}, {"by_step", banded_json(nis.nis)}};
+}
+
+Json whiteness_json(const Whiteness& lag) {
+    return {{"lag", lag.lag}, {"correlation", lag.correlation}, {"scaled", lag.scaled}, {"count", lag.count}, {"bound95", lag.bound},
+            {"simultaneous_bound95", lag.simultaneous_bound}};
+}
+
+Json bias_json(const BiasEvidence& bias) {
+    return {{"component", bias.component},
+            {"mean", each_json(bias.step, [](const Moments& step) { return step.mean; })},
+            {"se", each_json(bias.step, [](const Moments& step) { return step.standard_error; })}};
+}
+
+Json credibility_json(const CredibilityEvidence& evidence) {
+    std::int64_t trials = 0;
+    for (const Credibility& step : evidence.step) trials = std::max(trials, step.count);
+    return {{"trials", trials},
+            {"nci", evidence.nci},
+            {"inclination", evidence.inclination},
+            {"nci_by_step", each_json(evidence.step, [](const Credibility& step) { return step.nci; })},
+            {"inclination_by_step", each_json(evidence.step, [](const Credibility& step) { return step.inclination; })}};
+}
+
+}  // namespace
+
+Json evidence_json(const Evidence& evidence) {
+    Json json{{"blocks", each_json(evidence.blocks, block_json)},
+              {"nis", each_json(evidence.nis, nis_json)},
+              {"whiteness", each_json(evidence.whiteness, whiteness_json)},
+              {"bias", each_json(evidence.bias, bias_json)},
+              {"shape",
+               {{"exact", evidence.shape.exact}, {"distance", evidence.shape.distance}, {"p", evidence.shape.p}}},
+              {"credibility", credibility_json(evidence.credibility)}};
+    if (!evidence.charts.empty()) json["other_charts"] = each_json(evidence.charts, chart_json);
+    return json;
+}
+
+Json sweep_json(const SweepPoint& sweep) {
+    Json at;
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::optional<double> number = to_number(one.value);
+        at[one.key] = number && std::isfinite(*number) ? Json(*number) : Json(one.value);
+    }
+    return {{"of", sweep.of}, {"at", at}};
+}
+
+Json comparison_json(const Comparison& comparison) {
+    Json json{{"pair", comparison.name()}};
+    for (const ComparedFigure& figure : comparison.figures) {
+        const PairedComparison& paired = figure.paired;
+        const Summary& difference = paired.difference;
+        json[figure.name] = {{"mean", difference.mean},
+                             {"se", difference.standard_error},
+                             {"ci95", interval_json(difference.ci95)},
+                             {"bootstrap95", interval_json(paired.bootstrap95)},
+                             {"median", difference.median},
+                             {"sd", difference.standard_deviation},
+                             {"n", paired.pairs},
+                             {"unit", figure.unit},
+                             {"below", paired.wins_a},
+                             {"above", paired.wins_b},
+                             {"ties", paired.ties},
+                             {"wilcoxon_z", paired.wilcoxon_z},
+                             {"wilcoxon_p", paired.wilcoxon_p},
+                             {"holm_p", figure.holm_p},
+                             {"effect_size", paired.effect_size},
+                             {"variance_reduction", paired.variance_reduction}};
+    }
+    return json;
+}
+
+}  // namespace credence

@@ -1,0 +1,25 @@
+#pragma once
+// Parts of a report as JSON. NaN becomes null.
+
+#include <credence/comparison.hpp>
+#include <credence/evidence.hpp>
+#include <credence/sweep.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace credence {
+
+using Json = nlohmann::ordered_json;
+
+inline Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
+
+/// Everything of an arm's evidence, by step where it has steps.
+Json evidence_json(const Evidence& evidence);
+
+/// The place of a scenario in its grid: numbers as numbers.
+Json sweep_json(const SweepPoint& sweep);
+
+/// A figure's name to all that the pairs say of it.
+Json comparison_json(const Comparison& comparison);
+
+}  // namespace credence

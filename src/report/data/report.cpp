@@ -1,0 +1,172 @@
+// The report for programs: JSON and CSV.
+
+#include <credence/report.hpp>
+
+#include <credence/text.hpp>
+
+#include "base/nan.hpp"
+#include "report/data/json.hpp"
+#include "report/sweep.hpp"
+#include "report/words.hpp"
+
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+Json summary_json(const Summary& summary) {
+    return {{"mean", summary.mean},
+            {"se", summary.standard_error},
+            {"ci95", interval_json(summary.ci95)},
+            {"median", summary.median},
+            {"sd", summary.standard_deviation},
+            {"n", summary.count}};
+}
+
+Json figure_json(const FigureReport& figure) {
+    Json json = summary_json(figure.summary);
+    json["unit"] = figure.unit;
+    for (std::size_t q = 0; q < figure.quantiles.size(); ++q)
+        json["quantiles"][to_text(reported_quantiles[q])] = figure.quantiles[q];
+    if (figure.bootstrap95) json["bootstrap95"] = interval_json(*figure.bootstrap95);
+    if (figure.published)
+        json["published"] = {{"value", figure.published->value}, {"percentile", figure.published->percentile}};
+    return json;
+}
+
+Json findings_json(const std::vector<Finding>& findings) {
+    Json json = Json::array();
+    for (const Finding& finding : findings)
+        json.push_back({{"what", finding.what}, {"where", finding.where}, {"when", finding.when},
+                        {"value", finding.value}, {"interval", interval_json(finding.interval)},
+                        {"text", sentence(finding)}});
+    return json;
+}
+
+Json arm_json(const Report& report, const ArmReport& arm) {
+    Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
+              {"diverged", arm.diverged}, {"failed_trials", arm.failed_trials()}};
+    for (const Declaration& scenario : report.scenarios)
+        if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
+    for (const FigureReport& figure : arm.figures) json[figure.name] = figure_json(figure);
+    json["verdict"] = verdict_name(arm.consistency.verdict);
+    if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;
+    json["margin"] = arm.consistency.limits.margin;
+    json["failed_limit"] = arm.consistency.limits.failed;
+    if (arm.consistency.trials_to_decide > 0) json["trials_to_decide"] = arm.consistency.trials_to_decide;
+    json["findings"] = findings_json(arm.consistency.findings);
+    json["cautions"] = findings_json(arm.consistency.cautions);
+    json.update(evidence_json(arm.evidence));
+    for (const Comparison& pair : report.pairs)
+        if (pair.scenario == arm.scenario && pair.a == arm.arm) json["paired_difference"] = comparison_json(pair);
+    for (const RecordTrouble& trouble : report.troubles)
+        json["troubles"].push_back({{"trial", trouble.trial}, {"step", trouble.step}, {"what", trouble.what}});
+    json["source"] = report.source;
+    json["root_seed"] = report.root_seed ? Json(*report.root_seed) : Json();
+    json["complete"] = report.complete;
+    return json;
+}
+
+/// One row, with `end` behind its figures; cells that are no numbers stay empty.
+std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
+                    const std::optional<PublishedPlace>& published, const std::string& end) {
+    const Interval resampled = bootstrap.value_or(Interval{nan, nan});
+    const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
+    for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
+                               s.standard_deviation, place.value, place.percentile})
+        cells.push_back(std::isfinite(value) ? to_text(value) : "");
+    cells.push_back(end);
+    return joined(cells, ",") + "\n";
+}
+
+/// Rows of an arm's evidence. What a figure is of stands behind a colon, and the step behind a second one.
+class EvidenceRows {
+public:
+    EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
+
+    std::string text() {
+        for (const BlockEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const ChartEvidence& chart : arm_.evidence.charts) {
+            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
+            add_moments(name, chart.run);
+            for (std::size_t k = 0; k < chart.step.size(); ++k)
+                add_moments(name + ":" + std::to_string(k + 1), chart.step[k]);
+        }
+        for (const NisEvidence& nis : arm_.evidence.nis) {
+            add("nis_per_row:" + nis.part, nis.ratio, nan, nis.ratio95);
+            add_steps("nis_per_row:" + nis.part, nis.nis.ratio, nis.nis.simultaneous_band);
+        }
+        for (const Whiteness& lag : arm_.evidence.whiteness)
+            add("whiteness:" + std::to_string(lag.lag), lag.scaled, nan,
+                {lag.scaled - lag.bound, lag.scaled + lag.bound});
+        for (const BiasEvidence& bias : arm_.evidence.bias)
+            for (std::size_t k = 0; k < bias.step.size(); ++k)
+                add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
+        add_steps("distance_from_chi_square", arm_.evidence.shape.distance, {});
+        add("nci", arm_.evidence.credibility.nci, nan, none);
+        add("inclination", arm_.evidence.credibility.inclination, nan, none);
+        return text_;
+    }
+
+private:
+    static constexpr Interval none{nan, nan};
+
+    void add(const std::string& figure, double mean, double se, const Interval& interval, double sd = nan) {
+        text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), figure, "1"},
+                         {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt, end_);
+    }
+    void add_moments(const std::string& figure, const Moments& moments) {
+        add(figure, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
+    }
+    /// For NIS at a step the interval is its joint chi-square band: there is no spread of trials to take one from.
+    void add_steps(const std::string& figure, const std::vector<double>& values, const std::vector<Interval>& intervals) {
+        for (std::size_t k = 0; k < values.size(); ++k)
+            add(figure + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
+    }
+    void add_block(const BlockEvidence& block) {
+        add_moments("nees_per_dimension:" + block.block, block.run);
+        for (std::size_t k = 0; k < block.step.size(); ++k)
+            add_moments("nees_per_dimension:" + block.block + ":" + std::to_string(k + 1), block.step[k]);
+        add("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95);
+        for (const Coverage& level : block.coverage)
+            add_steps("coverage_" + to_text(level.level) + ":" + block.block, level.share, level.interval);
+        add_steps("variance_ratio:" + block.block, block.variance_ratio, {});
+    }
+
+    const ArmReport& arm_;
+    const std::string& end_;
+    std::string text_;
+};
+
+}  // namespace
+
+std::string report_json(const Report& report) {
+    Json array = Json::array();
+    for (const ArmReport& arm : report.arms) array.push_back(arm_json(report, arm));
+    return array.dump(2) + "\n";
+}
+
+std::string report_csv(const Report& report) {
+    const SweepColumns sweep(report);
+    std::string text =
+        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
+        "published,percentile,verdict" + sweep.heads() + ",failed_trials\n";
+    for (const ArmReport& arm : report.arms) {
+        const std::string end =
+            verdict_word(arm) + sweep.cells(arm.scenario) + "," + std::to_string(arm.failed_trials());
+        for (const FigureReport& figure : arm.figures)
+            text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure.name,
+                             figure.unit},
+                            figure.summary, figure.bootstrap95, figure.published, end);
+        text += EvidenceRows(arm, end).text();
+    }
+    for (const Comparison& pair : report.pairs)
+        for (const ComparedFigure& figure : pair.figures)
+            text += csv_row({pair.scenario, pair.name(), std::to_string(figure.paired.pairs), "", figure.name, figure.unit},
+                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt,
+                            sweep.cells(pair.scenario) + ",");
+    return text;
+}
+
+}  // namespace credence

@@ -1,0 +1,132 @@
+#include "report/format.hpp"
+
+#include <credence/text.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace credence {
+
+namespace {
+
+constexpr std::size_t text_width = 118;
+
+std::size_t characters(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string padded(const std::string& text, int width, bool right) {
+    const int left = width - static_cast<int>(characters(text));
+    const std::string space(static_cast<std::size_t>(std::max(1, left)), ' ');  // never glued together
+    return right ? space + text : text + space;
+}
+
+std::string number(double value, int digits) {
+    if (!std::isfinite(value)) return "-";
+    char buffer[64];
+    const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -digits) && digits >= 6;
+    if (vanishes) std::snprintf(buffer, sizeof buffer, "%.2g", value);
+    else if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+    else std::snprintf(buffer, sizeof buffer, "%.4g", value);
+    return buffer;
+}
+
+int decimals_for(double uncertainty) {
+    if (!(uncertainty > 0) || std::isinf(uncertainty)) return 4;
+    return std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty))), 0, 6);
+}
+
+std::string with_interval(double mean, const Interval& interval) {
+    const double half = half_width(interval);
+    const int digits = decimals_for(half);
+    return !std::isfinite(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
+}
+
+std::string duration_text(double seconds) {
+    if (seconds < 10) return number(seconds, 1) + " s";
+    if (seconds < 120) return number(seconds, 0) + " s";
+    if (seconds < 7200) return number(seconds / 60, 0) + " min";
+    return number(seconds / 3600, 1) + " h";
+}
+
+std::string bracketed(const Interval& interval, int digits) {
+    if (!std::isfinite(half_width(interval))) return "-";
+    return "[" + number(interval.low, digits) + ", " + number(interval.high, digits) + "]";
+}
+
+std::string percent(double share) {
+    if (share > 0 && share < 0.005) return "< 1 %";
+    if (share > 0.995 && share < 1) return "> 99 %";
+    return std::isnan(share) ? "-" : number(100 * share, 0) + " %";
+}
+
+std::string p_text(double p) {
+    if (std::isnan(p) || p == 1) return std::isnan(p) ? "-" : "1";
+    if (p >= 0.001) return number(p, 3);
+    if (p < 1e-300) return "< 1e-300";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0e", p);
+    return text;
+}
+
+namespace {
+
+/// Units with blanks between them, on as many lines as they take; the first begins behind `indent` columns.
+std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
+    std::string text;
+    std::size_t column = indent;
+    for (const std::string& unit : units) {
+        const std::size_t size = characters(unit);
+        if (text.empty()) text = unit, column += size;
+        else if (column + 1 + size <= text_width) text += " " + unit, column += 1 + size;
+        else text += "\n" + std::string(indent + 2, ' ') + unit, column = indent + 2 + size;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string wrapped(const std::string& text, std::size_t indent) { return flowing(split_list(text, ' '), indent); }
+
+std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
+    std::vector<std::string> units = split_list(head, ' ');
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
+        const bool fits = indent + 2 + characters(part) <= text_width;
+        for (const std::string& unit : fits ? std::vector<std::string>{part} : split_list(part, ' ')) units.push_back(unit);
+    }
+    return flowing(units, indent);
+}
+
+void TextTable::row(std::vector<std::string> cells) {
+    widths_.resize(std::max(widths_.size(), cells.size()));
+    for (std::size_t c = 0; c < cells.size(); ++c) widths_[c] = std::max(widths_[c], characters(cells[c]));
+    rows_.push_back({std::move(cells), {}});
+}
+
+void TextTable::line(std::string text) { rows_.push_back({{}, std::move(text)}); }
+
+bool TextTable::fits() const {
+    return std::accumulate(widths_.begin(), widths_.end(), 2 * widths_.size()) <= text_width;
+}
+
+std::string TextTable::text() const {
+    std::string text;
+    for (const Row& row : rows_) {
+        std::string line = row.line;
+        for (std::size_t c = 0; c < row.cells.size(); ++c) {
+            const bool right = alignment_[std::min(c, alignment_.size() - 1)] == 'r';
+            const std::string space(widths_[c] - characters(row.cells[c]), ' ');
+            line += "  " + (right ? space + row.cells[c] : row.cells[c] + space);
+        }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    return text;
+}
+
+}  // namespace credence

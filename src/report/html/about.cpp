@@ -1,0 +1,155 @@
+// The page's last parts: the scenario, where the figures came from, how to get them again, what the terms mean.
+
+#include <credence/text.hpp>
+
+#include "report/html/page.hpp"
+
+#include <algorithm>
+
+namespace credence::page {
+
+namespace {
+
+HtmlTable& add(HtmlTable& table, const std::string& name, const std::string& value) {
+    return table.row(escaped(name), {escaped(value)});
+}
+
+std::string fact(const RunFacts& facts, const std::string& name) {
+    for (const auto& [known, value] : facts)
+        if (known == name) return value;
+    return {};
+}
+
+/// The options that give the same verdicts again.
+std::string limits_options(const Limits& limits) {
+    const bool usual = limits.failed == Limits().failed;
+    return " --margin " + to_text(limits.margin) + (usual ? "" : " --failed " + to_text(limits.failed));
+}
+
+/// The command that makes a study's file from the scenarios on this page.
+std::string run_again(const Report& report) {
+    std::string line = "credence run";
+    for (const Declaration& scenario : report.scenarios) line += " " + scenario.name + ".ini";
+    return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
+           (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
+}
+
+constexpr char terms_text[] = R"(<section aria-labelledby="terms">
+<h2 id="terms">What the terms mean</h2>
+<dl>
+<dt>NEES, NEES/dim</dt>
+<dd>ε = eᵀP⁻¹e, the squared error of the estimate measured with the filter's own covariance P, of the whole state and
+of each
+block of it; over its dimension it is 1 on average where P is right, and ε is χ² with dim degrees of freedom at each
+step
+[Bar-Shalom, Li, Kirubarajan 2001, 5.4.2].</dd>
+<dt>NIS, NIS/m</dt>
+<dd>νᵀS⁻¹ν, the same of the innovations ν with the covariance S that the filter predicts for them; its sum over the
+trials is
+χ² with Σm degrees of freedom, m the rows that each trial measured [Bar-Shalom, Li, Kirubarajan 2001, 5.4.2].</dd>
+<dt>Verdict and margin</dt>
+<dd>With enough trials every filter differs from the ideal significantly, so the verdict asks for equivalence within a
+margin.
+Consistent: the 95 % interval of NEES/dim over the steps lies within 1 ± margin for the whole state and every block, and
+nothing else is found. Optimistic or pessimistic: some block, over all steps or at one, lies wholly above or below it,
+with
+Bonferroni's correction; mixed: both. Undecided: neither could be shown. Failed: more than the stated share of the
+trials failed, whatever the others say.</dd>
+<dt>Bands</dt>
+<dd>Where the mean of a consistent filter's NEES or NIS lies 95 % of the time: quantiles of χ²(N dim)/(N dim), or of
+χ²(Σm)/Σm;
+the joint band holds for all steps together (Bonferroni).</dd>
+<dt>Biased</dt>
+<dd>The mean over the trials of error/σ of one component differs from 0 at some step.</dd>
+<dt>Coverage</dt>
+<dd>The share of trials whose NEES is below the 50, 90, 95 or 99 % quantile of χ²; by step with Wilson's interval
+[Wilson 1927].</dd>
+<dt>Whiteness</dt>
+<dd>Correlation of the whitened innovations a lag of steps apart, 0 for a consistent filter [Bar-Shalom, Li,
+Kirubarajan 2001,
+5.4.3].</dd>
+<dt>NCI, I²</dt>
+<dd>Noncredibility index and inclination: how far, and to which side, the filter's NEES is from that with the sample's
+own mean
+square error; I² above 0 is optimistic [Li, Zhao 2006].</dd>
+<dt>trace(P), unseen, pose error</dt>
+<dd>Of each trial: the trace of the covariance after the last update, the features that were not seen, summed over the
+poses,
+and the squared error of the pose, summed over the poses.</dd>
+<dt>Intervals</dt>
+<dd>Student's intervals take one number a trial. The bootstrap's are percentiles of 2000 resampled means [Efron,
+Tibshirani 1993];
+trace(P) is heavy-tailed, so look at both.</dd>
+<dt>p (Holm), effect size, reduction</dt>
+<dd>Of the differences of pairs: the p of Wilcoxon's signed ranks, corrected for all pairs and figures [Holm 1979]; the
+mean over
+the standard deviation; and how many times more trials two arms with draws of their own would need, (V_A +
+V_B)/V_(A−B).</dd>
+</dl>
+</section>
+)";
+
+}  // namespace
+
+Html command(const std::string& line) { return element("pre", element("code", escaped(line))) + "\n"_html; }
+
+Html scenario_part(const Part& part) {
+    if (!part.report.root_seed) return {};  // a record tells nothing of its world
+    const Html text = element("pre", element("code", escaped(scenario_text(part.scenario))), "tabindex=\"0\""_html);
+    return "<h3>Scenario</h3>\n"_html + folded("The scenario as resolved, every key of it: save it as " +
+                                                   part.scenario.name + ".ini to run it again",
+                                               text, InPrint::open);
+}
+
+Html provenance(const Report& report, const PageOrigin& origin) {
+    HtmlTable table("Where the figures came from", {"fact", "value"});
+    add(table, "file", origin.file);
+    if (report.root_seed) {
+        add(table, "source", report.source);
+        add(table, "root seed", std::to_string(*report.root_seed));
+        add(table, "trials of each scenario that were asked for", std::to_string(report.trials));
+        add(table, "complete", report.complete ? "yes, all of them are there" : "no, trials are missing");
+    } else if (!report.arms.empty()) {
+        add(table, "trials", std::to_string(report.arms.front().trials));
+        add(table, "steps", std::to_string(report.arms.front().evidence.steps));
+    }
+    add(table, "margin", to_text(report.limits.margin));
+    add(table, "share of trials that may fail", to_text(report.limits.failed));
+    for (auto [name, value] : origin.run) {
+        std::replace(name.begin(), name.end(), '_', ' ');
+        add(table, name, value);
+    }
+    add(table, "page made by", origin.made_by);
+    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + table.html() +
+           "</section>\n"_html;
+}
+
+Html reproduction(const Report& report, const PageOrigin& origin) {
+    const std::string file = shell_word(origin.file), limits = limits_options(report.limits);
+    Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
+    if (!report.root_seed) {
+        html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
+                command("credence judge " + file + limits + " --format html -o page.html") +
+                command("credence judge " + file + limits + " --format json");
+        return html + "</section>\n"_html;
+    }
+    if (const std::string line = fact(origin.run, "command_line"); !line.empty())
+        html += "<p>The file was made by</p>\n"_html + command(line);
+    const bool all_shown = std::all_of(report.scenarios.begin(), report.scenarios.end(),
+                                       [&](const Declaration& one) { return has_section(report, one.name); });
+    html += all_shown
+                ? "<p>Without the scenario files: save the scenarios of this page, each under its name, and run the same "
+                  "trials. Any number of threads gives the same bits, which the second command checks.</p>\n"_html +
+                      command(run_again(report)) + command("h5diff --exclude-path /run " + file + " again.h5")
+                : "<p>The points of large grids have no section of their own here. The text of every scenario is in the "
+                  "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
+    html +=
+        "<p>This page, and the same with every digit:</p>\n"_html +
+        command("credence report " + file + limits + " --format html -o page.html") +
+        command("credence report " + file + limits + " --format json");
+    return html + "</section>\n"_html;
+}
+
+Html terms() { return Html::trusted(terms_text); }
+
+}  // namespace credence::page

@@ -1,0 +1,96 @@
+#pragma once
+// A small chart room: scales with ticks at round numbers, and marks that become inline SVG. Colours, widths
+// and fonts are classes, so that the page's style sheet decides on light, dark and print. All lengths are in units of
+// the drawing's viewBox, y downwards.
+
+#include "report/html/html.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// normal: by the quantile z of the standard normal with P(|Z| <= z) = value, for shares from 0 to 1.
+enum class ScaleKind { linear, logarithmic, normal };
+
+/// Maps [low, high] onto [from, to]; values beyond are drawn at the end that they are beyond.
+struct Scale {
+    ScaleKind kind = ScaleKind::linear;
+    double low = 0, high = 1, from = 0, to = 1;
+
+    double operator()(double value) const;
+};
+
+/// Round numbers within [low, high], about `about` of them: multiples of 1, 2 or 5 times a power of ten; on a
+/// logarithmic scale of more than a decade 1, 2 and 5 times powers of ten, or only those.
+std::vector<double> ticks(const Scale& scale, int about);
+
+/// Texts of ticks, all with the same decimals.
+std::vector<std::string> tick_texts(const std::vector<double>& ticks);
+
+/// The smallest and the largest of what was included; NaN and infinity are left out.
+struct Range {
+    double low = 0, high = 0;
+    bool known = false;
+
+    void include(double value);
+    /// A scale a little wider than the range; logarithmic where all is positive and high/low above `decades_from`.
+    Scale scale(double from, double to, double logarithmic_from) const;
+};
+
+/// Which of `count` points in a row to draw: all, or about `most` at equal distances, the first and the last included.
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most);
+
+/// The same for a line: of each stretch its lowest and its highest value stay.
+std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most);
+
+struct ChartPoint {
+    double x = 0, y = 0;
+};
+
+enum class Anchor { start, middle, end };
+
+/// The class of a series by its number, s0 ... s11: colour and dash of its lines. The first six have a colour each; the
+/// second six have these once more, with other dashes and hollow marks.
+std::string series_class(std::size_t series);
+
+/// One drawing. `classes` name what the style sheet knows; a `hover` text shows where the pointer rests.
+class Svg {
+public:
+    Svg(double width, double height) : width_(width), height_(height) {}
+
+    void line(ChartPoint from, ChartPoint to, const std::string& classes, const std::string& hover = {});
+    /// Interrupted at points that are NaN.
+    void path(const std::vector<ChartPoint>& points, const std::string& classes);
+    /// Between two lines of as many points, left to right.
+    void area(const std::vector<ChartPoint>& upper, const std::vector<ChartPoint>& lower, const std::string& classes);
+    void box(ChartPoint corner, ChartPoint opposite, const std::string& classes, const std::string& hover = {});
+    /// A mark of a series, by its number: one of six shapes, filled or hollow, of the series' class if of no other.
+    void mark(ChartPoint at, std::size_t series, const std::string& hover, const std::string& classes = {});
+    void text(ChartPoint at, Anchor anchor, const std::string& text, const std::string& classes = "label");
+    /// With `title` and `description` as its text alternative; `id` is unique on the page.
+    Html html(const std::string& id, const std::string& title, const std::string& description) const;
+    /// As a sign beside words that say the same; of class `classes`.
+    Html sign(const std::string& classes) const;
+
+    double width() const { return width_; }
+    double height() const { return height_; }
+
+private:
+    std::string view_box() const;
+    void add(const std::string& shape, const std::string& attributes, const std::string& hover);
+
+    double width_, height_;
+    std::string body_;
+};
+
+/// Both axes with ticks, grid and labels. The x axis lies at y.from, the y axis at x.from.
+struct Axes {
+    Scale x, y;
+    std::string x_label, y_label;
+    int x_ticks = 6, y_ticks = 5;  ///< about as many; 0: none
+
+    void draw(Svg& svg) const;
+};
+
+}  // namespace credence

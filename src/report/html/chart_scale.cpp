@@ -1,0 +1,125 @@
+// Scales, their ticks, and which points of many are drawn.
+
+#include "report/html/chart.hpp"
+
+#include "report/format.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+/// Where a value lies on an axis whose ends are equally far from it in the scale's own measure.
+double measure(ScaleKind kind, double value) {
+    if (kind == ScaleKind::logarithmic) return std::log10(value);
+    if (kind == ScaleKind::normal) return normal_quantile(1 - value);
+    return value;
+}
+
+std::vector<double> linear_ticks(double low, double high, int about) {
+    const double rough = (high - low) / std::max(1, about), power = std::pow(10, std::floor(std::log10(rough)));
+    double step = 10 * power;
+    for (const double factor : {5.0, 2.0, 1.0})
+        if (factor * power >= 0.999 * rough) step = factor * power;
+    std::vector<double> found;
+    for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
+        found.push_back(i == 0 ? 0 : i * step);
+    return found;
+}
+
+std::vector<double> logarithmic_ticks(double low, double high, int about) {
+    const int first = static_cast<int>(std::floor(std::log10(low))),
+              last = static_cast<int>(std::ceil(std::log10(high)));
+    std::vector<double> found;
+    const double decades = std::log10(high / low);
+    const int apart = std::max(1, static_cast<int>(std::ceil(decades / about)));
+    for (int decade = first; decade <= last; decade += apart)
+        for (const double factor : {1.0, 2.0, 5.0}) {
+            const double tick = factor * std::pow(10, decade);
+            if (tick >= low * 0.999 && tick <= high * 1.001 && (factor == 1 || 3 * decades <= about + 1))
+                found.push_back(tick);
+        }
+    return found;
+}
+
+/// Powers of ten from 10^5 on as 1e5.
+std::string power_text(double tick) {
+    const int power = static_cast<int>(std::floor(std::log10(tick) + 1e-9));
+    if (power < 5 && power > -4) return short_number(tick);
+    return number(tick / std::pow(10, power), 0) + "e" + std::to_string(power);
+}
+
+}  // namespace
+
+double Scale::operator()(double value) const {
+    const double first = measure(kind, low), last = measure(kind, high);
+    const double share = (measure(kind, std::clamp(value, low, high)) - first) / (last - first);
+    return from + share * (to - from);
+}
+
+std::vector<double> ticks(const Scale& scale, int about) {
+    if (about <= 0 || !(scale.low < scale.high)) return {};
+    if (scale.kind == ScaleKind::logarithmic && scale.high > 10 * scale.low)
+        return logarithmic_ticks(scale.low, scale.high, about);
+    return linear_ticks(scale.low, scale.high, about);
+}
+
+std::vector<std::string> tick_texts(const std::vector<double>& ticks) {
+    int decimals = 0;
+    for (const double tick : ticks) {
+        int needed = 0;
+        while (needed < 6 && std::abs(tick * std::pow(10, needed) - std::nearbyint(tick * std::pow(10, needed))) >
+                                 1e-6 * std::pow(10, needed) * std::abs(tick))
+            ++needed;
+        decimals = std::max(decimals, needed);
+    }
+    std::vector<std::string> texts;
+    const bool far_apart = ticks.size() > 1 && ticks.front() > 0 && ticks.back() > 99 * ticks.front();
+    for (const double tick : ticks) texts.push_back(far_apart ? power_text(tick) : number(tick, decimals));
+    return texts;
+}
+
+void Range::include(double value) {
+    if (!std::isfinite(value)) return;
+    low = known ? std::min(low, value) : value;
+    high = known ? std::max(high, value) : value;
+    known = true;
+}
+
+Scale Range::scale(double from, double to, double logarithmic_from) const {
+    constexpr double margin = 0.04;
+    if (known && low > 0 && high > logarithmic_from * low) {
+        const double more = std::pow(high / low, margin);
+        return {ScaleKind::logarithmic, low / more, high * more, from, to};
+    }
+    const double spread = high > low ? high - low : std::max(1e-9, std::abs(low));
+    return {ScaleKind::linear, low - margin * spread, high + margin * spread, from, to};
+}
+
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
+    const std::size_t apart = count > most ? (count + most - 1) / most : 1;
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < count; i += apart) chosen.push_back(i);
+    if (count > 0 && chosen.back() != count - 1) chosen.push_back(count - 1);
+    return chosen;
+}
+
+std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most) {
+    if (values.size() <= 2 * most) return thinned(values.size(), values.size());
+    const std::size_t stretch = (values.size() + most - 1) / most;
+    std::vector<std::size_t> chosen;
+    for (std::size_t first = 0; first < values.size(); first += stretch) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first),
+                   end = values.begin() + static_cast<std::ptrdiff_t>(std::min(first + stretch, values.size()));
+        const auto [low, high] = std::minmax_element(begin, end);
+        const auto a = static_cast<std::size_t>(low - values.begin()),
+                   b = static_cast<std::size_t>(high - values.begin());
+        chosen.push_back(std::min(a, b));
+        if (a != b) chosen.push_back(std::max(a, b));
+    }
+    return chosen;
+}
+
+}  // namespace credence

@@ -1,0 +1,135 @@
+// The page's tables of figures that trials have: each arm's, and the differences of pairs.
+
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "report/html/page.hpp"
+#include "report/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence::page {
+
+namespace {
+
+/// All names of figures that some arm has values of, in their order.
+std::vector<std::string> names_of(const Part& part) {
+    std::vector<std::string> names;
+    if (part.arms.empty()) return names;
+    for (const FigureReport& figure : part.arms.front()->figures)
+        for (const ArmReport* arm : part.arms)
+            if (figure_named(arm->figures, figure.name).summary.count > 0) {
+                names.push_back(figure.name);
+                break;
+            }
+    return names;
+}
+
+Html published(const FigureReport& figure_report) {
+    if (!figure_report.published) return {};
+    const Html value = figure_as(figure_report.published->value, to_text(figure_report.published->value));
+    if (std::isnan(figure_report.published->percentile)) return value;
+    return value + " ("_html + figure(figure_report.published->percentile, 1) + " %)"_html;
+}
+
+/// Rows for every arm under a head for every figure.
+template <class Cells>
+void add_rows(const Part& part, HtmlTable& table, const Cells& cells) {
+    for (const std::string& name : names_of(part)) {
+        table.group(figure_words(name, figure_named(part.arms.front()->figures, name).unit));
+        for (const ArmReport* arm : part.arms) {
+            const FigureReport& figure_report = figure_named(arm->figures, name);
+            if (figure_report.summary.count > 0) table.row(escaped(arm->arm), cells(figure_report));
+        }
+    }
+}
+
+bool has_published(const Part& part) {
+    const auto any = [](const ArmReport* arm) {
+        return std::any_of(arm->figures.begin(), arm->figures.end(),
+                           [](auto& one) { return one.published.has_value(); });
+    };
+    return std::any_of(part.arms.begin(), part.arms.end(), any);
+}
+
+Html arms_table(const Part& part) {
+    std::vector<std::string> heads{"arm", "mean", "95 %, Student", "95 %, bootstrap", "median", "sd"};
+    const bool published_too = has_published(part);
+    if (published_too) heads.push_back("published (percentile)");
+    HtmlTable table(part.scenario.name + ": figures of a trial", heads);
+    add_rows(part, table, [&](const FigureReport& one) {
+        const Summary& s = one.summary;
+        const int digits = decimals_for(half_width(s.ci95));
+        std::vector<Html> cells{figure(s.mean, digits), figure_interval(s.ci95, digits),
+                                one.bootstrap95 ? figure_interval(*one.bootstrap95, digits) : Html(),
+                                figure(s.median, digits), figure(s.standard_deviation, digits)};
+        if (published_too) cells.push_back(published(one));
+        return cells;
+    });
+    return table.html();
+}
+
+Html spread_table(const Part& part) {
+    std::vector<std::string> heads{"arm", "trials", "standard error"};
+    for (const double p : reported_quantiles) heads.push_back(number(100 * p, 0) + " % quantile");
+    HtmlTable table(part.scenario.name + ": how the figures are spread", heads);
+    add_rows(part, table, [](const FigureReport& one) {
+        const int digits = decimals_for(half_width(one.summary.ci95));
+        std::vector<Html> cells{figure_count(static_cast<double>(one.summary.count)),
+                                figure_within(one.summary.standard_error, one.summary.standard_error)};
+        for (const double quantile : one.quantiles) cells.push_back(figure(quantile, digits));
+        return cells;
+    });
+    return table.html();
+}
+
+Html share(double value) { return figure_as(value, percent(value)); }
+
+Html p_value(double p) { return figure_as(p, p_text(p)); }
+
+}  // namespace
+
+Html difference_table(const Comparison& pair) {
+    HtmlTable table(pair.scenario + ": " + pair.name() +
+                        ", trial by trial (both had the same draws; negative: " + pair.a + " is lower)",
+                    {"figure", "mean", "95 %, Student", "95 %, bootstrap", "median", "below", "above", "equal",
+                     "p (Holm)", "effect size", "reduction"});
+    for (const ComparedFigure& one : pair.figures) {
+        const PairedComparison& paired = one.paired;
+        if (paired.pairs == 0) continue;
+        const Summary& s = paired.difference;
+        const int digits = decimals_for(half_width(s.ci95));
+        table.row(escaped(figure_words(one.name, one.unit)),
+                  {figure(s.mean, digits), figure_interval(s.ci95, digits), figure_interval(paired.bootstrap95, digits),
+                   figure(s.median, digits), share(paired.wins_a), share(paired.wins_b), share(paired.ties),
+                   p_value(one.holm_p), figure(paired.effect_size, 3), figure(paired.variance_reduction, 2)});
+    }
+    return table.html();
+}
+
+Html difference_spread_table(const Comparison& pair) {
+    HtmlTable table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
+                    {"figure", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected"});
+    for (const ComparedFigure& one : pair.figures) {
+        const Summary& s = one.paired.difference;
+        if (one.paired.pairs == 0) continue;
+        table.row(
+            escaped(figure_words(one.name, one.unit)),
+            {figure_count(static_cast<double>(one.paired.pairs)), figure_within(s.standard_error, s.standard_error),
+             figure(s.standard_deviation, decimals_for(half_width(s.ci95))), figure(one.paired.wilcoxon_z, 2),
+             p_value(one.paired.wilcoxon_p)});
+    }
+    return table.html();
+}
+
+Html figure_tables(const Part& part) {
+    Html html = "<h3>Figures</h3>\n"_html + arms_table(part), more = spread_table(part);
+    for (const Comparison* pair : part.pairs) {
+        html += difference_table(*pair);
+        more += difference_spread_table(*pair);
+    }
+    return html + folded("How the figures are spread: standard errors, quantiles, numbers of trials", more);
+}
+
+}  // namespace credence::page

@@ -1,0 +1,76 @@
+#pragma once
+// HTML by type. A text that somebody gave becomes HTML through `escaped` and in no other way.
+
+#include <credence/statistics.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace credence {
+
+/// A piece of a page. It is made of literals of the program, of escaped texts and of other pieces.
+class Html {
+public:
+    Html() = default;
+    /// Takes the markup as it is: for what this room has put together, never for a text that was read.
+    static Html trusted(std::string markup);
+
+    const std::string& text() const { return text_; }
+    bool empty() const { return text_.empty(); }
+    Html& operator+=(const Html& other);
+
+private:
+    std::string text_;
+};
+
+Html operator+(Html a, const Html& b);
+Html operator""_html(const char* text, std::size_t size);
+
+/// The text with & < > " ' as entities, fit for elements and for quoted attributes. What a terminal
+/// could obey, and bytes that are not UTF-8 [text.hpp, with_controls_as], become U+FFFD.
+Html escaped(std::string_view text);
+
+/// `<NAME ATTRIBUTES>content</NAME>`; the attributes as they stand in the tag, texts in them escaped.
+Html element(std::string_view name, const Html& content, const Html& attributes = {});
+
+/// A number as people read it, with the exact one (`to_text`) in the attribute `value` of a `data` element. `-` for
+/// what is not finite.
+Html figure(double value, int digits);
+/// The same with a text of one's own, such as `71 %`.
+Html figure_as(double value, const std::string& text);
+/// A count, however large, in full.
+Html figure_count(double value);
+/// `figure` with the decimals that show two digits of `uncertainty` [report_format.hpp].
+Html figure_within(double value, double uncertainty);
+/// `[low, high]`, both of them figures; `-` where there is none.
+Html figure_interval(const Interval& interval, int digits);
+/// `mean ± half-width`, as in the text report; the mean is a figure.
+Html figure_with_interval(double mean, const Interval& interval);
+
+/// Five significant digits, whole numbers as they are; `-` for what is not finite. The same in every locale.
+std::string short_number(double value);
+
+/// A unit or a name with its powers raised: `dm^2` becomes `dm²`.
+std::string with_powers(std::string text);
+
+/// A table with a caption, column heads and row heads. Wide ones are scrolled by themselves, not the page.
+class HtmlTable {
+public:
+    HtmlTable(const std::string& caption, std::vector<std::string> heads);
+
+    /// One cell for each head after the first, which is over the row heads.
+    HtmlTable& row(const Html& head, const std::vector<Html>& cells);
+    /// A head over the rows that follow.
+    HtmlTable& group(const std::string& head);
+    bool empty() const { return rows_.empty(); }
+    /// Nothing without rows.
+    Html html() const;
+
+private:
+    std::string caption_;
+    std::vector<std::string> heads_;
+    Html rows_;
+};
+
+}  // namespace credence

@@ -1,0 +1,106 @@
+// The report as one page: verdict, findings, tables, charts, scenario, provenance, how to reproduce it, terms.
+
+#include "report/html/page.hpp"
+
+#include <credence/text.hpp>
+
+#include "report/words.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace credence {
+
+namespace page {
+
+namespace {
+
+Html paragraph(const std::string& text) { return element("p", escaped(text)) + "\n"_html; }
+
+Part part_of(const Report& report, const Declaration& scenario) {
+    Part part{report, scenario, {}, {}};
+    for (const ArmReport& arm : report.arms)
+        if (arm.scenario == scenario.name) part.arms.push_back(&arm);
+    for (const Comparison& pair : report.pairs)
+        if (pair.scenario == scenario.name) part.pairs.push_back(&pair);
+    return part;
+}
+
+/// Nothing is loaded from anywhere, whatever the page's texts say.
+Html head(const std::string& title) {
+    return R"(<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<link rel="icon" href="data:,">
+)"_html + element("title", escaped(title)) +
+           "\n<style>\n"_html + Html::trusted(std::string(style_sheet())) + "</style>\n"_html;
+}
+
+Html intro(const Report& report, const PageOrigin& origin) {
+    Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
+                element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) + "\n"_html +
+                element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
+    Html warnings;
+    for (const std::string& warning : warnings_of(report)) warnings += element("li", escaped(warning));
+    if (!warnings.empty()) html += element("ul", warnings, "class=\"warnings\""_html) + "\n"_html;
+    return html;
+}
+
+Html contents(const Report& report) {
+    if (report.scenarios.size() < 2) return {};
+    Html items;
+    for (const Declaration& scenario : report.scenarios) {
+        if (!has_section(report, scenario.name)) continue;
+        std::set<std::string> shown;  // each badge once
+        Html badges;
+        for (const ArmReport* arm : part_of(report, scenario).arms)
+            if (shown.insert(verdict_word(*arm)).second) badges += " "_html + badge(*arm);
+        items += element("li", "<a href=\"#"_html + section_id(scenario.name) + "\">"_html + escaped(scenario.name) +
+                                   "</a>"_html + badges);
+    }
+    if (items.empty()) return {};
+    return "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n"_html + element("ol", items) +
+           "\n</nav>\n"_html;
+}
+
+/// All that the trials of a scenario say.
+Html evidence_of_trials(const Part& part) {
+    if (!has_run(part.report, part.scenario.name)) return {};
+    return figure_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);
+}
+
+Html scenario_section(const Part& part) {
+    const std::string& title = part.scenario.title;
+    return "<section class=\"scenario\" aria-labelledby=\""_html + section_id(part.scenario.name) + "\">\n"_html +
+           element("h2", escaped(part.scenario.name), "id=\""_html + section_id(part.scenario.name) + "\""_html) +
+           "\n"_html + (title.empty() ? Html() : paragraph(title)) + findings(part) + evidence_of_trials(part) +
+           scenario_part(part) + "</section>\n"_html;
+}
+
+}  // namespace
+
+Html folded(const std::string& summary, const Html& content, InPrint in_print) {
+    if (content.empty()) return {};
+    return element("details", element("summary", escaped(summary)) + "\n"_html + content,
+                   in_print == InPrint::open ? "class=\"printed\""_html : Html()) +
+           "\n"_html;
+}
+
+std::string document(const std::string& title, const Html& header, const Html& main) {
+    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n" + head(title).text() + "</head>\n<body>\n<header>\n" +
+           header.text() + "</header>\n<main>\n" + main.text() + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace page
+
+std::string report_html(const Report& report, const PageOrigin& origin) {
+    using namespace page;
+    Html body = verdicts(report) + contents(report) + sweeps(report);
+    for (const Declaration& scenario : report.scenarios)
+        if (has_section(report, scenario.name)) body += scenario_section(part_of(report, scenario));
+    body += provenance(report, origin) + reproduction(report, origin) + terms();
+    return document("credence: " + origin.file, intro(report, origin), body);
+}
+
+}  // namespace credence

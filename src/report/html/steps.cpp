@@ -1,0 +1,124 @@
+// The page's tables by step: every figure that the charts draw, and those behind the findings.
+
+#include "report/html/chart.hpp"
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "report/html/page.hpp"
+#include "report/words.hpp"
+
+#include <cmath>
+
+namespace credence::page {
+
+namespace {
+
+constexpr std::size_t most_rows = 60;
+
+Html cell(double value) { return escaped(short_number(value)); }
+
+Html cell(const Interval& interval) {
+    if (!std::isfinite(half_width(interval))) return "-"_html;
+    return escaped(short_number(interval.low) + " to " + short_number(interval.high));
+}
+
+/// The caption, and which steps have a row.
+std::string captioned(const std::string& caption, int steps) {
+    const std::size_t count = static_cast<std::size_t>(steps);
+    if (count <= most_rows) return caption;
+    return caption + " (every " + std::to_string((count + most_rows - 1) / most_rows) + " steps; JSON has all)";
+}
+
+template <class Cells>
+Html by_step(const std::string& caption, int steps, std::vector<std::string> heads, const Cells& cells) {
+    heads.insert(heads.begin(), "step");
+    HtmlTable table(captioned(caption, steps), std::move(heads));
+    for (const std::size_t k : thinned(static_cast<std::size_t>(steps), most_rows))
+        table.row(escaped(std::to_string(k + 1)), cells(k));
+    return table.html();
+}
+
+std::string name_of(const ArmReport& arm) { return arm.scenario + ", " + arm.arm; }
+
+/// The value at a step, or NaN where the list has none.
+double at(const std::vector<double>& values, std::size_t k) { return k < values.size() ? values[k] : std::nan(""); }
+
+Html block_table(const ArmReport& arm, const BlockEvidence& block) {
+    std::vector<std::string> heads{"NEES/dim",        "standard error", "degrees", "band 95 %",
+                                   "joint band 95 %", "var/2dim",       "RMSE",    "predicted"};
+    for (const Coverage& level : block.coverage) {
+        heads.push_back(to_text(100 * level.level) + " % covers");
+        heads.push_back("Wilson 95 %");
+    }
+    return by_step(name_of(arm) + ": block " + block.block + " by step", arm.evidence.steps, heads, [&](std::size_t k) {
+        std::vector<Html> cells{
+            cell(block.anees.ratio[k]),       cell(block.step[k].standard_error),     cell(block.anees.degrees[k]),
+            cell(block.anees.band[k]),        cell(block.anees.simultaneous_band[k]), cell(block.variance_ratio[k]),
+            cell(at(block.accuracy.rmse, k)), cell(at(block.accuracy.predicted, k))};
+        for (const Coverage& level : block.coverage) {
+            cells.push_back(cell(level.share[k]));
+            cells.push_back(cell(level.interval[k]));
+        }
+        return cells;
+    });
+}
+
+Html chart_table(const ArmReport& arm, const ChartEvidence& chart) {
+    return by_step(name_of(arm) + ": NEES of " + chart.block + " in the " + chart.chart + " chart by step",
+                   arm.evidence.steps, {"NEES/dim", "standard error", "degrees", "band 95 %", "joint band 95 %"},
+                   [&](std::size_t k) -> std::vector<Html> {
+                       return {cell(chart.anees.ratio[k]), cell(chart.step[k].standard_error),
+                               cell(chart.anees.degrees[k]), cell(chart.anees.band[k]),
+                               cell(chart.anees.simultaneous_band[k])};
+                   });
+}
+
+Html nis_table(const ArmReport& arm, const NisEvidence& nis) {
+    return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", arm.evidence.steps,
+                   {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Html> {
+                       return {cell(nis.nis.ratio[k]), cell(nis.nis.degrees[k]), cell(nis.nis.band[k]),
+                               cell(nis.nis.simultaneous_band[k])};
+                   });
+}
+
+Html bias_table(const ArmReport& arm) {
+    std::vector<std::string> heads;
+    for (const BiasEvidence& bias : arm.evidence.bias) heads.push_back(bias.component);
+    if (heads.empty()) return {};
+    return by_step(name_of(arm) + ": mean error/sigma by component and step (standard error)", arm.evidence.steps,
+                   heads, [&](std::size_t k) {
+                       std::vector<Html> cells;
+                       for (const BiasEvidence& bias : arm.evidence.bias)
+                           cells.push_back(escaped(short_number(bias.step[k].mean) + " (" +
+                                                   short_number(bias.step[k].standard_error) + ")"));
+                       return cells;
+                   });
+}
+
+Html shape_table(const ArmReport& arm) {
+    const Evidence& evidence = arm.evidence;
+    return by_step(name_of(arm) + ": distance of the NEES from chi-square, and credibility, by step", evidence.steps,
+                   {"distance", "p", "NCI", "I²"}, [&](std::size_t k) -> std::vector<Html> {
+                       const bool known = k < evidence.credibility.step.size();
+                       return {cell(at(evidence.shape.distance, k)), cell(at(evidence.shape.p, k)),
+                               cell(known ? evidence.credibility.step[k].nci : std::nan("")),
+                               cell(known ? evidence.credibility.step[k].inclination : std::nan(""))};
+                   });
+}
+
+}  // namespace
+
+Html step_tables(const Part& part) {
+    Html html;
+    for (const ArmReport* arm : part.arms) {
+        if (arm->evidence.trials == 0) continue;
+        Html tables;
+        for (const BlockEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
+        for (const ChartEvidence& chart : arm->evidence.charts) tables += chart_table(*arm, chart);
+        for (const NisEvidence& nis : arm->evidence.nis) tables += nis_table(*arm, nis);
+        html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + shape_table(*arm));
+    }
+    return html.empty() ? html : element("div", "<h3>By step</h3>\n"_html + html, "class=\"screen\""_html) + "\n"_html;
+}
+
+}  // namespace credence::page

@@ -1,0 +1,155 @@
+// The page's part on grids: curves along a swept key, and a table by point.
+
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "report/html/page.hpp"
+#include "report/html/curves.hpp"
+#include "report/sweep.hpp"
+#include "report/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence::page {
+
+namespace {
+
+/// A figure of an arm or a pair; nothing where it has no values.
+template <class Part>
+std::optional<Summary> summary_of(const Part* part, const std::string& figure) {
+    if (part != nullptr)
+        for (const SweptFigure& one : swept_figures(*part))
+            if (one.name == figure && one.summary.count > 0) return one.summary;
+    return std::nullopt;
+}
+
+/// A grid on the page.
+class GridPart {
+public:
+    GridPart(const Report& report, const SweptReport& swept, const Grid& grid, std::size_t number)
+        : report_(report), swept_(swept), grid_(grid), id_("sweep:" + std::to_string(number)),
+          arms_(swept.arm_names(grid)), pairs_(swept.pair_names(grid)) {
+        std::vector<std::string> keys;
+        for (const GridAxis& axis : grid.axes) keys.push_back(axis.key);
+        keys_ = joined(keys);
+    }
+
+    Html html() const {
+        Html tables;
+        for (const std::string& name : arms_) tables += arm_table(name);
+        for (const std::string& name : pairs_) tables += pair_table(name);
+        return "<section aria-labelledby=\""_html + escaped(id_) + "\">\n"_html +
+               element("h2", escaped("Sweep of " + grid_.of + " over " + keys_), "id=\""_html + escaped(id_) + "\""_html) +
+               "\n<h3>Curves</h3>\n"_html + curves() + "<h3>By point</h3>\n"_html + tables + "</section>\n"_html;
+    }
+
+private:
+    Html head_of(const GridPoint& point) const {
+        std::vector<std::string> values;
+        for (std::size_t a = 0; a < grid_.axes.size(); ++a) values.push_back(grid_.axes[a].values[point.place[a]]);
+        if (!has_section(report_, swept_.scenario(point))) return escaped(joined(values));
+        return "<a href=\"#"_html + section_id(swept_.scenario(point)) + "\">"_html + escaped(joined(values)) +
+               "</a>"_html;
+    }
+
+    /// The shown figures that some point has of these arms or pairs.
+    template <class Find>
+    std::vector<SweptFigure> figures_of(const std::vector<std::string>& names, const Find& find) const {
+        for (const GridPoint& point : grid_.points)
+            for (const std::string& name : names)
+                if (const auto* part = find(point, name)) return swept_figures(*part);
+        return {};
+    }
+
+    Html arm_table(const std::string& name) const {
+        const auto find = [&](const GridPoint& point, const std::string& arm) { return swept_.arm(point, arm); };
+        const std::vector<SweptFigure> figures = figures_of({name}, find);
+        std::vector<std::string> heads{keys_, "verdict"};
+        for (const SweptFigure& one : figures) heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
+        heads.push_back("failed");
+        HtmlTable table(grid_.of + ", " + name + " by point", heads);
+        for (const GridPoint& point : grid_.points) {
+            const ArmReport* arm = swept_.arm(point, name);
+            if (arm == nullptr) continue;
+            std::vector<Html> cells{badge(*arm)};
+            for (const SweptFigure& one : swept_figures(*arm))
+                cells.push_back(figure_with_interval(one.summary.mean, one.summary.ci95));
+            cells.push_back(failed_count(*arm));
+            table.row(head_of(point), cells);
+        }
+        return table.html();
+    }
+
+    Html pair_table(const std::string& name) const {
+        const auto find = [&](const GridPoint& point, const std::string& pair) { return swept_.pair(point, pair); };
+        std::vector<std::string> heads{keys_};
+        for (const SweptFigure& one : figures_of({name}, find))
+            heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
+        HtmlTable table(grid_.of + ", " + name + " by point, trial by trial", heads);
+        for (const GridPoint& point : grid_.points) {
+            const Comparison* pair = swept_.pair(point, name);
+            if (pair == nullptr) continue;
+            const bool run = has_run(report_, swept_.scenario(point));
+            std::vector<Html> cells;
+            for (const SweptFigure& one : swept_figures(*pair))
+                cells.push_back(run ? figure_with_interval(one.summary.mean, one.summary.ci95) : "not run yet"_html);
+            table.row(head_of(point), cells);
+        }
+        return table.html();
+    }
+
+    Html curves() const {
+        const auto arm = [&](const GridPoint& point, const std::string& name) { return swept_.arm(point, name); };
+        const auto pair = [&](const GridPoint& point, const std::string& name) { return swept_.pair(point, name); };
+        Html of_arms, of_pairs;
+        std::size_t number = 0;
+        for (const SweptFigure& one : figures_of(arms_, arm)) {
+            const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
+            constexpr double spread = 20;  // beyond it the small ones could not be told from 0
+            const SweptCurves drawn{grid_, curve_axis(grid_), arms_, figure_words(one.name, one.unit),
+                                    is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.limits.margin : 0,
+                                    spread, [&](const GridPoint& point, const std::string& name) {
+                                        return summary_of(swept_.arm(point, name), one.name);
+                                    }};
+            of_arms += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
+        }
+        for (const SweptFigure& one : figures_of(pairs_, pair)) {
+            const SweptCurves drawn{grid_, curve_axis(grid_), pairs_,
+                                    "difference of " + figure_words(one.name, one.unit), 0, 0, INFINITY,
+                                    [&](const GridPoint& point, const std::string& name) {
+                                        return summary_of(swept_.pair(point, name), one.name);
+                                    }};
+            of_pairs += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
+        }
+        return legend(arms_) + chart_group("Arms", "Means with their 95 % intervals; shaded: within the margin.", of_arms) +
+               (of_pairs.empty() ? Html() : legend(pairs_)) +
+               chart_group("Pairs, trial by trial", "Below 0 the first arm has less.", of_pairs);
+    }
+
+    const Report& report_;
+    const SweptReport& swept_;
+    const Grid& grid_;
+    std::string id_, keys_;
+    std::vector<std::string> arms_, pairs_;
+};
+
+}  // namespace
+
+bool has_section(const Report& report, const std::string& scenario) {
+    constexpr std::ptrdiff_t most = 12;
+    const auto swept = [](const Declaration& one) { return SweptReport::swept(one); };
+    const auto same = [&](const Declaration& one) { return one.name == scenario && swept(one); };
+    return std::count_if(report.scenarios.begin(), report.scenarios.end(), swept) <= most ||
+           std::none_of(report.scenarios.begin(), report.scenarios.end(), same);
+}
+
+Html sweeps(const Report& report) {
+    const SweptReport swept(report);
+    Html html;
+    for (std::size_t i = 0; i < swept.grids().size(); ++i)
+        html += GridPart(report, swept, swept.grids()[i], i).html();
+    return html;
+}
+
+}  // namespace credence::page

@@ -1,0 +1,159 @@
+// The page's verdicts and findings.
+
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "report/html/page.hpp"
+#include "report/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace credence::page {
+
+namespace {
+
+/// A shape for each verdict, so that it is told without colour.
+Html shape_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::consistent:
+            return "&#10003;"_html;  // check mark
+        case Verdict::optimistic:
+            return "&#9650;"_html;  // triangle up: NEES above 1
+        case Verdict::pessimistic:
+            return "&#9660;"_html;  // triangle down: NEES below 1
+        case Verdict::mixed:
+            return "&#9670;"_html;  // diamond
+        case Verdict::failed:
+            return "&#10007;"_html;  // ballot x
+        case Verdict::undecided:
+            break;
+    }
+    return "?"_html;
+}
+
+/// Why an arm has its verdict, in one line.
+std::string why(const ArmReport& arm) {
+    if (arm.not_run()) return no_claim_text(arm);
+    const std::vector<Reason> reasons = reasons_of(arm);
+    if (arm.consistency.verdict == Verdict::consistent)
+        return "NEES/dim of the whole state and of every block is within 1 ± " + to_text(arm.consistency.limits.margin);
+    return reasons.empty() ? "no interval lies wholly within the margin or wholly outside"
+                           : reason_text(reasons.front());
+}
+
+/// NEES and NIS of an arm, and how many of its trials failed.
+Html numbers_of(const ArmReport& arm) {
+    if (arm.not_run()) return {};
+    const Summary& nees = figure_named(arm.figures, "nees_ratio").summary;
+    const Summary& nis = figure_named(arm.figures, "nis_ratio").summary;
+    return "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
+           (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
+           failed_count(arm) + " of "_html + figure_count(static_cast<double>(arm.trials)) + " trials failed"_html +
+           (arm.diverged > 0
+                ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " of them diverged"_html
+                : Html());
+}
+
+Html verdict_line(const ArmReport& arm) {
+    return element("li", "<p class=\"arm\"><a href=\"#"_html + section_id(arm.scenario) + "\">"_html +
+                             escaped(arm.scenario) + "</a> "_html + element("b", escaped(arm.arm)) + "</p>\n"_html +
+                             badge(arm) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
+                             "</p>\n<p class=\"numbers\">"_html + numbers_of(arm) + "</p></div>"_html) +
+           "\n"_html;
+}
+
+HtmlTable findings_table(const std::string& caption, const std::vector<Finding>& findings) {
+    HtmlTable table(caption, {"what", "where", "when", "value", "interval, corrected"});
+    for (const Finding& finding : findings) {
+        const double half = half_width(finding.interval);
+        table.row(escaped(finding.what),
+                  {escaped(finding.where), escaped(finding.when), figure_within(finding.value, half),
+                   figure_interval(finding.interval, decimals_for(half))});
+    }
+    return table;
+}
+
+Html arm_findings(const ArmReport& arm) {
+    constexpr std::size_t most = 8;
+    const Consistency& verdict = arm.consistency;
+    Html lines;
+    for (const Reason& reason : reasons_of(arm)) lines += element("li", escaped(reason_text(reason)));
+    if (lines.empty()) lines = element("li", escaped(why(arm)));
+    std::vector<Finding> all = verdict.findings;
+    all.insert(all.end(), verdict.cautions.begin(), verdict.cautions.end());
+    const Html table =
+        findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all)
+            .html();
+    return element("h4", escaped(arm.arm) + " "_html + badge(arm)) + "\n"_html + element("ul", lines) +
+           "\n"_html +
+           (all.size() <= most
+                ? table
+                : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
+                         table));
+}
+
+}  // namespace
+
+Html badge(const ArmReport& arm) {
+    const Verdict verdict = arm.consistency.verdict;
+    return "<span class=\"badge "_html + escaped(verdict_name(verdict)) + "\"><span aria-hidden=\"true\">"_html +
+           (arm.not_run() ? "&#8211;"_html : shape_of(verdict)) + "</span> "_html + escaped(verdict_word(arm)) +
+           "</span>"_html;
+}
+
+Html failed_count(const ArmReport& arm) {
+    return figure_count(arm.not_run() ? std::nan("") : static_cast<double>(arm.failed_trials()));
+}
+
+std::string figure_words(const std::string& name, const std::string& unit) {
+    if (name == "nees_ratio") return "NEES/n, mean over the steps";
+    if (name == "nis_ratio") return "NIS/m, over the steps";
+    if (name == "unseen") return "unseen features, sum over the poses";
+    return with_powers(figure_title(name, unit));
+}
+
+std::string verdict_counts(const Report& report) {
+    if (report.arms.empty()) return "There is nothing to judge.";
+    const std::string all = std::to_string(report.arms.size()), first = verdict_clause(report.arms.front());
+    if (report.arms.size() == 1) return "The filter " + first + ".";
+    std::map<std::pair<bool, Verdict>, int> counts;
+    for (const ArmReport& arm : report.arms) ++counts[{arm.not_run(), arm.consistency.verdict}];
+    std::vector<std::string> parts;
+    for (const auto& [kind, count] : counts)
+        parts.push_back(std::to_string(count) + " " + (kind.first ? "not run yet" : verdict_name(kind.second)));
+    if (parts.size() == 1)
+        return (report.arms.size() == 2 ? "Both arms " : "All " + all + " arms ") +
+               (first.starts_with("is ") ? "are " + first.substr(3) : first) + ".";
+    return "Of " + all + " arms " + joined(parts) + ".";
+}
+
+Html verdicts(const Report& report) {
+    Html lines;
+    for (const ArmReport& arm : report.arms)
+        if (has_section(report, arm.scenario)) lines += verdict_line(arm);
+    return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
+           "NEES/dim 1 "
+           "in every block of the state and at every step; the verdict holds all of them against 1 ± "_html +
+           escaped(to_text(report.limits.margin)) +
+           ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
+           "too "
+           "large). Failed: more than "_html + escaped(short_number(100 * report.limits.failed)) +
+           " % of its trials failed. Intervals are two-sided 95 %.</p>\n"_html +
+           (lines.empty() ? Html() : "<ul class=\"verdicts\">\n"_html + lines + "</ul>\n"_html) + "</section>\n"_html;
+}
+
+Html findings(const Part& part) {
+    Html html = "<h3>Findings</h3>\n"_html;
+    for (const ArmReport* arm : part.arms) html += arm_findings(*arm);
+    Html troubles;
+    for (const RecordTrouble& trouble : part.report.troubles)
+        troubles += element("li", escaped("trial " + std::to_string(trouble.trial) + ", step " +
+                                          std::to_string(trouble.step + 1) + ": " + trouble.what));
+    if (!troubles.empty())
+        html += folded("Trials that failed (the first of them)", element("ul", troubles), InPrint::open);
+    return html;
+}
+
+}  // namespace credence::page

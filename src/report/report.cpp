@@ -1,0 +1,121 @@
+#include <credence/report.hpp>
+
+#include "statistics/bootstrap.hpp"
+#include <credence/error.hpp>
+#include <credence/slam_record.hpp>
+#include <credence/text.hpp>
+
+#include "base/nan.hpp"
+#include "report/words.hpp"
+#include "worlds/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+/// What `published.COLUMN` says; nothing where the scenario has no such key.
+std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scenario, const std::string& column) {
+    const std::string key = "published." + column;
+    const Setting* published = find_setting(scenario.settings, key);
+    if (published == nullptr) return std::nullopt;
+    return parse_published(key, published->value);
+}
+
+/// `values` may be none: then nothing is known of its place.
+std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedFigure>>& published,
+                                       const std::string& arm, const std::vector<double>& values) {
+    if (!published) return std::nullopt;
+    for (const PublishedFigure& figure : *published)
+        if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
+    return std::nullopt;
+}
+
+/// NEES and NIS ratios are judged by tests of their own.
+bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
+
+/// Of totals: mean and spread are known, and nothing of the distribution.
+FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
+    const Column& column = results.columns[c];
+    FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
+                        std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
+                        place_of(published_of(results.scenario, column.name), arm.name, {}), std::nullopt};
+    if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
+    return report;
+}
+
+FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
+                           std::uint64_t root_seed) {
+    const Column& column = results.columns[c];
+    if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
+    std::vector<double> values = figure_values(results, arm, c);
+    const auto published = published_of(results.scenario, column.name);
+    FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
+                        place_of(published, arm.name, values), std::nullopt};
+    if (has_bootstrap(column.name))
+        report.bootstrap95 = bootstrap_mean_interval(
+            values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
+    if (published)
+        report.histogram = histogram(values, column.type == ColumnType::real ? BinWidths::ratio : BinWidths::equal);
+    return report;
+}
+
+}  // namespace
+
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
+                     const Limits& limits) {
+    ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
+    report.consistency = judge(report.evidence, limits);
+    report.failed = report.evidence.left_out;
+    report.diverged = report.evidence.diverged;
+    for (std::size_t c = 0; c < results.columns.size(); ++c)
+        if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
+    return report;
+}
+
+Report make_report(const Study& study, const Limits& limits) {
+    Report report;
+    report.source = "study " + study_hash(study);
+    report.root_seed = study.root_seed;
+    report.trials = study.trials;
+    report.complete = study.complete;
+    report.keep = keep_of(study);
+    report.limits = limits;
+    report.pairs = planned_against_partners(study);
+    for (const ScenarioResults& results : study.scenarios) {
+        report.scenarios.push_back(results.scenario);
+        const WithTotals with_totals(results);
+        for (const ArmResults& arm : (*with_totals).arms)
+            report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, limits));
+    }
+    return report;
+}
+
+Report make_record_report(JudgedRecord record, const std::string& path, const Limits& limits) {
+    ScenarioResults& results = record.results;
+    ArmResults& arm = results.arms.front();
+    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell
+    Report report;
+    report.source = "record " + printable(path, path.size());
+    report.limits = limits;
+    report.troubles = record.troubles;
+    results.scenario.title.clear();  // the source says it
+    report.scenarios.push_back(results.scenario);
+    constexpr std::uint64_t bootstrap_seed = 1;
+    report.arms.push_back(report_arm(results, arm, bootstrap_seed, limits));
+    return report;
+}
+
+void require_consistent(const Report& report) {
+    std::vector<std::string> others;
+    for (const ArmReport& arm : report.arms)
+        if (arm.consistency.verdict != Verdict::consistent)
+            others.push_back(arm.scenario + "/" + arm.arm + " " + verdict_clause(arm));
+    if (!others.empty()) throw Failure("required consistent, but " + joined(others) + ".");
+}
+
+}  // namespace credence

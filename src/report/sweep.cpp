@@ -1,0 +1,99 @@
+#include "report/sweep.hpp"
+
+#include <credence/text.hpp>
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+/// The names that a part of the report has at the points of a grid, each once, in the report's order.
+template <class Part, class Name>
+std::vector<std::string> names_of(const std::set<std::string>& scenarios, const std::vector<Part>& parts,
+                                  const Name& name_of) {
+    std::vector<std::string> names;
+    for (const Part& part : parts)
+        if (scenarios.count(part.scenario) > 0 &&
+            std::find(names.begin(), names.end(), name_of(part)) == names.end())
+            names.push_back(name_of(part));
+    return names;
+}
+
+template <class Map>
+auto found_in(const Map& map, const typename Map::key_type& key) -> typename Map::mapped_type {
+    const auto found = map.find(key);
+    return found == map.end() ? nullptr : found->second;
+}
+
+}  // namespace
+
+SweptReport::SweptReport(const Report& report) : report_(report) {
+    std::vector<SweepPoint> places;
+    for (const Declaration& scenario : report.scenarios) places.push_back(scenario.sweep);
+    grids_ = grids_of(places);
+    for (const ArmReport& arm : report.arms) arms_[{arm.scenario, arm.arm}] = &arm;
+    for (const Comparison& pair : report.pairs) pairs_[{pair.scenario, pair.name()}] = &pair;
+}
+
+const ArmReport* SweptReport::arm(const GridPoint& point, const std::string& name) const {
+    return found_in(arms_, {scenario(point), name});
+}
+
+const Comparison* SweptReport::pair(const GridPoint& point, const std::string& name) const {
+    return found_in(pairs_, {scenario(point), name});
+}
+
+std::vector<std::string> SweptReport::arm_names(const Grid& grid) const {
+    return names_of(names_of_points(grid), report_.arms, [](const ArmReport& arm) { return arm.arm; });
+}
+
+std::vector<std::string> SweptReport::pair_names(const Grid& grid) const {
+    return names_of(names_of_points(grid), report_.pairs, [](const Comparison& pair) { return pair.name(); });
+}
+
+std::set<std::string> SweptReport::names_of_points(const Grid& grid) const {
+    std::set<std::string> names;
+    for (const GridPoint& point : grid.points) names.insert(scenario(point));
+    return names;
+}
+
+std::vector<SweptFigure> swept_figures(const ArmReport& arm) {
+    std::vector<SweptFigure> figures;
+    for (const char* name : {"nees_ratio", "nis_ratio", "trace_P"})
+        for (const FigureReport& figure : arm.figures)
+            if (figure.name == name) figures.push_back({figure.name, figure.unit, figure.summary});
+    return figures;
+}
+
+std::vector<SweptFigure> swept_figures(const Comparison& pair) {
+    std::vector<SweptFigure> figures;
+    for (const char* name : {"trace_P", "unseen", "pose_error"})
+        for (const ComparedFigure& figure : pair.figures)
+            if (figure.name == name) figures.push_back({figure.name, figure.unit, figure.paired.difference});
+    return figures;
+}
+
+SweepColumns::SweepColumns(const Report& report) {
+    for (const Declaration& scenario : report.scenarios) {
+        if (SweptReport::swept(scenario)) places_[scenario.name] = scenario.sweep;
+        for (const SweepCoordinate& one : scenario.sweep.at)
+            if (std::find(keys_.begin(), keys_.end(), one.key) == keys_.end()) keys_.push_back(one.key);
+    }
+}
+
+std::string SweepColumns::heads() const { return keys_.empty() ? "" : ",sweep_of," + joined(keys_, ","); }
+
+std::string SweepColumns::cells(const std::string& scenario) const {
+    const auto found = places_.find(scenario);
+    const SweepPoint place = found == places_.end() ? SweepPoint{} : found->second;
+    std::string text = keys_.empty() ? "" : "," + place.of;
+    for (const std::string& key : keys_) {
+        text += ",";
+        for (const SweepCoordinate& one : place.at)  // no value holds quotation marks
+            if (one.key == key) text += one.value.find(',') == std::string::npos ? one.value : "\"" + one.value + "\"";
+    }
+    return text;
+}
+
+}  // namespace credence

@@ -1,0 +1,95 @@
+#pragma once
+// Following a run: what is committed so far, with intervals, read from FILE.h5.journal while the run goes on
+// and from FILE.h5 when it is done [docs/durability.md, Following a run].
+
+#include <credence/columns.hpp>
+#include <credence/statistics.hpp>
+#include <credence/study.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// The columns whose means a look gives: all figures of a trial but mean_trace_P. The first, trace_P in every world, is
+/// the one that pairs are compared by.
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
+
+/// One arm, over its trials so far; failed ones are in no figure.
+struct WatchedArm {
+    std::string name;
+    std::int64_t failed = 0, diverged = 0;  ///< trials
+    std::vector<Moments> figures;           ///< of the watched columns
+    std::string other;                      ///< the arm's partner, such as `fixed.X` beside `greedy.X`; empty: none
+    Moments difference;                     ///< of trace_P of this arm - that of `other`, by trial, where there is one
+};
+
+struct WatchedScenario {
+    std::string name;
+    std::vector<Column> columns;                     ///< of the watched columns
+    std::int64_t trials = 0, trials_asked = 0;       ///< committed, and all that the run will have in the end
+    std::int64_t blocks = 0, blocks_asked = 0;       ///< of 256 trials, likewise
+    std::vector<WatchedArm> arms;
+};
+
+enum class RunState {
+    begun,       ///< nothing of its journal can be read yet
+    running,     ///< there is a journal; whether somebody writes it shows in seconds_since_commit
+    complete,    ///< the results file has every trial that was asked for
+    incomplete,  ///< the results file is that of a shard, or of a run that was stopped
+};
+
+/// A look at a run.
+struct WatchLook {
+    std::string path;                        ///< of the results file
+    RunState state = RunState::begun;
+    std::int64_t trials = 0;                 ///< of each scenario that the study was asked for
+    Shard shard;                             ///< of them; of a finished part, if its blocks are those of a shard
+    std::vector<WatchedScenario> scenarios;
+    double seconds_since_commit = 0;         ///< while there is a journal
+    std::optional<double> trials_per_second; ///< over the looks of the last minute; none at the first
+
+    bool ended() const { return state == RunState::complete || state == RunState::incomplete; }
+    /// Over all scenarios.
+    std::int64_t trials_done() const;
+    std::int64_t trials_asked() const;
+    /// Seconds; none where the rate is not known or 0.
+    std::optional<double> time_left() const;
+};
+
+class JournalFollower;
+
+/// Follows the run that writes the results file `path`. It writes nothing and locks nothing: the run does not notice. A
+/// look reads what was appended to the journal since the last one; memory does not grow with the trials.
+class RunWatch {
+public:
+    explicit RunWatch(std::string path);
+    RunWatch(RunWatch&&) noexcept;
+    ~RunWatch();
+
+    /// Throws InputError where there is neither a journal nor a results file, or what is there is damaged.
+    WatchLook look();
+
+private:
+    std::string path_;
+    std::unique_ptr<JournalFollower> follower_;  ///< of the journal, while there is one
+    /// When a look was taken, and the trials that it found.
+    struct Moment {
+        double seconds = 0;
+        std::int64_t trials = 0;
+    };
+    std::vector<Moment> moments_;
+
+    std::optional<WatchLook> look_at_journal();
+    WatchLook look_at_results() const;
+    void time(WatchLook& look);
+};
+
+/// For people: a table, its lines some 120 characters wide.
+std::string watch_text(const WatchLook& look);
+/// An array with an object per scenario and arm; NaN is null.
+std::string watch_json(const WatchLook& look);
+
+}  // namespace credence

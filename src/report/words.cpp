@@ -1,0 +1,239 @@
+// Words that every rendering of a report shares.
+
+#include "report/words.hpp"
+
+#include "report/html/html.hpp"
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace credence {
+
+namespace {
+
+/// How far a finding is from what a consistent filter gives.
+double distance_off(const Finding& finding) {
+    return finding.what == "biased" ? std::abs(finding.value) : std::abs(std::log(finding.value));
+}
+
+/// The findings of one kind: each block or component at its worst, the farthest off first.
+std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what) {
+    constexpr std::size_t most = 3;
+    std::vector<Finding> worst;
+    for (const Finding& finding : findings) {
+        if (finding.what != what) continue;
+        const auto same =
+            std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
+        if (same == worst.end())
+            worst.push_back(finding);
+        else if (distance_off(finding) > distance_off(*same))
+            *same = finding;
+    }
+    std::sort(worst.begin(), worst.end(),
+              [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
+        parts.push_back(worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+    if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
+    return parts;
+}
+
+/// How many trials failed, where that is the verdict.
+std::string failed_text(const ArmReport& arm) {
+    if (arm.consistency.verdict != Verdict::failed) return {};
+    return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) + " trials failed" +
+           (arm.diverged > 0 ? " (" + std::to_string(arm.diverged) + " of them diverged)" : "") + ", more than " +
+           short_number(100 * arm.consistency.limits.failed) + " %";
+}
+
+/// Why an arm that is undecided is so, and whether there is anything to judge.
+std::string undecided_text(const ArmReport& arm) {
+    const Consistency& verdict = arm.consistency;
+    if (arm.evidence.trials == 0) return "no trial is left that could be judged";
+    if (verdict.verdict == Verdict::undecided && verdict.trials_to_decide > 0)
+        return "about " + number(verdict.trials_to_decide, 0) + " trials would decide";
+    if (verdict.verdict == Verdict::undecided && !verdict.findings.empty() && arm.evidence.trials > 1)
+        return "every block is within the margin: only this keeps it from being consistent";
+    if (verdict.verdict == Verdict::undecided && arm.evidence.trials == 1)
+        return arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
+                                        : "the innovations of one trial do not decide: give more trials or steps";
+    return {};
+}
+
+/// The trials of a record that are in no figure, the first of them by name.
+void add_troubles(const Report& report, std::vector<std::string>& lines) {
+    constexpr std::size_t most = 5;
+    const std::size_t shown = std::min(most, report.troubles.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const RecordTrouble& trouble = report.troubles[i];
+        const std::string trial = std::to_string(trouble.trial);
+        lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
+                        std::to_string(trouble.step) + "] in the file): " + trouble.what +
+                        (failed(trouble.status) ? "; the trial is in no figure." : "; the trial is in the figures."));
+    }
+    const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed_trials();
+    if (shown > 0 && failed > static_cast<std::int64_t>(shown))
+        lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
+}
+
+}  // namespace
+
+std::string verdict_word(const ArmReport& arm) {
+    return arm.not_run() ? "not run yet" : verdict_name(arm.consistency.verdict);
+}
+
+std::string verdict_clause(const ArmReport& arm) {
+    const bool plain = !arm.not_run() && arm.consistency.verdict == Verdict::failed;
+    return (plain ? "" : "is ") + verdict_word(arm);
+}
+
+std::string reason_text(const Reason& reason) {
+    return reason.parts.empty() ? reason.head : reason.head + " " + joined(reason.parts);
+}
+
+std::string no_claim_text(const ArmReport& arm) {
+    if (arm.not_run()) return "not run yet: no trial of it is in the file";
+    const std::string text = failed_text(arm);
+    return text.empty() ? undecided_text(arm) : text;
+}
+
+bool has_run(const Report& report, const std::string& scenario) {
+    return std::any_of(report.arms.begin(), report.arms.end(),
+                       [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
+}
+
+std::string trials_text(const Report& report) {
+    std::int64_t least = 0, most = 0;
+    std::size_t run = 0;
+    for (const ArmReport& arm : report.arms) {
+        if (arm.not_run()) continue;
+        least = run == 0 ? arm.trials : std::min(least, arm.trials);
+        most = std::max(most, arm.trials);
+        ++run;
+    }
+    const std::string text = (least == most ? "" : std::to_string(least) + " to ") + std::to_string(most) +
+                             (most == 1 ? " trial" : " trials");
+    if (!report.root_seed) return text;
+    return text + " of each arm" + (run == 0 || run == report.arms.size() ? "" : " run so far") + ", root seed " +
+           std::to_string(*report.root_seed);
+}
+
+std::vector<Reason> reasons_of(const ArmReport& arm) {
+    if (arm.not_run()) return {};
+    const Consistency& verdict = arm.consistency;
+    std::vector<Reason> reasons;
+    if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}});
+    const auto list = [&](const std::string& what, const std::string& measure) {
+        if (auto parts = findings_parts(verdict.findings, what); !parts.empty())
+            reasons.push_back({what + " (" + measure + "):", std::move(parts)});
+    };
+    list("optimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list("biased", "mean error/sigma");
+    list("correlated", "whitened innovations");
+    if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
+                    [](const Whiteness& lag) { return !lag.known(); }))
+        reasons.push_back({"note, innovations: their correlation could not be computed", {}});
+    for (const Finding& caution : verdict.cautions) reasons.push_back({"note, " + sentence(caution), {}});
+    if (const std::string text = undecided_text(arm); !text.empty()) reasons.push_back({text, {}});
+    return reasons;
+}
+
+std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
+                                       const FailureWords& words) {
+    std::vector<std::string> lines;
+    const std::int64_t failed = counts.left_out + counts.diverged;
+    const std::string of = " trials of " + arm;
+    if (too_many_failed(failed, counts.trials, limit))
+        lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of + " failed" +
+                        (counts.diverged == 0   ? " and " + words.left_out
+                         : counts.left_out == 0 ? ""
+                                                : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) + ".");
+    if (counts.diverged > 0)
+        lines.push_back("note: " + std::to_string(counts.diverged) + of + " diverged; they " + words.diverged + ".");
+    return lines;
+}
+
+std::vector<std::string> warnings_of(const Report& report) {
+    std::vector<std::string> lines;
+    for (const ArmReport& arm : report.arms) {
+        const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
+        std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
+                             {"are left out of its figures", "are in the figures"}), std::back_inserter(lines));
+    }
+    add_troubles(report, lines);
+    if (!report.complete) {
+        const auto not_run = std::count_if(report.arms.begin(), report.arms.end(),
+                                           [](const ArmReport& arm) { return arm.not_run(); });
+        lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
+                        " trials of each arm" +
+                        (not_run == 0 ? "." : ", and " + std::to_string(not_run) + " of " +
+                                                  std::to_string(report.arms.size()) + " arms are not run yet."));
+    }
+    if (report.keep == Keep::aggregates) lines.push_back(std::string("note: ") + no_trials_note);
+    return lines;
+}
+
+const FigureReport& figure_named(const std::vector<FigureReport>& figures, const std::string& name) {
+    for (const FigureReport& figure : figures)
+        if (figure.name == name) return figure;
+    return figures.front();
+}
+
+std::string figure_title(const std::string& figure, const std::string& unit) {
+    const std::string name = figure == "trace_P"        ? "trace(P), last step"
+                             : figure == "mean_trace_P" ? "trace(P), mean over the steps"
+                             : figure == "pose_error"   ? "pose error, sum over the poses"
+                                                        : figure;
+    return unit == "1" ? name : name + " [" + unit + "]";
+}
+
+std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence) {
+    constexpr std::size_t most = 10;
+    std::vector<const BlockEvidence*> blocks;
+    for (const BlockEvidence& block : evidence.blocks) blocks.push_back(&block);
+    if (blocks.size() <= most) return blocks;
+    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const BlockEvidence* a, const BlockEvidence* b) {
+        return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
+    });
+    blocks.resize(most);
+    return blocks;
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0, known = 0;
+    for (const double value : values)
+        if (!std::isnan(value)) {
+            sum += value;
+            ++known;
+        }
+    return sum / known;
+}
+
+WorstShape worst_shape(const ShapeEvidence& shape) {
+    std::size_t worst = 0;
+    WorstShape found;
+    for (std::size_t k = 0; k < shape.distance.size(); ++k) {
+        found.known += !std::isnan(shape.distance[k]);
+        if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;
+    }
+    if (found.known == 0) return found;
+    found.step = static_cast<int>(worst) + 1;
+    found.distance = shape.distance[worst];
+    found.p = std::min(1.0, shape.p[worst] * found.known);
+    return found;
+}
+
+int lags_outside(const std::vector<Whiteness>& whiteness) {
+    return static_cast<int>(std::count_if(whiteness.begin(), whiteness.end(), [](const Whiteness& lag) {
+        return std::abs(lag.scaled) > lag.simultaneous_bound;
+    }));
+}
+
+std::string of_steps(int outside, int steps) { return std::to_string(outside) + " of " + std::to_string(steps); }
+
+}  // namespace credence

@@ -1,0 +1,137 @@
+#pragma once
+// The belief, and what can be asked of it.
+
+#include <credence/detail/each.hpp>
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+/// A symmetric matrix of which only the upper triangle is kept: entry[i][j] with i <= j.
+template <class Real, int capacity>
+struct Symmetric {
+    Real entry[capacity][capacity];
+
+    Real& at(int i, int j) { return i <= j ? entry[i][j] : entry[j][i]; }
+    const Real& at(int i, int j) const { return i <= j ? entry[i][j] : entry[j][i]; }
+};
+
+/// What the filter holds: mean x [n] and covariance P [n, n], n <= capacity.
+template <class Real, int capacity>
+struct Belief {
+    Real mean[capacity];
+    Symmetric<Real, capacity> covariance;
+};
+
+template <class Real, int capacity, class Size>
+void copy(const Symmetric<Real, capacity>& from, Size n, Symmetric<Real, capacity>& to) {
+    each(zero, n, [&](auto i) { each(i, n, [&](auto j) { to.entry[i][j] = from.entry[i][j]; }); });
+}
+
+template <class Real, int capacity, class Size>
+Real trace(const Symmetric<Real, capacity>& P, Size n) {
+    Real sum = P.entry[0][0];
+    each(one, n, [&](auto i) { sum = sum + P.entry[i][i]; });
+    return sum;
+}
+
+/// A normalised squared error, and whether its matrix was positive definite: where not, the number means nothing.
+template <class Real>
+struct SquaredError {
+    Real value{};
+    Mask<Real> positive_definite{};
+};
+
+/// The inverse of a symmetric 2 x 2 matrix, zero where it is not `used`, and whether it is positive definite.
+template <class Real>
+struct Inverse2 {
+    Real xx{}, xy{}, yy{};
+    Mask<Real> positive_definite{};
+};
+
+template <class Real>
+Inverse2<Real> inverse(Real xx, Real xy, Real yy, Mask<Real> used) {
+    const Real determinant = fnma(xy, xy, xx * yy);
+    const Real weight = select(used, Real(1) / determinant, Real(0));
+    return {yy * weight, -(xy * weight), xx * weight,
+            either(both(xx > Real(0), determinant > Real(0)), negated(used))};
+}
+
+/// S^-1 b
+template <class Real>
+Vector2<Real> times(const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
+    return {fma(S_inverse.xy, b.y, S_inverse.xx * b.x), fma(S_inverse.yy, b.y, S_inverse.xy * b.x)};
+}
+
+/// a' S^-1 b
+template <class Real>
+Real between(const Vector2<Real>& a, const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
+    const Vector2<Real> weighted = times(S_inverse, b);
+    return fma(weighted.y, a.y, weighted.x * a.x);
+}
+
+/// A matrix and a vector that are being eliminated, from the last row up.
+template <class Real, int capacity>
+struct Elimination {
+    Symmetric<Real, capacity> A;
+    Real e[capacity];
+};
+
+/// use(room); where the loops are written out, use(another room), of which the compiler keeps in registers what it can.
+template <class Layout, class Room, class Use>
+CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
+    if constexpr (Layout::written_out) {
+        Room own;
+        return use(own);
+    } else {
+        return use(room);
+    }
+}
+
+/// e' A^-1 e over the rows [i, i + 2), which are then eliminated from the rows [first, i): what is left of A and e goes
+/// into `left`, which may be where they are.
+template <class Real, int capacity, class First, class Index>
+CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
+                                                  First first, Index i, Elimination<Real, capacity>& left) {
+    const auto& A = matrix.entry;
+    const Inverse2<Real> pivot = inverse(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
+    const Vector2<Real> e{vector[i], vector[i + one]};
+    each(first, i, [&](auto k) {
+        const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
+        left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
+        each(first, k + one, [&](auto m) {
+            left.A.entry[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+        });
+    });
+    return {between(e, pivot, e), pivot.positive_definite};
+}
+
+template <class Real, int capacity, class First, class Index>
+CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& left, First first, Index i) {
+    return eliminate_pair(left.A, left.e, first, i, left);
+}
+
+/// e' P^-1 e over the blocks [i, last) of the state, for i = last - 2, last - 4 ... down to first, each with that
+/// block's P [Bar-Shalom 2001, 5.4.2]: told(i, value and definiteness so far). P is eliminated two rows at a time from
+/// its end, so that one elimination serves every block that ends at `last`. An odd row is left over as the first.
+template <class Real, int capacity, class First, class Last, class Told>
+CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
+                                           Last last, Elimination<Real, capacity>& left, Told&& told) {
+    SquaredError<Real> sum{Real(0), all_lanes<Real>()};
+    const auto add = [&](auto i, const SquaredError<Real>& part) {
+        sum = {sum.value + part.value, both(sum.positive_definite, part.positive_definite)};
+        told(i, sum);
+    };
+    each(zero, half(last - first), [&](auto pair) {
+        const auto i = last - two * (pair + one);
+        add(i, pair == 0 ? eliminate_pair(P, error, first, i, left) : eliminate_pair(left, first, i));
+    });
+    if ((last - first) % 2 != 0) {
+        const bool alone = last - first == 1;
+        const Real pivot = alone ? P.entry[first][first] : left.A.entry[first][first];
+        const Real e = alone ? error[first] : left.e[first];
+        add(first, {e * e / pivot, pivot > Real(0)});
+    }
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,56 @@
+#pragma once
+// Where the state's parts lie. x = [theta, r_x, r_y, f_1x, f_1y, ...] (heading model) or the same without theta
+// (translation model) [model.md, Two process models].
+
+#include <credence/detail/each.hpp>
+#include <credence/scenario.hpp>
+
+namespace credence {
+
+inline constexpr int any_count = 0;
+
+/// Layout of a state with a number of features known to the compiler, or any number up to 64 (`any_count`). Sizes and
+/// indices are `Known` where they can be.
+template <Process process, int compiled_features>
+struct Layout {
+    static constexpr bool has_heading = process == Process::heading;
+    static constexpr bool written_out = compiled_features != any_count;  ///< loops over features are
+    static constexpr Known<0> heading{};
+    static constexpr Known<has_heading ? 1 : 0> position{};
+    static constexpr Known<position + 2> pose_size{};
+    static constexpr int feature_capacity = compiled_features == any_count ? largest_feature_count : compiled_features;
+    static constexpr int capacity = pose_size + 2 * feature_capacity;
+
+    /// Index of feature j's first component.
+    template <int j>
+    static constexpr Known<pose_size + 2 * j> feature(Known<j>) { return {}; }
+    static constexpr int feature(int j) { return pose_size + 2 * j; }
+
+    constexpr explicit Layout(int features) : features_(features) {}
+    /// M
+    constexpr auto features() const {
+        if constexpr (compiled_features == any_count)
+            return features_;
+        else
+            return Known<compiled_features>{};
+    }
+    /// n
+    constexpr auto size() const { return feature(features()); }
+
+    /// Blocks of the state that are judged by themselves, numbered in the order of state_blocks (record.hpp).
+    static constexpr Known<0> block_all{};
+    static constexpr Known<1> block_pose{};
+    static constexpr Known<2> block_heading{};   ///< heading model only
+    static constexpr Known<3> block_position{};  ///< heading model only
+    static constexpr Known<has_heading ? 4 : 2> block_features{};
+    template <int j>
+    static constexpr Known<block_features + 1 + j> block_feature(Known<j>) { return {}; }
+    static constexpr int block_feature(int j) { return block_features + 1 + j; }
+    static constexpr int largest_block_count = block_features + 1 + feature_capacity;
+    constexpr auto block_count() const { return block_feature(features()); }
+
+private:
+    int features_;
+};
+
+}  // namespace credence

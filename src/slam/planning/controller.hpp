@@ -1,0 +1,115 @@
+#pragma once
+// Who steers. The fixed path is a table; the greedy planner takes, of its candidates, the one whose next
+// trace(P) is least [model.md, Controllers]; horizon.hpp looks further ahead.
+
+#include "slam/update.hpp"
+
+#include <limits>
+
+namespace credence {
+
+struct ControlParameters {
+    const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
+    const Control* candidates = nullptr;  ///< in the order in which ties are decided
+    int candidate_count = 0;
+    double squared_reach = 0;             ///< of the candidate that moves farthest
+    int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
+};
+
+inline namespace CREDENCE_UNIT {
+
+template <class Real>
+Command<Real> command_from(const Control& control) {
+    return {Real(control.turn), broadcast<Real>(control.move)};
+}
+
+/// Everything of the next step that no candidate changes: features predicted to pose k, and all edges taken in. (F and
+/// the fresh odometry noise touch the robot's rows only, so edges condition equally well before the robot moves.)
+template <class Layout, class Real, int capacity>
+CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, const FilterParameters& filter,
+                                      const Layout& layout, int k, Belief<Real, capacity>& base) {
+    const auto n = layout.size();
+    each(zero, n, [&](auto i) { base.mean[i] = belief.mean[i]; });
+    copy(belief.covariance, n, base.covariance);
+    predict_features(base, filter, layout, k);
+    each(zero, layout.features() - one, [&](auto c) {
+        if (filter.contrasts[c].scale != 0)
+            condition(base.covariance, layout, contrast_rows<Real>(filter, layout, c),
+                      Real(filter.contrasts[c].scale * filter.variance_edge), all_lanes<Real>());
+    });
+}
+
+/// trace(P) after one step under a candidate: predict, gate and take sigma at the predicted mean, update P. The plain
+/// form, and the oracle of planner.hpp's. `next` is room to work in.
+template <class Layout, class Real, int capacity>
+CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command,
+                                  const FilterParameters& filter, const SensorParameters& sensor,
+                                  const Layout& layout, Belief<Real, capacity>& next) {
+    const auto n = layout.size();
+    each(zero, n, [&](auto i) { next.mean[i] = base.mean[i]; });
+    copy(base.covariance, n, next.covariance);
+    predict_robot(next, filter, layout, command);
+    each(zero, layout.features(), [&](auto j) {
+        const Real squared = squared_norm(predicted_difference<Layout>(next.mean, j));
+        const Mask<Real> seen = in_range(sensor, squared);
+        if (any(seen))
+            condition(next.covariance, layout, sighting_rows<Layout>(next.mean, j),
+                      believed_variance(filter, sigma_at(sensor, squared)), seen);
+    });
+    return trace(next.covariance, n);
+}
+
+/// The smaller one; b where a is no number.
+template <class Real>
+Real smaller(Real a, Real b) { return select(a < b, a, b); }
+
+/// More than any cost.
+template <class Real>
+Real without_limit() { return Real(std::numeric_limits<double>::infinity()); }
+
+/// Keeps the running minimum and the choice: a candidate replaces it when its cost <= best (1 + 1e-12), so that the
+/// later of equals wins.
+template <class Real>
+struct Choice {
+    Command<Real> command;
+    Real best = without_limit<Real>();
+
+    void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
+
+    /// Offers in some lanes only.
+    void offer(const Command<Real>& candidate, Real cost, Mask<Real> offered) {
+        const Mask<Real> taken = both(offered, cost <= best * Real(1 + 1e-12));
+        command.turn = select(taken, candidate.turn, command.turn);
+        command.move.x = select(taken, candidate.move.x, command.move.x);
+        command.move.y = select(taken, candidate.move.y, command.move.y);
+        best = select(both(offered, cost < best), cost, best);
+    }
+};
+
+/// The first choice in some lanes, the second in the others.
+template <class Real>
+Choice<Real> chosen(Mask<Real> first, const Choice<Real>& a, const Choice<Real>& b) {
+    return {{select(first, a.command.turn, b.command.turn),
+             {select(first, a.command.move.x, b.command.move.x), select(first, a.command.move.y, b.command.move.y)}},
+            select(first, a.best, b.best)};
+}
+
+/// Greedy control from pose k - 1 to k by the plain form, given the belief at pose k - 1. `costs(i, cost)` receives every
+/// candidate's cost. `base` and `next` are room to work in.
+template <class Layout, class Real, int capacity, class Costs>
+Choice<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                           const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                           int k, Belief<Real, capacity>& base, Belief<Real, capacity>& next, Costs&& costs) {
+    prepare_candidates(belief, filter, layout, k, base);
+    Choice<Real> choice;
+    for (int i = 0; i < control.candidate_count; ++i) {
+        const Command<Real> candidate = command_from<Real>(control.candidates[i]);
+        const Real cost = candidate_cost(base, candidate, filter, sensor, layout, next);
+        costs(i, cost);
+        choice.offer(candidate, cost);
+    }
+    return choice;
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

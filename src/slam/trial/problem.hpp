@@ -1,0 +1,78 @@
+#pragma once
+// A scenario made ready: the tables that its equations read, computed once.
+
+#include "slam/planning/horizon.hpp"
+#include <credence/slam_record.hpp>
+
+namespace credence {
+
+/// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
+Point polar(double s, double angle);
+
+/// The range in which a feature is seen, both ends included.
+void set_range(SensorParameters& sensor, double range_min, double range_max);
+
+/// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
+std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks);
+
+/// What a trial of any world of ours reads: plain numbers and pointers into its problem.
+struct CommonView {
+    int poses = 0, features = 0, state_size = 0;
+    SensorParameters sensor;
+    FilterParameters filter;
+    int block_count = 0;
+    int figure_count = 0;
+    Charts charts = Charts::euclidean;
+    const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+};
+
+/// What a trial in the deforming world reads beside that.
+struct ProblemView : CommonView {
+    Process process = Process::heading;
+    WorldParameters world;
+    ControlParameters control;
+
+    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    int steps_ahead(Controller controller, int k) const {
+        if (controller != Controller::horizon) return 1;
+        return control.horizon < poses - k ? control.horizon : poses - k;
+    }
+};
+
+/// Owns the tables of one resolved, validated scenario. World geometry uses the project's own sincos, so that the
+/// truth is the same bits everywhere.
+class Problem {
+public:
+    explicit Problem(const Scenario& resolved_scenario);
+    Problem(const Problem&) = delete;
+    Problem& operator=(const Problem&) = delete;
+
+    const Scenario& scenario() const { return scenario_; }
+    const ProblemView& view() const { return view_; }
+
+private:
+    void factor_edges();
+    void fill_world();
+    void fill_filter();
+    void fill_control();
+
+    Scenario scenario_;
+    std::vector<Point> translation_, sway_, sway_increment_;
+    std::vector<Edge> edges_;
+    std::vector<Control> fixed_, candidates_;
+    std::vector<double> contrast_coefficients_;
+    std::vector<Contrast> contrasts_;
+    std::vector<double> coverage_bounds_;
+    ProblemView view_;
+};
+
+/// Translation t_k of the features, k = 0 ... K - 2 [model.md, Truth].
+std::vector<Point> feature_translations(const Scenario& scenario);
+/// Known local deformation o_{k,j}, [K, M] row-major [model.md, Truth].
+std::vector<Point> sway_offsets(const Scenario& scenario);
+/// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
+std::vector<Control> fixed_controls(const Scenario& scenario);
+/// The planners' candidates in the order that decides ties [model.md, Controllers].
+std::vector<Control> planner_candidates(const Scenario& scenario);
+
+}  // namespace credence

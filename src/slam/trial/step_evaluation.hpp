@@ -1,0 +1,221 @@
+#pragma once
+// A belief compared with the truth, pose by pose: what a trial reports [model.md, Reported per trial].
+//
+//   e  error x^ - x [n], P  covariance [n, n]; NEES e' P^-1 e of the whole state and of each block, with its own P
+
+#include "slam/estimators/invariant_chart.hpp"
+#include "slam/trial/problem.hpp"
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+/// A trial's status and the pose where it happened. Failures are final; a diverged trial may still fail.
+template <class Real>
+struct Outcome {
+    Real status = Real(0), pose = Real(-1);
+
+    void note(Mask<Real> happened, Status what, int k) {
+        const Real code = Real(static_cast<int>(what));
+        const Mask<Real> worse = both(happened, both(status < Real(2), status < code));
+        status = select(worse, code, status);
+        pose = select(worse, Real(k), pose);
+    }
+};
+
+/// Sums over the poses of one trial.
+template <class Real>
+struct Sums {
+    Real unseen = Real(0), pose_error = Real(0), nees = Real(0), nis = Real(0), rows = Real(0), trace = Real(0);
+    Real traces = Real(0);  ///< over the steps
+};
+
+/// x^ - x, heading wrapped. Shape [n].
+template <class Layout, class Real, int state_capacity, int feature_capacity>
+void estimation_error(const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
+                      const Layout& layout, Real* error) {
+    if constexpr (Layout::has_heading)
+        error[Layout::heading] = wrapped(belief.mean[Layout::heading] - truth.heading);
+    error[Layout::position] = belief.mean[Layout::position] - truth.position.x;
+    error[Layout::position + 1] = belief.mean[Layout::position + 1] - truth.position.y;
+    for (int j = 0; j < layout.features(); ++j) {
+        error[Layout::feature(j)] = belief.mean[Layout::feature(j)] - truth.feature[j].x;
+        error[Layout::feature(j) + 1] = belief.mean[Layout::feature(j) + 1] - truth.feature[j].y;
+    }
+}
+
+/// |x^_pose - x_pose|^2, heading included where there is one.
+template <class Layout, class Real>
+Real squared_pose_error(const Real* error) {
+    Real sum = error[0] * error[0];
+    for (int i = 1; i < Layout::pose_size; ++i) sum = fma(error[i], error[i], sum);
+    return sum;
+}
+
+/// Sorts out what went wrong at pose k, if anything did. `squared_errors` says nothing where a matrix was not positive
+/// definite.
+template <class Real, int capacity>
+void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_errors, Mask<Real> positive_definite,
+                  int k, Outcome<Real>& outcome) {
+    Real largest = Real(0), zero_if_finite = select(positive_definite, squared_errors, Real(0)) * Real(0);
+    for (int i = 0; i < n; ++i) {
+        const Real x = absolute(belief.mean[i]);
+        largest = select(x > largest, x, largest);
+        zero_if_finite = fma(x, Real(0), zero_if_finite);
+        for (int j = i; j < n; ++j) {
+            const Real p = absolute(belief.covariance.entry[i][j]);
+            largest = select(p > largest, p, largest);
+            zero_if_finite = fma(p, Real(0), zero_if_finite);
+        }
+    }
+    outcome.note(negated(zero_if_finite == Real(0)), Status::non_finite, k);
+    outcome.note(negated(positive_definite), Status::covariance_not_positive_definite, k);
+    outcome.note(largest > Real(divergence_bound), Status::diverged, k);
+}
+
+/// Whether note_trouble could find anything. The diagonal speaks for a positive definite P: |P_ij| <= max P_ii, and an
+/// entry that is not finite spoils a pivot.
+template <class Layout, class Real, int capacity>
+bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real squared_errors,
+             Mask<Real> positive_definite) {
+    Real total = absolute(squared_errors);  // no less than any of its parts, and not finite if one of them is not
+    each(zero, layout.size(), [&](auto i) {
+        total = total + (absolute(belief.mean[i]) + absolute(belief.covariance.entry[i][i]));
+    });
+    return any(negated(both(positive_definite, total <= Real(divergence_bound))));
+}
+
+/// A belief's errors, judged: NEES of every block, in the order of Layout's, with each block's own P; e_i/sqrt(P_ii).
+template <class Layout, class Real>
+struct Judgement {
+    Real nees[Layout::largest_block_count], standardised_error[Layout::capacity];
+    Mask<Real> positive_definite{};
+};
+
+template <class Layout, class Real, int capacity>
+CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const Layout& layout, const Real* error,
+                                  Elimination<Real, capacity>& work, Judgement<Layout, Real>& judgement) {
+    const auto n = layout.size();
+    const auto& P = belief.covariance;
+    Real* nees = judgement.nees;
+    judgement.positive_definite = all_lanes<Real>();
+    const auto judge = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
+        nested_squared_errors(P, error, first, last, work, [&](auto i, const SquaredError<Real>& result) {
+            keep(i, result.value);
+            if (i == first)
+                judgement.positive_definite = both(judgement.positive_definite, result.positive_definite);
+        });
+    };
+    const auto standardise = [&](auto i) { judgement.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
+    judge(zero, n, [&](auto i, Real value) {
+        if (i == 0) nees[Layout::block_all] = value;
+        if (i == Layout::pose_size) nees[Layout::block_features] = value;
+        if (i == n - two) nees[Layout::block_feature(layout.features() - one)] = value;
+        // Done here, the roots fill the time in which the elimination waits for its pivots.
+        standardise(i);
+        if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
+    });
+    judge(zero, Layout::pose_size, [&](auto i, Real value) {
+        if (i == 0) nees[Layout::block_pose] = value;
+        if constexpr (Layout::has_heading)
+            if (i == Layout::position) nees[Layout::block_position] = value;
+    });
+    if constexpr (Layout::has_heading)
+        nees[Layout::block_heading] = judgement.standardised_error[0] * judgement.standardised_error[0];
+    each(zero, layout.features() - one, [&](auto j) {
+        const auto f = Layout::feature(j);
+        judge(f, f + two, [&](auto i, Real value) {
+            if (i == f) nees[Layout::block_feature(j)] = value;
+        });
+    });
+}
+
+/// square(i) of a state's components, added up by block: told(sum) in the order of Layout's blocks.
+template <class Real, class Layout, class Square, class Told>
+CREDENCE_INLINE void add_by_block(const Layout& layout, const Square& square, Told&& told) {
+    constexpr auto r = Layout::position;
+    const auto of_feature = [&](auto j) {
+        const auto f = Layout::feature(j);
+        return square(f) + square(f + one);
+    };
+    const Real position = square(r) + square(r + one);
+    Real pose = position;
+    if constexpr (Layout::has_heading) pose = square(Layout::heading) + position;
+    Real features = Real(0);
+    each(zero, layout.features(), [&](auto j) { features = features + of_feature(j); });
+    told(pose + features);
+    told(pose);
+    if constexpr (Layout::has_heading) {
+        told(square(Layout::heading));
+        told(position);
+    }
+    told(features);
+    each(zero, layout.features(), [&](auto j) { told(of_feature(j)); });
+}
+
+/// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
+template <class Layout, class Real, int state_capacity, int feature_capacity>
+CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
+                              const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
+                              const Update<Real, state_capacity>& update, int k,
+                              Elimination<Real, state_capacity>& work, Sums<Real>& sums, Outcome<Real>& outcome,
+                              Real* figures) {
+    const int steps = problem.poses - 1;
+    const auto n = layout.size();
+    Real* next = figures + (k - 1);
+    const auto write = [&](Real value) { *next = value, next += steps; };
+
+    Real error[state_capacity];
+    Judgement<Layout, Real> judgement;
+    estimation_error(belief, truth, layout, error);
+    near_at_hand(layout, work, [&](auto& left) CREDENCE_INLINE_LAMBDA {
+        judge_blocks(belief, layout, error, left, judgement);
+    });
+    // What is reported is P times a factor, 1 but for tests of the judge.
+    const double reported = problem.filter.covariance_factor;
+    const Mask<Real> positive_definite = both(update.positive_definite, judgement.positive_definite);
+    const Real whole = judgement.nees[Layout::block_all] * Real(1 / reported);
+    const Real trace_P = Real(reported) * trace(belief.covariance, n);
+    const Real squared_error = squared_pose_error<Layout>(error);
+    each(zero, layout.block_count(), [&](auto b) { write(judgement.nees[b] * Real(1 / reported)); });
+    write(update.nis);
+    write(update.rows);
+    write(update.nis_features);
+    write(update.nis_edges);
+    write(update.unseen);
+    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]; }, write);
+    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]; }, write);
+    const Real inverse_root = Real(1 / __builtin_sqrt(reported));
+    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
+    if constexpr (Layout::has_heading)
+        if (problem.charts == Charts::euclidean_and_invariant) {
+            const InvariantNees<Real> nees = nees_in_invariant_chart(belief, layout, error, work);
+            write(nees.all * Real(1 / reported));
+            write(nees.pose * Real(1 / reported));
+        }
+
+    sums.nees = sums.nees + whole;
+    sums.nis = sums.nis + update.nis;
+    sums.rows = sums.rows + update.rows;
+    sums.unseen = sums.unseen + update.unseen;
+    sums.pose_error = sums.pose_error + squared_error;
+    sums.trace = trace_P;
+    sums.traces = sums.traces + trace_P;
+    if (trouble(belief, layout, whole + update.nis, positive_definite))
+        note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
+}
+
+/// The trial's columns in the order of ColumnIndex; those of a failed trial are filled by the engine.
+template <class Real>
+void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int n, int steps, Real* columns) {
+    columns[column_trace_P] = sums.trace;
+    columns[column_unseen] = sums.unseen;
+    columns[column_pose_error] = sums.pose_error;
+    columns[column_nees_ratio] = sums.nees / Real(steps * n);
+    columns[column_nis_ratio] = sums.nis / sums.rows;
+    columns[column_mean_trace_P] = sums.traces / Real(steps);
+    columns[column_status] = outcome.status;
+    columns[column_status_pose] = outcome.pose;
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

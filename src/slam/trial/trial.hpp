@@ -1,0 +1,83 @@
+#pragma once
+// One trial of one arm, poses in order. The page to open first.
+//
+// Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at
+// once.
+
+#include "slam/trial/workspace.hpp"
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+// An observer watches a trial without touching it: the engine's (detail.hpp), replay's, which writes the trajectory, and
+// those of the tests. Its face: started, planned, predicted and updated, as called below.
+
+/// What one trial needs room for.
+template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
+struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
+    PlannerWorkspace<Layout, Real> planner;
+    HorizonWorkspace<Layout, Real> horizon;
+};
+
+/// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
+template <class Layout, class Real, class Estimating, class Noise, class Observer>
+void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
+               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
+    const Layout layout(problem.features);
+    const auto features = layout.features();
+    auto& truth = work.truth;
+    auto& belief = work.belief;
+    auto& sightings = work.sightings;
+    auto& estimator = work.estimator;
+    Sums<Real> sums;
+    Outcome<Real> outcome;
+
+    // Pose 0: every feature is initialised, whatever its range.
+    WorldDraws<Layout, Real> draws(layout);
+    const Vector2<Real>* measurement = draws.template of_features<Source::measurement>();
+    draws.draw(noise, 0);
+    start_truth(truth, problem.world, layout, draws);
+    look_first(truth, problem.sensor, features, measurement, sightings);
+    start_belief(belief, problem.filter, layout, sightings);
+    Real error[Layout::capacity];
+    estimation_error(belief, truth, layout, error);
+    sums.pose_error = squared_pose_error<Layout>(error);
+    note_trouble(belief, layout.size(), sums.pose_error, all_lanes<Real>(), 0, outcome);
+    estimator.start(layout, belief, truth);
+    observer.started(layout, truth, belief);
+
+    for (int k = 1; k < problem.poses; ++k) {
+        // Choose where to go, from what is believed.
+        Command<Real> command = command_from<Real>(problem.control.fixed[k - 1]);
+        if (controller != Controller::fixed) {
+            command = plan_ahead(belief, problem.control, problem.filter, problem.sensor, layout, k,
+                                 problem.steps_ahead(controller, k), work.horizon, work.planner);
+            observer.planned(k, layout, belief);
+        }
+
+        // The world moves on.
+        draws.draw(noise, k);
+        move_features(truth, problem.world, layout, k, draws);
+        move_robot(truth, problem.world, command, draws);
+
+        // Predict.
+        estimator.predict(belief, problem.filter, layout, command, truth, k);
+
+        // See.
+        look(truth, problem.sensor, layout, k, measurement, noise, sightings);
+        const auto edge_measurement = [&](int e) {
+            return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
+        };
+        const auto linearised = estimator.linearised(belief, layout, truth);
+        observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement, linearised);
+
+        // Update, and compare with the truth.
+        estimator.update(belief, problem.filter, layout, sightings, edge_measurement, linearised, work.update);
+        judge_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, figures);
+        observer.updated(k, layout, belief, figures);
+    }
+    write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,56 @@
+#pragma once
+// The filter's update [model.md, Filter: Update]. Letters as in condition.hpp.
+
+#include "slam/edges.hpp"
+
+namespace credence {
+inline namespace CREDENCE_UNIT {
+
+/// Conditions a predicted belief on what was seen and on every edge: P <- P - K S K', the correction K nu in `update`;
+/// the mean stays. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world frame;
+/// `linearised(j, sighting)` its rows and innovation.
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                      const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                      const Linearisation& linearised, Update<Real, capacity>& update) {
+    const auto n = layout.size();
+    update.nis = update.nis_edges = update.unsettled = Real(0);
+    Real rows = Real(2 * filter.edge_count), unseen = Real(0);
+    each(zero, layout.features(), [&](auto j) {
+        rows = rows + select(sightings[j].seen, Real(2), Real(0));
+        unseen = unseen + select(sightings[j].seen, Real(0), Real(1));
+    });
+    update.rows = rows;
+    update.unseen = unseen;
+    update.positive_definite = all_lanes<Real>();
+    each(zero, n, [&](auto i) { update.correction[i] = Real(0); });
+    ContrastInnovations<Layout, Real> contrasts;
+    if (filter.edge_count > 0) {
+        contrast_innovations(belief, filter, layout, edge_measurement, contrasts);
+        update.nis_edges = near_at_hand(layout, update.alone, [&](auto& work) CREDENCE_INLINE_LAMBDA {
+            return nis_of_edges(belief.covariance, filter, layout, contrasts, work);
+        });
+    }
+
+    each(zero, layout.features(), [&](auto j) {
+        const Sighting<Real>& sighting = sightings[j];
+        if (!any(sighting.seen)) return;
+        const auto [rows, innovation] = linearised(j, sighting);
+        take_in(belief.covariance, layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,
+                update);
+    });
+    update.nis_features = update.nis;
+    if (filter.edge_count > 0) take_in_edges(belief, filter, layout, contrasts, update);
+}
+
+/// Updates a predicted belief: x <- x + K nu, P <- P - K S K'.
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                                 const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
+                                 const Linearisation& linearised, Update<Real, capacity>& update) {
+    condition_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
+    each(zero, layout.size(), [&](auto i) { belief.mean[i] = belief.mean[i] + update.correction[i]; });
+}
+
+}  // namespace CREDENCE_UNIT
+}  // namespace credence

@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include "statistics/goodness.hpp"
+
+#include "base/nan.hpp"
+
+namespace credence {
+
+namespace {
+
+/// Lower end of Wilson's interval, in a form that does not cancel for few successes, and gives 0 for none.
+double wilson_low(double successes, double trials, double z) {
+    const double failures = trials - successes;
+    const double root = z * std::sqrt(z * z + 4 * successes * failures / trials);
+    return (2 * successes + z * z - root) / (2 * (trials + z * z));
+}
+
+}  // namespace
+
+Interval wilson_interval(double successes, double trials, double alpha) {
+    if (!(trials > 0)) return {nan, nan};
+    const double z = normal_quantile(alpha);
+    return {wilson_low(successes, trials, z), 1 - wilson_low(trials - successes, trials, z)};
+}
+
+Interval chi_square_band(double degrees, double alpha) {
+    return {chi_square_quantile(alpha / 2, degrees) / degrees, chi_square_upper_quantile(alpha / 2, degrees) / degrees};
+}
+
+double chi_square_p(double statistic, double degrees) {
+    if (std::isnan(statistic) || !(degrees > 0)) return nan;
+    if (statistic <= 0) return 1;
+    if (std::isinf(statistic)) return 0;
+    return boost::math::cdf(boost::math::complement(boost::math::chi_squared(degrees), statistic));
+}
+
+double chi_square_distance(std::vector<double> values, double degrees) {
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    if (values.empty()) return nan;
+    std::sort(values.begin(), values.end());
+    const double n = static_cast<double>(values.size());
+    double greatest = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double p = 1 - chi_square_p(values[i], degrees);
+        const double below = static_cast<double>(i);
+        greatest = std::max({greatest, (below + 1) / n - p, p - below / n});
+    }
+    return greatest;
+}
+
+double cell_distance(const std::int64_t* counts, int cells) {
+    std::int64_t total = 0, below = 0;
+    for (int i = 0; i < cells; ++i) total += counts[i];
+    if (total == 0) return nan;
+    double greatest = 0;
+    for (int i = 0; i < cells; ++i) {
+        below += counts[i];
+        const double share = static_cast<double>(below) / static_cast<double>(total);
+        greatest = std::max(greatest, std::abs(share - (i + 1.0) / cells));
+    }
+    return greatest;
+}
+
+}  // namespace credence

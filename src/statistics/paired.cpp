@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include "statistics/bootstrap.hpp"
+#include <credence/paired.hpp>
+
+#include "base/nan.hpp"
+#include <utility>
+
+namespace credence {
+
+namespace {
+
+/// Sum of the ranks of positive differences, and sum of t^3 - t over groups of t differences of one size.
+struct RankSums {
+    double positive = 0, ties = 0;
+};
+
+/// `differences` in increasing order of size, none of them 0.
+RankSums rank_sums(const std::vector<double>& differences) {
+    RankSums sums;
+    for (std::size_t first = 0; first < differences.size();) {
+        std::size_t last = first;
+        double positive = 0;
+        for (; last < differences.size() && std::abs(differences[last]) == std::abs(differences[first]); ++last)
+            positive += differences[last] > 0;
+        const double t = static_cast<double>(last - first);
+        sums.positive += positive * 0.5 * static_cast<double>(first + 1 + last);  // ranks first + 1 ... last
+        sums.ties += t * t * t - t;
+        first = last;
+    }
+    return sums;
+}
+
+void test_signed_ranks(std::vector<double> differences, PairedComparison& comparison) {
+    comparison.wilcoxon_z = nan;
+    comparison.wilcoxon_p = differences.empty() ? nan : 1;
+    std::erase(differences, 0.0);
+    if (differences.empty()) return;
+    std::sort(differences.begin(), differences.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
+    const RankSums sums = rank_sums(differences);
+    const double n = static_cast<double>(differences.size());
+    const double variance = n * (n + 1) * (2 * n + 1) / 24 - sums.ties / 48;
+    comparison.wilcoxon_z = (sums.positive - n * (n + 1) / 4) / std::sqrt(variance);
+    comparison.wilcoxon_p = std::erfc(std::abs(comparison.wilcoxon_z) / std::sqrt(2.0));
+}
+
+void count_wins(const std::vector<double>& differences, PairedComparison& comparison) {
+    const double n = static_cast<double>(differences.size());
+    const auto share = [&](auto which) {
+        return static_cast<double>(std::count_if(differences.begin(), differences.end(), which)) / n;
+    };
+    comparison.wins_a = share([](double d) { return d < 0; });
+    comparison.wins_b = share([](double d) { return d > 0; });
+    comparison.ties = share([](double d) { return d == 0; });
+}
+
+double variance(std::vector<double> values) {
+    const double deviation = summarise(std::move(values)).standard_deviation;
+    return deviation * deviation;
+}
+
+}  // namespace
+
+PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
+                                const std::string& figure) {
+    std::vector<double> differences, paired_a, paired_b;
+    std::vector<double> by_trial(std::min(a.size(), b.size()), nan);  // the bootstrap's blocks go by trial
+    for (std::size_t i = 0; i < by_trial.size(); ++i) {
+        if (std::isnan(a[i] - b[i])) continue;  // also where both are infinite
+        by_trial[i] = a[i] - b[i];
+        differences.push_back(by_trial[i]);
+        paired_a.push_back(a[i]);
+        paired_b.push_back(b[i]);
+    }
+    PairedComparison comparison;
+    comparison.pairs = static_cast<std::int64_t>(differences.size());
+    comparison.difference = summarise(differences);
+    comparison.bootstrap95 = bootstrap_mean_interval(by_trial, root_seed, figure);
+    count_wins(differences, comparison);
+    test_signed_ranks(differences, comparison);
+    const double deviation = comparison.difference.standard_deviation;
+    comparison.effect_size = comparison.difference.mean / deviation;
+    comparison.variance_reduction =
+        (variance(std::move(paired_a)) + variance(std::move(paired_b))) / (deviation * deviation);
+    comparison.histogram = histogram(differences, BinWidths::equal);
+    return comparison;
+}
+
+PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMoments& a, const ExactMoments& b) {
+    PairedComparison comparison;
+    const std::int64_t pairs = comparison.pairs = totals.difference.count;
+    comparison.difference = summary_of(moments_of(totals.difference));
+    comparison.bootstrap95 = {nan, nan};
+    comparison.wilcoxon_z = comparison.wilcoxon_p = comparison.variance_reduction = nan;
+    comparison.wins_a = static_cast<double>(totals.below) / static_cast<double>(pairs);
+    comparison.wins_b = static_cast<double>(totals.above) / static_cast<double>(pairs);
+    comparison.ties = static_cast<double>(pairs - totals.below - totals.above) / static_cast<double>(pairs);
+    const double deviation = comparison.difference.standard_deviation, deviation_a = moments_of(a).standard_deviation,
+                 deviation_b = moments_of(b).standard_deviation;
+    comparison.effect_size = comparison.difference.mean / deviation;
+    if (a.count == pairs && b.count == pairs)
+        comparison.variance_reduction =
+            (deviation_a * deviation_a + deviation_b * deviation_b) / (deviation * deviation);
+    return comparison;
+}
+
+std::vector<double> holm(std::vector<double> p) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (!std::isnan(p[i])) order.push_back(i);
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+    double largest = 0;
+    for (std::size_t j = 0; j < order.size(); ++j) {
+        largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - j) * p[order[j]]));
+        p[order[j]] = largest;
+    }
+    return p;
+}
+
+}  // namespace credence

@@ -1,0 +1,112 @@
+#include <credence/statistics.hpp>
+
+#include <credence/detail/exact_sum.hpp>
+
+#include "base/nan.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace credence {
+
+namespace {
+
+double exact_mean(const std::vector<double>& values) {
+    ExactSum sum;
+    for (const double value : values) sum.add(value);
+    return sum.rounded() / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+double t_quantile(double alpha, double degrees) {
+    if (!(degrees > 0)) return std::numeric_limits<double>::infinity();
+    return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees), alpha / 2));
+}
+
+double normal_quantile(double alpha) {
+    return boost::math::quantile(boost::math::complement(boost::math::normal(), alpha / 2));
+}
+
+double chi_square_quantile(double p, double degrees) {
+    return boost::math::quantile(boost::math::chi_squared(degrees), p);
+}
+
+double chi_square_upper_quantile(double p, double degrees) {
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(degrees), p));
+}
+
+Summary summarise(std::vector<double> values) {
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    Summary summary{static_cast<std::int64_t>(values.size()), nan, nan, {nan, nan}, nan, nan};
+    if (values.empty()) return summary;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    summary.mean = *least == *most ? *least : exact_mean(values);  // N x / N may round to another number than x
+    if (values.size() > 1) {
+        double squares = 0;
+        for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
+        const double n = static_cast<double>(values.size());
+        summary.standard_deviation = std::sqrt(squares / (n - 1));
+        summary.standard_error = summary.standard_deviation / std::sqrt(n);
+        const double half = t_quantile(0.05, n - 1) * summary.standard_error;
+        summary.ci95 = {summary.mean - half, summary.mean + half};
+    }
+    summary.median = quantile(values, 0.5);
+    return summary;
+}
+
+double quantile(std::vector<double>& values, double p) {
+    if (values.empty()) return nan;
+    const double place = p * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), values.begin() + below, values.end());
+    const double low = values[static_cast<std::size_t>(below)];
+    if (below + 1 == static_cast<std::ptrdiff_t>(values.size())) return low;
+    const double high = *std::min_element(values.begin() + below + 1, values.end());
+    return low + (place - static_cast<double>(below)) * (high - low);
+}
+
+double percentile_of(const std::vector<double>& values, double x) {
+    std::int64_t count = 0, below = 0, equal = 0;
+    for (const double value : values) {
+        count += !std::isnan(value);
+        below += value < x;
+        equal += value == x;
+    }
+    return count == 0
+               ? nan
+               : 100 * (static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / static_cast<double>(count);
+}
+
+std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (!std::isnan(a[i] - b[i])) differences.push_back(a[i] - b[i]);
+    return differences;
+}
+
+Moments moments_from_sums(std::int64_t count, double sum, double square_sum) {
+    const double n = static_cast<double>(count);
+    if (count < 1) return {n, nan, nan, nan};
+    const double mean = sum / n;
+    if (count < 2) return {n, mean, nan, nan};
+    const double variance = std::max(0.0, (square_sum - sum * mean) / (n - 1));
+    return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
+}
+
+Summary summary_of(const Moments& moments) {
+    return {static_cast<std::int64_t>(moments.count), moments.mean, moments.standard_error, t_interval(moments), nan,
+            moments.standard_deviation};
+}
+
+Interval t_interval(const Moments& moments, double alpha) {
+    const double half = t_quantile(alpha, moments.count - 1) * moments.standard_error;
+    return {moments.mean - half, moments.mean + half};
+}
+
+}  // namespace credence

@@ -1,0 +1,134 @@
+// Totals and details that are in memory only while they are needed.
+
+#include "numeric/chi_square.hpp"
+#include <credence/results.hpp>
+
+#include <type_traits>
+
+namespace credence {
+
+namespace {
+
+std::size_t lags_of(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
+
+FigureTotals no_totals(const Figure& figure, std::size_t steps) {
+    return {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
+            std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)};
+}
+
+void clear_totals(ScenarioResults& results) {
+    const auto steps = static_cast<std::size_t>(results.steps()), lags = lags_of(results);
+    for (ArmResults& arm : results.arms) {
+        arm.counted = 0;
+        arm.totals.clear();
+        for (const Figure& figure : results.figures) arm.totals.push_back(no_totals(figure, steps));
+        if (shape_counted(results.steps())) arm.cells.assign(steps * shape_cells, 0);
+        arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
+    }
+}
+
+void name_arms(ScenarioResults& results, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+        results.arms.emplace_back();
+        results.arms.back().name = name;
+    }
+    if (results.keep == Keep::trials) return;
+    std::vector<ArmAggregates> aggregates = empty_aggregates(results.columns, results.arms.size());
+    for (std::size_t a = 0; a < results.arms.size(); ++a) results.arms[a].aggregates = std::move(aggregates[a]);
+}
+
+/// The same scenario without any block, and without room for columns.
+ScenarioResults without_blocks(const ScenarioResults& results) {
+    ScenarioResults empty{results.scenario, results.columns, results.figures, {}, 0, {}, results.keep};
+    name_arms(empty, results.scenario.arms);
+    clear_totals(empty);
+    return empty;
+}
+
+/// The study of which the scenario has all blocks that it has.
+std::int64_t trials_up_to(const ScenarioResults& results) {
+    if (results.blocks.empty()) return 0;
+    return results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1);
+}
+
+}  // namespace
+
+ScenarioResults results_without_totals(const Declaration& scenario, Keep keep) {
+    const World& world = world_of(scenario);
+    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
+    name_arms(results, scenario.arms);
+    for (ArmResults& arm : results.arms)
+        if (keep == Keep::trials) arm.columns.resize(results.columns.size());
+    return results;
+}
+
+ScenarioResults empty_results(const Declaration& scenario, Keep keep) {
+    ScenarioResults results = results_without_totals(scenario, keep);
+    clear_totals(results);
+    return results;
+}
+
+bool has_totals(const ScenarioResults& results) { return results.arms.empty() || !results.arms.front().totals.empty(); }
+
+std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) {
+    constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the room of a few parts
+    const std::int64_t steps = results.steps(), number = sizeof(double);
+    std::int64_t size = detailed * steps * (results.state_size() + 1) * number;
+    if (shape_counted(results.steps())) size += steps * shape_cells * number;
+    for (const Figure& figure : results.figures) {
+        size += steps * (figure.integer ? 1 : 2) * sum_size;
+        if (figure.role == FigureRole::nees) size += steps * coverage_level_count * number;
+    }
+    return static_cast<std::int64_t>(results.arms.size()) * size;
+}
+
+void load_totals(ScenarioResults& results) {
+    if (has_totals(results)) return;
+    ScenarioResults there = without_blocks(results);
+    if (results.kept_totals) results.kept_totals->load(there);
+    set_blocks(there, results.blocks, trials_up_to(results));
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        ArmResults &to = results.arms[a], &from = there.arms[a];
+        to.totals = std::move(from.totals);
+        to.cells = std::move(from.cells);
+        to.products = std::move(from.products);
+        to.errors = std::move(from.errors);
+        to.nees = std::move(from.nees);
+        to.aggregates = std::move(from.aggregates);
+        to.counted = from.counted;
+    }
+}
+
+void drop_totals(ScenarioResults& results) {
+    const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} keeps the room
+    for (ArmResults& arm : results.arms) {
+        free(arm.totals);
+        free(arm.cells);
+        free(arm.products);
+        free(arm.errors);
+        free(arm.nees);
+    }
+}
+
+bool TotalsInMemory::take(const ScenarioResults& results) {
+    const std::int64_t size = totals_size(results, results.detailed());
+    if (size > left_) return false;
+    left_ -= size;
+    return true;
+}
+
+void TotalsInMemory::limit(ScenarioResults& results) {
+    if (!take(results) && results.kept_totals) drop_totals(results);
+}
+
+void TotalsInMemory::load(ScenarioResults& results) {
+    if (take(results)) load_totals(results);
+}
+
+WithTotals::WithTotals(const ScenarioResults& results) : results_(results) {
+    if (has_totals(results)) return;
+    loaded_ = results;
+    load_totals(*loaded_);
+}
+
+}  // namespace credence

@@ -1,0 +1,168 @@
+// Which trials are there, and where: rows of columns and details.
+
+#include <credence/results.hpp>
+
+#include "base/nan.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+/// Detailed trials of a block, from a row on.
+void store_details(const ArmBlock& from, std::int64_t row, std::size_t trials, ArmResults& to) {
+    const auto put = [&](const std::vector<float>& values, std::vector<double>& all) {
+        const auto width = static_cast<std::int64_t>(values.size() / trials);
+        std::copy(values.begin(), values.end(), all.begin() + row * width);
+    };
+    put(from.errors, to.errors);
+    put(from.nees, to.nees);
+}
+
+/// A block that stays: where its rows were, where they go, and how many.
+struct Move {
+    std::int64_t from, to, rows;
+};
+
+/// Rows of `width` values each.
+void move_rows(std::vector<double>& values, const std::vector<Move>& moves, std::int64_t rows, std::int64_t width) {
+    const bool in_place =
+        std::all_of(moves.begin(), moves.end(), [](const Move& move) { return move.from == move.to; });
+    if (in_place) return values.resize(static_cast<std::size_t>(rows * width));
+    std::vector<double> moved(static_cast<std::size_t>(rows * width));
+    for (const Move& move : moves)
+        std::copy_n(values.begin() + move.from * width, move.rows * width, moved.begin() + move.to * width);
+    values = std::move(moved);
+}
+
+}  // namespace
+
+std::vector<double> column_values(const ArmResults& arm, std::size_t column, std::int64_t first, std::int64_t count) {
+    if (arm.kept) return arm.kept->values(column, first, count);
+    const auto from = arm.columns[column].begin() + first;
+    return {from, from + count};
+}
+
+std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
+    return column_values(arm, column, 0, results.trials);
+}
+
+std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm) {
+    if (results.keep == Keep::aggregates) return arm.aggregates.statuses;
+    std::vector<std::int64_t> counts(status_names().size());
+    for (const double status : column_values(results, arm, status_column(results.columns))) ++counts[static_cast<std::size_t>(status)];
+    return counts;
+}
+
+std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
+    std::vector<double> values = column_values(results, arm, column);
+    const std::vector<double> status = column_values(results, arm, status_column(results.columns));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (failed(static_cast<Status>(static_cast<int>(status[i]))))
+            values[i] = nan;
+    return values;
+}
+
+std::int64_t ScenarioResults::detailed() const {
+    const std::int64_t most = detailed_trials(steps(), state_size());
+    if (blocks.empty()) return std::min(trials, most);
+    return std::min(trials, block_size * blocks.count_below(most / block_size));
+}
+
+std::int64_t block_rows(const ScenarioResults& results, std::size_t place) {
+    return std::min<std::int64_t>(block_size, results.trials - block_size * static_cast<std::int64_t>(place));
+}
+
+std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials) {
+    if (blocks.empty()) return 0;
+    return block_size * (blocks.count() - 1) + trials_in_block(trials, blocks.back());
+}
+
+std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(static_cast<std::size_t>(count));
+    for (std::int64_t row = first; row < first + count; ++row)
+        numbers.push_back(results.blocks[static_cast<std::size_t>(row / block_size)] * block_size + row % block_size);
+    return numbers;
+}
+
+std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64_t block) {
+    const std::optional<std::int64_t> place = results.blocks.place_of(block);
+    return place ? std::optional(block_size * *place) : std::nullopt;
+}
+
+void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials) {
+    std::vector<Move> moves, detailed_moves;
+    const std::int64_t most = detailed_trials(results.steps(), results.state_size()) / block_size;
+    const bool in_memory = std::any_of(results.arms.begin(), results.arms.end(),
+                                       [](const ArmResults& arm) { return !arm.kept && !arm.columns.empty(); });
+    std::int64_t rows = 0;
+    for (const std::int64_t block : blocks) {
+        if (!in_memory && block >= most) break;  // nothing of it has a row
+        const std::int64_t size = trials_in_block(trials, block);
+        if (const std::optional<std::int64_t> row = first_row(results, block)) {
+            const auto place = static_cast<std::size_t>(*row / block_size);
+            moves.push_back({*row, rows, std::min(size, block_rows(results, place))});
+            if (block < most) detailed_moves.push_back(moves.back());
+        }
+        rows += size;
+    }
+    results.trials = trials_in(blocks, trials);
+    results.blocks = std::move(blocks);
+    const std::int64_t steps = results.steps(), detailed = results.detailed();
+    for (ArmResults& arm : results.arms) {
+        if (!arm.kept)
+            for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
+        if (!has_totals(results)) continue;
+        move_rows(arm.nees, detailed_moves, detailed, steps);
+        move_rows(arm.errors, detailed_moves, detailed, steps * results.state_size());
+    }
+}
+
+void extend(ScenarioResults& results, std::int64_t trials) {
+    load_totals(results);
+    set_blocks(results, BlockRanges::below(block_count(trials)), trials);
+}
+
+void store_columns(ScenarioResults& results, const Block& block) {
+    const std::int64_t row = first_row(results, block.index).value();
+    const auto trials = static_cast<std::size_t>(block.trials);
+    for (std::size_t a = 0; a < results.arms.size(); ++a) {
+        ArmResults& arm = results.arms[a];
+        if (!block.arms[a].nees.empty()) store_details(block.arms[a], row, trials, arm);
+        if (arm.kept || arm.columns.empty()) continue;
+        for (std::size_t c = 0; c < results.columns.size(); ++c)
+            std::copy_n(block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c * trials), trials,
+                        arm.columns[c].begin() + row);
+    }
+}
+
+bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block) {
+    const std::int64_t row_a = first_row(a, block).value(), row_b = first_row(b, block).value();
+    if (row_a >= a.detailed() || row_b >= b.detailed()) return true;
+    const std::int64_t rows = block_rows(b, static_cast<std::size_t>(row_b / block_size));
+    const auto same = [&](const std::vector<double>& in_a, const std::vector<double>& in_b, std::int64_t width) {
+        const auto begin = in_a.begin() + row_a * width;
+        return std::equal(begin, begin + rows * width, in_b.begin() + row_b * width,
+                          [](double x, double y) { return x == y || (x != x && y != y); });
+    };
+    const std::int64_t steps = b.steps();
+    return same(a.arms[arm].nees, b.arms[arm].nees, steps) &&
+           same(a.arms[arm].errors, b.arms[arm].errors, steps * b.state_size());
+}
+
+void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
+    const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
+    if (row_to >= to.detailed() || row_from >= from.detailed()) return;
+    const std::int64_t rows = block_rows(from, static_cast<std::size_t>(row_from / block_size));
+    const auto copy = [&](const std::vector<double>& source, std::vector<double>& target, std::int64_t width) {
+        std::copy_n(source.begin() + row_from * width, rows * width, target.begin() + row_to * width);
+    };
+    for (std::size_t a = 0; a < from.arms.size(); ++a) {
+        copy(from.arms[a].nees, to.arms[a].nees, from.steps());
+        copy(from.arms[a].errors, to.arms[a].errors, std::int64_t{from.steps()} * from.state_size());
+    }
+}
+
+}  // namespace credence

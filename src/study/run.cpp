@@ -1,0 +1,275 @@
+// Running a study's blocks on threads, and on a crew.
+
+#include "study/crew.hpp"
+
+#include <credence/error.hpp>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+namespace credence {
+
+namespace {
+
+/// Runs tasks on threads and puts their results into the study. Totals are exact, so the order does not matter.
+class Runner : private BlockDesk {
+public:
+    Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
+        for (const ScenarioResults& results : study.scenarios) work_.emplace_back(results.scenario);
+    }
+
+    void run() {
+        for (std::size_t s = 0; s < study_.scenarios.size(); ++s) prepare(s);
+        study_.trials = options_.trials;
+        run_tasks();
+        if (progress_.done < progress_.total) leave_out_missing();
+        study_.complete = true;
+        for (const ScenarioResults& results : study_.scenarios)
+            study_.complete = study_.complete && missing_blocks(results, study_.trials).empty();
+        if (options_.keeper != nullptr) options_.keeper->finished(study_);
+    }
+
+private:
+    /// What a run has to do with a scenario.
+    struct Work {
+        explicit Work(const Declaration& scenario) : runner(scenario) {}
+
+        BlockRunner runner;
+        BlockRanges done;      ///< blocks that are there
+        BlockRanges missing;   ///< blocks that are this run's tasks
+        std::size_t left = 0;  ///< of them those that are not finished
+        Task partial;          ///< the last block, where it was there with fewer trials than it will have
+        int partial_trials = 0;///< that it had; 0: there is none such
+        bool begun = false;
+    };
+
+    /// Makes room, and lists the blocks that are missing.
+    void prepare(std::size_t s) {
+        ScenarioResults& results = study_.scenarios[s];
+        Work& work = work_[s];
+        work.missing = missing_blocks(results, options_.trials, options_.shard);
+        work.done = results.blocks;
+        if (last_would_grow(results, options_.trials)) {
+            work.partial = {s, results.blocks.back()};
+            work.partial_trials = static_cast<int>(block_rows(results, results.blocks.size() - 1));
+            work.done.remove(work.partial.block);
+        }
+        if (has_totals(results)) held_ += size_of(results);
+        BlockRanges planned = work.missing;
+        planned.add(work.done);
+        progress_.total += trials_in(work.missing, options_.trials);
+        task_count_ += work.left = work.missing.size();
+        set_blocks(results, std::move(planned), options_.trials);
+    }
+
+    static std::int64_t size_of(const ScenarioResults& results) { return totals_size(results, results.detailed()); }
+
+    /// Before a block is computed: waits where others are to be committed first, and begins with its scenario.
+    void begin(std::size_t s) {
+        std::unique_lock lock(mutex_);
+        if (options_.keeper != nullptr && options_.keeper->full()) {
+            lock.unlock();
+            { const std::lock_guard until_committed(committing_); }
+            lock.lock();
+        }
+        if (!work_[s].begun) begin_scenario(s);
+    }
+
+    /// Brings totals into memory, and takes a partial last block back.
+    void begin_scenario(std::size_t s) {
+        ScenarioResults& results = study_.scenarios[s];
+        Work& work = work_[s];
+        if (!has_totals(results)) {
+            load_totals(results);
+            held_ += size_of(results);
+        }
+        if (work.partial_trials > 0) {
+            remove_totals(results, work.runner.run(study_.root_seed, work.partial.block, work.partial_trials));
+            if (options_.keeper != nullptr) options_.keeper->take_back(s, work.partial.block);
+        }
+        work.begun = true;
+    }
+
+    void run_tasks() {
+        const int threads = options_.threads > 0 ? options_.threads : omp_get_max_threads();
+        const int servers = options_.crew != nullptr ? 1 : 0;
+        report();
+        // Thread 0 is the one that called run_study. It computes nothing where there is a crew: nobody of it is to
+        // wait.
+#pragma omp parallel num_threads(threads + servers)
+        if (omp_get_thread_num() < servers)
+            guarded([&] { options_.crew->serve(*this); });
+        else
+            while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
+        if (trouble_) std::rethrow_exception(trouble_);
+        for (const Work& work : work_)  // what was there is not lost to a stop
+            if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);
+        if (options_.keeper == nullptr) return;
+        prepare_all();
+        commit();
+    }
+
+    /// An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after it.
+    template <class Work>
+    void guarded(Work work) {
+        try {
+            work();
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            trouble_ = std::current_exception();
+            stopped_ = true;
+        }
+    }
+
+    std::optional<Task> next_task() {
+        if (next_ >= task_count_ || stopped()) return std::nullopt;
+        std::size_t place = next_++;
+        for (std::size_t s = 0; s < work_.size(); place -= work_[s++].missing.size())
+            if (place < work_[s].missing.size()) return Task{s, work_[s].missing[place]};
+        return std::nullopt;
+    }
+
+    void run_task(const Task& task) {
+        begin(task.scenario);
+        const int trials = trials_in_block(options_.trials, task.block);
+        const Block block = work_[task.scenario].runner.run(study_.root_seed, task.block, trials);
+        ScenarioResults& results = study_.scenarios[task.scenario];
+        store_columns(results, block);
+        if (finish_task(task, block, block_aggregates(results, block))) commit();
+    }
+
+    /// Adds the block's totals; returns whether a commit was prepared.
+    bool finish_task(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates) {
+        const std::lock_guard lock(mutex_);
+        add_totals(study_.scenarios[task.scenario], block, aggregates);
+        if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
+        finished(task);
+        report();
+        return prepare_commit();
+    }
+
+    void finished(const Task& task) {
+        Work& work = work_[task.scenario];
+        work.done.add(task.block);
+        progress_.done += trials_in_block(options_.trials, task.block);
+        if (--work.left > 0) return;
+        finished_.push_back(task.scenario);
+        finished_size_ += size_of(study_.scenarios[task.scenario]);
+    }
+
+    bool prepare_commit() {
+        if (options_.keeper == nullptr || !options_.keeper->due(too_much_held() ? finished_size_ : 0)) return false;
+        prepare_all();
+        return true;
+    }
+
+    bool too_much_held() const { return held_ > options_.most_totals; }
+
+    /// Prepares a commit of all that was taken. The keeper has then the totals of the scenarios that are finished.
+    void prepare_all() {
+        options_.keeper->prepare(study_);
+        if (!too_much_held()) return;
+        for (const std::size_t s : finished_)
+            if (study_.scenarios[s].kept_totals) drop_totals(study_.scenarios[s]);
+        finished_.clear();
+        held_ -= finished_size_;
+        finished_size_ = 0;
+    }
+
+    void commit() {
+        const std::lock_guard one(committing_);
+        options_.keeper->commit();
+    }
+
+    // What the crew sees [BlockDesk].
+    std::int64_t trials() const override { return options_.trials; }
+    std::int64_t left() const override {
+        return static_cast<std::int64_t>(task_count_ - std::min(task_count_, next_.load()));
+    }
+    std::vector<Task> hand_out(std::int64_t most) override {
+        std::vector<Task> tasks;
+        while (static_cast<std::int64_t>(tasks.size()) < most) {
+            const std::optional<Task> task = next_task();
+            if (!task) break;
+            tasks.push_back(*task);
+        }
+        return tasks;
+    }
+    bool stopped() override {
+        if (!stopped_ && options_.stop && options_.stop()) stopped_ = true;
+        return stopped_;
+    }
+    void take(const ComputedBlocks& computed) override {
+        begin(computed.scenario);
+        ScenarioResults& results = study_.scenarios[computed.scenario];
+        for (const std::int64_t block : computed.blocks) copy_details(results, computed.results, block);
+        if (add(results, computed)) commit();
+    }
+
+    bool add(ScenarioResults& results, const ComputedBlocks& computed) {
+        const std::lock_guard lock(mutex_);
+        for (std::size_t a = 0; a < results.arms.size(); ++a) add_totals(results.arms[a], computed.results.arms[a]);
+        options_.keeper->take(computed.scenario, computed.blocks, computed.values);
+        for (const std::int64_t block : computed.blocks) finished({computed.scenario, block});
+        report();
+        return prepare_commit();
+    }
+
+    /// After an early stop: only what is done is there.
+    void leave_out_missing() {
+        for (std::size_t s = 0; s < study_.scenarios.size(); ++s)
+            set_blocks(study_.scenarios[s], std::move(work_[s].done), options_.trials);
+    }
+
+    void report() {
+        progress_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (options_.progress) options_.progress(progress_);
+    }
+
+    Study& study_;
+    const RunOptions& options_;
+    std::vector<Work> work_;             ///< by scenario; its tasks one scenario after the other
+    std::size_t task_count_ = 0;
+    std::atomic<std::size_t> next_ = 0;  ///< the first task that nobody has
+    std::atomic<bool> stopped_ = false;
+    std::exception_ptr trouble_;
+    std::mutex mutex_;              ///< of totals, work_, progress and the keeper
+    std::mutex committing_;         ///< locked while a commit is made
+    std::vector<std::size_t> finished_;  ///< scenarios whose tasks are done, and whose totals are in memory
+    std::int64_t held_ = 0, finished_size_ = 0;  ///< bytes of totals in memory, and those of `finished_`
+    Progress progress_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Columns of a file cannot grow there.
+void bring_into_memory(ScenarioResults& results) {
+    load_totals(results);
+    results.kept_totals.reset();
+    for (ArmResults& arm : results.arms) {
+        if (!arm.kept) continue;
+        for (std::size_t c = 0; c < results.columns.size(); ++c) arm.columns.push_back(column_values(results, arm, c));
+        arm.kept.reset();
+    }
+}
+
+}  // namespace
+
+void run_study(Study& study, const RunOptions& options) {
+    if (const std::int64_t least = least_trials(study); least > options.trials)
+        throw invalid_value("--trials", std::to_string(options.trials),
+                            "the study has been asked for " + std::to_string(least) + " already",
+                            "Ask for at least as many");
+    if (options.crew != nullptr && options.keeper == nullptr) throw std::logic_error("a crew needs a keeper");
+    if (options.keeper == nullptr)
+        for (ScenarioResults& results : study.scenarios) bring_into_memory(results);
+    Runner(study, options).run();
+}
+
+}  // namespace credence

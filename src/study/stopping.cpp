@@ -1,0 +1,174 @@
+#include "study/stopping.hpp"
+
+#include <credence/statistics.hpp>
+
+#include "base/nan.hpp"
+#include "study/stopping_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace credence {
+
+namespace {
+
+/// The first trials' values.
+std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trials) {
+    const auto first_values = [&](const ArmResults& arm) {
+        std::vector<double> values = figure_values(*subject.results, arm, subject.column);
+        values.resize(static_cast<std::size_t>(trials));
+        return values;
+    };
+    if (subject.subtracted == nullptr) return first_values(*subject.arm);
+    return paired_differences(first_values(*subject.arm), first_values(*subject.subtracted));
+}
+
+/// The same of totals, which are of all trials.
+Moments aggregates_of(const StoppingSubject& subject) {
+    if (subject.subtracted == nullptr) return aggregate_moments(*subject.arm, subject.column);
+    return moments_of(
+        aggregate_differences(*subject.results, *subject.arm, *subject.subtracted, subject.column).difference);
+}
+
+std::string name_of(const StoppingSubject& subject) {
+    const std::string pair = subject.subtracted == nullptr ? "" : " - " + subject.subtracted->name;
+    return subject.results->columns[subject.column].name + " of " + subject.results->scenario.name + "/" +
+           subject.arm->name + pair;
+}
+
+/// t_{1 - alpha_j/2, n - 1} sd / sqrt(n)
+double half_width_of(double standard_deviation, double count, int number) {
+    return t_quantile(look_alpha(number), count - 1) * standard_deviation / std::sqrt(count);
+}
+
+/// How wide a state is for what was asked: 0 for one that does not vary, infinite for one that could not be judged.
+double excess(const GoalState& state) {
+    const double ratio = state.half_width / state.allowed;
+    if (!std::isnan(ratio)) return ratio;
+    return state.met() ? 0 : std::numeric_limits<double>::infinity();
+}
+
+/// predicted_trials of one state that is not met.
+std::optional<std::int64_t> predicted_for(const GoalState& state, const Look& look, const StoppingRule& rule) {
+    const double share = static_cast<double>(state.count) / static_cast<double>(look.trials);
+    const auto enough = [&](std::int64_t trials, int number) {
+        return half_width_of(state.standard_deviation, share * static_cast<double>(trials), number) <= state.allowed;
+    };
+    const auto at_the_ceiling = static_cast<int>(look_trials(rule.ceiling, rule.first_look).size());
+    std::int64_t trials = rule.first_look;
+    for (int number = 1;; ++number) {
+        if (number == at_the_ceiling && enough(rule.ceiling, number)) return rule.ceiling;
+        if (trials > look.trials && enough(trials, number)) return trials;
+        if (trials > std::numeric_limits<std::int64_t>::max() / 2) return std::nullopt;
+        trials *= 2;
+    }
+}
+
+}  // namespace
+
+double look_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
+
+std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first) {
+    std::vector<std::int64_t> looks;
+    for (std::int64_t trials = first; trials < ceiling; trials = trials > ceiling / 2 ? ceiling : 2 * trials)
+        looks.push_back(trials);
+    looks.push_back(ceiling);
+    return looks;
+}
+
+GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number) {
+    GoalState state;
+    state.count = static_cast<std::int64_t>(moments.count);
+    state.mean = moments.mean;
+    state.standard_deviation = moments.standard_deviation;
+    state.half_width = half_width_of(state.standard_deviation, moments.count, number);
+    state.allowed = goal.half_width * (goal.kind == WidthKind::relative ? std::abs(state.mean) : 1);
+    return state;
+}
+
+GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
+    // In two passes in trial order, without the copy and the median of a summary: looks may take 1e7 values each.
+    Moments moments;
+    double squares = 0;
+    for (const double value : values)
+        if (!std::isnan(value)) moments.mean += value, ++moments.count;
+    moments.mean /= moments.count;
+    for (const double value : values)
+        if (!std::isnan(value)) squares += (value - moments.mean) * (value - moments.mean);
+    moments.standard_deviation =
+        moments.count > 1 ? std::sqrt(squares / (moments.count - 1)) : nan;
+    return decide_from(moments, goal, number);
+}
+
+Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
+    for (const ScenarioResults& results : study.scenarios)
+        if (results.trials < trials || (results.keep == Keep::aggregates && results.trials > trials))
+            throw std::logic_error("a look at trials that are not there, or not by themselves");
+    Look look{trials, number, look_alpha(number), {}, true};
+    for (const StoppingGoal& goal : goals)
+        for (const StoppingSubject& subject : subjects_of(goal, study)) {
+            look.states.push_back(subject.results->keep == Keep::trials
+                                      ? decide(values_of(subject, trials), goal, number)
+                                      : decide_from(aggregates_of(subject), goal, number));
+            look.states.back().name = name_of(subject);
+            look.met = look.met && look.states.back().met();
+        }
+    return look;
+}
+
+std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRule& rule) {
+    std::int64_t most = look.trials;
+    for (const GoalState& state : look.states) {
+        if (state.met()) continue;
+        const std::optional<std::int64_t> trials = predicted_for(state, look, rule);
+        if (!trials) return std::nullopt;
+        most = std::max(most, *trials);
+    }
+    return most;
+}
+
+const GoalState& widest(const Look& look) {
+    return *std::max_element(look.states.begin(), look.states.end(),
+                             [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
+}
+
+namespace {
+
+/// Nothing is decided by trials that were stopped half way, and no further look is taken.
+Look interrupted_look(std::int64_t trials, int number) {
+    Look look{trials, number, look_alpha(number), {}, false};
+    look.interrupted = true;
+    return look;
+}
+
+}  // namespace
+
+Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look) {
+    Look last;
+    for (const std::int64_t trials : look_trials(rule.ceiling, rule.first_look)) {
+        last = look(trials, last.number + 1);
+        if (last.met || last.interrupted) break;
+    }
+    return last;
+}
+
+Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
+               const std::function<void(const Look&)>& after_look) {
+    check_goals(rule.goals, study);
+    return run_looks(rule, [&](std::int64_t trials, int number) {
+        // All scenarios of a study get as many trials: those of the one that has most, where that is more.
+        options.trials = std::max(trials, least_trials(study));
+        const bool aggregates = keep_of(study) == Keep::aggregates;
+        if (aggregates && options.trials > trials && trials < rule.ceiling)
+            return Look{trials, number, look_alpha(number), {}, false};
+        run_study(study, options);
+        if (!study.complete) return interrupted_look(trials, number);
+        Look look = look_at(study, rule.goals, aggregates ? options.trials : trials, number);
+        if (after_look) after_look(look);
+        return look;
+    });
+}
+
+}  // namespace credence

@@ -1,0 +1,111 @@
+#pragma once
+// When a study has trials enough: it grows until asked means are known as precisely as was asked.
+// [docs/statistics.md, Stopping at a precision]
+//
+// Looks are taken at trial counts that are fixed beforehand, N_j = 4096 * 2^(j-1), the last one at the ceiling. Look j
+// spends alpha_j = 0.05 * 2^-j: its intervals are Student's at confidence 1 - alpha_j,
+//   mean -+ h,  h = t_{1 - alpha_j/2, n - 1} sd / sqrt(n),  n the values of the first N_j trials that are not NaN.
+// The study stops at the first look at which every h is small enough. Each of the stopping look's intervals fails to
+// cover with probability sum_j alpha_j <= 5 % at most (Bonferroni over the looks), whatever made the study stop there;
+// alpha spent at looks fixed in advance: [Jennison and Turnbull 2000, ch. 7]. Each interval is so by itself: several
+// together are not corrected for their number. Between looks nothing is looked at.
+
+#include <credence/statistics.hpp>
+#include <credence/study.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+inline constexpr std::int64_t first_look_trials = 4096;
+inline constexpr double all_looks_alpha = 0.05;  ///< that all looks together may spend
+
+/// What a half-width is measured in: the figure's own unit, or its |mean|.
+enum class WidthKind { absolute, relative };
+
+/// A precision that was asked: of a figure's mean under every arm of every scenario, or of its mean difference between
+/// two arms, by trial, in every scenario that has both.
+struct StoppingGoal {
+    std::string text;                  ///< as it was given, for messages
+    std::string metric;                ///< name of a per-trial column
+    std::string minuend, subtrahend;   ///< arms, or controllers where a scenario has one arm of them; empty: no pair
+    WidthKind kind = WidthKind::absolute;
+    double half_width = 0;             ///< at most this, times |mean| if it is relative
+
+    bool is_pair() const { return !minuend.empty(); }
+};
+
+/// Goals, all of which must be met, and where to look.
+struct StoppingRule {
+    std::vector<StoppingGoal> goals;
+    std::int64_t ceiling = 10'000'000;             ///< trials at which the study ends in any case
+    std::int64_t first_look = first_look_trials;
+};
+
+/// One asked mean at a look. NaN where there are too few values.
+struct GoalState {
+    std::string name;                  ///< such as `trace_P of kf-circle-constant/greedy.kf - fixed.kf`
+    std::int64_t count = 0;            ///< n
+    double mean = 0, standard_deviation = 0;
+    double half_width = 0;             ///< h
+    double allowed = 0;                ///< the h that was asked, in the figure's unit
+
+    bool met() const { return half_width <= allowed; }  // never with NaN
+};
+
+struct Look {
+    std::int64_t trials = 0;
+    int number = 0;                    ///< j, from 1
+    double alpha = 0;                  ///< alpha_j
+    std::vector<GoalState> states;     ///< at least one
+    bool met = false;                  ///< every one of them
+    bool interrupted = false;          ///< the run was stopped on the way to it: no states
+};
+
+/// Reads `METRIC=HALFWIDTH` or `METRIC[ARM-ARM]=HALFWIDTH`, the half-width absolute (`0.01`) or relative (`0.5%`).
+/// Throws InputError where the text is not that; whether a study has the metric and the arms, check_goals says.
+StoppingGoal parse_goal(const std::string& text);
+
+/// Throws InputError, with what there is, where the study lacks a goal's metric, or no scenario has both of its arms.
+void check_goals(const std::vector<StoppingGoal>& goals, const Study& study);
+
+/// alpha_j = 0.05 * 2^-j.
+double look_alpha(int number);
+
+/// first, 2 first, 4 first ... below the ceiling, and the ceiling itself. Both at least 1.
+std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first = first_look_trials);
+
+/// How well look `number` knows the mean of a sample, one value a trial; NaN values are left out. It has no name yet.
+GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number);
+GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number);
+
+/// Look `number` at the first `trials` trials of every scenario, however many there are beyond them; where no trial is
+/// kept, there must be none beyond them. Throws as check_goals does; a scenario with fewer trials, or more, is the
+/// caller's mistake (std::logic_error).
+Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
+
+/// The count of trials at which every unmet state is expected to be small enough: the next look, the ceiling's or one
+/// beyond it, at which t sd / sqrt(n) <= allowed if mean, sd and the share of NaN values stay what they are; that of
+/// the look itself if it is met. Nothing if no 64-bit number of trials is expected to do.
+std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRule& rule);
+
+/// The state that is widest for what was asked of it; one that could not be judged first of all.
+const GoalState& widest(const Look& look);
+
+/// Calls `look` with the trials and the number of each look in turn, until one is met or the ceiling's has been; the
+/// last one.
+Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look);
+
+/// Grows the study from look to look (run_study) until the goals are met or the ceiling is reached; the last look.
+/// Trials that a study has beyond a look are neither judged by it nor given up: the look is the same for any number of
+/// threads and any history. Where no trial is kept, a study cannot be looked at with fewer trials than it has: such looks
+/// are left out, their share of alpha unspent. A run that was interrupted has taken them already. Throws as check_goals does, before any trial. `options.trials` is not used; `after_look`,
+/// which may be empty, sees every look.
+Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
+               const std::function<void(const Look&)>& after_look = {});
+
+}  // namespace credence

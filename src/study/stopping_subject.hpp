@@ -1,0 +1,22 @@
+#pragma once
+// What a goal is about in a given study (private to room 11).
+
+#include "study/stopping.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace credence {
+
+/// A mean that a goal asks for: of a column of one arm, or of the differences between two.
+struct StoppingSubject {
+    const ScenarioResults* results;
+    std::size_t column;
+    const ArmResults* arm;
+    const ArmResults* subtracted;  ///< null: no pair
+};
+
+/// Throws as check_goals does; at least one.
+std::vector<StoppingSubject> subjects_of(const StoppingGoal& goal, const Study& study);
+
+}  // namespace credence

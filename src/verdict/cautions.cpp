@@ -1,0 +1,88 @@
+// What decides on a single trial, and what a verdict should be read with.
+
+#include "statistics/goodness.hpp"
+
+#include "verdict/consistency_parts.hpp"
+
+namespace credence {
+
+namespace {
+
+Interval interval_of(const Whiteness& lag) {
+    return {lag.scaled - lag.simultaneous_bound, lag.scaled + lag.simultaneous_bound};
+}
+
+}  // namespace
+
+/// One trial: its NIS, summed over the steps, is chi-square with as many degrees as it had rows, if the innovations are
+/// white; the factor by which S is off has an exact interval. Corrected over the groups of rows; half of
+/// the level is for them and half for the lags.
+Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
+    const double margin = limits.margin;
+    Consistency verdict;
+    verdict.limits = limits;
+    bool all_inside = !evidence.nis.empty(), above = false, below = false;
+    for (const NisEvidence& nis : evidence.nis) {
+        all_inside = all_inside && within(nis.scale95, margin);
+        const Interval band = chi_square_band(nis.degrees, 0.025 / static_cast<double>(evidence.nis.size()));
+        const Interval corrected{nis.ratio / band.high, nis.ratio / band.low};
+        const Side side = side_of(corrected, margin);
+        if (side == Side::inside) continue;
+        (side == Side::above ? above : below) = true;
+        verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected});
+    }
+    const double lags = static_cast<double>(evidence.whiteness.size()),
+                 quantile = evidence.whiteness.empty() ? 0 : normal_quantile(0.025 / lags);
+    for (const Whiteness& lag : evidence.whiteness) {
+        all_inside = all_inside && lag.known();
+        if (lag.known() && std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
+            verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.scaled,
+                                        interval_of(lag)});
+    }
+    if (above && below) verdict.verdict = Verdict::mixed;
+    else if (above) verdict.verdict = Verdict::optimistic;
+    else if (below) verdict.verdict = Verdict::pessimistic;
+    else if (all_inside && verdict.findings.empty()) verdict.verdict = Verdict::consistent;
+    return verdict;
+}
+
+/// Correlations that are beyond the margin for sure, not only beyond 0: with enough trials every filter has some.
+void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
+    const Whiteness* worst = nullptr;
+    std::vector<int> lags;
+    for (const Whiteness& lag : evidence.whiteness) {
+        if (!lag.known() || std::abs(lag.scaled) - lag.simultaneous_bound <= verdict.limits.margin) continue;
+        if (worst == nullptr || std::abs(lag.scaled) > std::abs(worst->scaled)) worst = &lag;
+        lags.push_back(lag.lag);
+    }
+    if (worst == nullptr) return;
+    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst)});
+}
+
+/// Innovations of the wrong size beside a state that is right: NEES does not see it.
+void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
+    if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
+    for (const NisEvidence& nis : evidence.nis)
+        if (const Side side = side_of(nis.ratio95, verdict.limits.margin); side != Side::inside)
+            verdict.cautions.push_back(
+                {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95});
+}
+
+/// A distance from chi-square that is beyond the margin for sure: Massart's bound on the distance of N values from their
+/// own distribution, sqrt(ln(2/alpha)/(2 N)) [Massart 1990], corrected over the steps. What P's size already explains
+/// is not said twice.
+void caution_about_shape(const Evidence& evidence, Consistency& verdict) {
+    for (const Finding& finding : verdict.findings)
+        if (finding.where == evidence.blocks.front().block) return;
+    Found found;
+    for (std::size_t k = 0; k < evidence.shape.distance.size(); ++k) {
+        const double count = evidence.blocks.front().step[k].count, alpha = 0.05 / evidence.steps;
+        const Estimate distance{evidence.shape.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
+        if (distance.interval().low > verdict.limits.margin) found.add(k, distance, distance.value);
+    }
+    if (!found.steps.empty())
+        verdict.cautions.push_back({"misshapen", evidence.blocks.front().block, steps_text(found.steps), found.worst.value,
+                                    found.worst.interval()});
+}
+
+}  // namespace credence

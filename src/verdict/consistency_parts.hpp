@@ -1,0 +1,59 @@
+#pragma once
+// What the two files of the verdict share.
+
+#include <credence/consistency.hpp>
+
+#include <cmath>
+
+namespace credence {
+
+enum class Side { inside, above, below };
+
+/// An estimate with the half-width of its interval.
+struct Estimate {
+    double value = 0, half_width = 0;
+    Interval interval() const { return {value - half_width, value + half_width}; }
+};
+
+inline Side side_of(const Interval& interval, double margin) {
+    if (interval.low > 1 + margin) return Side::above;
+    if (interval.high < 1 - margin) return Side::below;
+    return Side::inside;
+}
+
+inline bool within(const Interval& interval, double margin) { return interval.low >= 1 - margin && interval.high <= 1 + margin; }
+
+inline const std::string& name_of(Side side) {
+    return verdict_name(side == Side::above ? Verdict::optimistic : Verdict::pessimistic);
+}
+
+/// `steps 3 to 7, 9`, from numbers in order.
+std::string listed(const std::string& what, const std::vector<int>& numbers);
+inline std::string steps_text(const std::vector<int>& steps) { return listed("step", steps); }
+
+/// Steps at which something was found, and the farthest off of them.
+struct Found {
+    std::vector<int> steps;
+    Estimate worst;
+
+    void add(std::size_t k, const Estimate& estimate, double distance) {
+        if (steps.empty() || distance > distance_) {
+            worst = estimate;
+            distance_ = distance;
+        }
+        steps.push_back(static_cast<int>(k) + 1);
+    }
+
+private:
+    double distance_ = 0;
+};
+
+/// The verdict on one trial: its NIS and the whiteness of its innovations.
+Consistency judge_single_trial(const Evidence& evidence, const Limits& limits);
+
+/// Adds the cautions to a verdict.
+void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
+void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
+void caution_about_shape(const Evidence& evidence, Consistency& verdict);
+
+}  // namespace credence

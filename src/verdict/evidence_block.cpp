@@ -1,0 +1,150 @@
+// The evidence of one block of the state: NEES, its coverage, and errors against what was predicted.
+
+#include "statistics/goodness.hpp"
+
+#include "verdict/evidence_parts.hpp"
+#include "base/nan.hpp"
+
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+Moments scaled(Moments moments, double scale) {
+    moments.mean *= scale;
+    moments.standard_deviation *= scale;
+    moments.standard_error *= scale;
+    return moments;
+}
+
+/// The sum over the steps of one trial, over all trials.
+double run_total(const FigureTotals& totals) {
+    if (totals.run_sum) return totals.run_sum->rounded();
+    ExactSum sum;
+    for (const ExactSum& step : totals.sum) sum.add(step);
+    return sum.rounded();
+}
+
+/// Of each trial's mean over its steps.
+Moments run_moments(const ArmResults& arm, const FigureTotals& totals, int steps, double scale) {
+    return scaled(moments_from_sums(arm.counted, run_total(totals), totals.run_square_sum.rounded()), scale / steps);
+}
+
+std::vector<Coverage> coverage_of(const ArmResults& arm, const FigureTotals& totals) {
+    std::vector<Coverage> coverage;
+    for (std::size_t level = 0; level < coverage_level_count; ++level) {
+        Coverage one{coverage_levels[level], {}, {}, 0};
+        double known = 0;
+        for (std::size_t k = 0; k < totals.sum.size(); ++k) {
+            const double trials = static_cast<double>(arm.counted_at(k)),
+                         covered = static_cast<double>(totals.covered[k * coverage_level_count + level]);
+            one.share.push_back(trials > 0 ? covered / trials : nan);
+            one.interval.push_back(wilson_interval(covered, trials));
+            if (trials == 0) continue;
+            ++known;
+            one.over_steps += one.share.back();
+        }
+        one.over_steps /= known;
+        coverage.push_back(std::move(one));
+    }
+    return coverage;
+}
+
+const FigureTotals* totals_of(const ScenarioResults& results, const ArmResults& arm, FigureRole role,
+                              const std::string& part, std::string& unit) {
+    for (std::size_t f = 0; f < results.figures.size(); ++f)
+        if (results.figures[f].role == role && results.figures[f].part == part) {
+            unit = results.figures[f].unit;
+            return &arm.totals[f];
+        }
+    return nullptr;
+}
+
+/// RMSE and its prediction. The ratio's interval takes the error of the mean square only, to first order: the
+/// prediction varies far less from trial to trial.
+Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& block) {
+    Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
+    const FigureTotals* error = totals_of(results, arm, FigureRole::squared_error, block, accuracy.unit);
+    const FigureTotals* variance = totals_of(results, arm, FigureRole::variance, block, accuracy.unit);
+    if (error == nullptr || variance == nullptr) return accuracy;
+    for (std::size_t k = 0; k < error->sum.size(); ++k) {
+        accuracy.rmse.push_back(std::sqrt(moments_at(arm, *error, k, 1).mean));
+        accuracy.predicted.push_back(std::sqrt(moments_at(arm, *variance, k, 1).mean));
+    }
+    const Moments square = run_moments(arm, *error, results.steps(), 1);
+    const double predicted = run_moments(arm, *variance, results.steps(), 1).mean;
+    accuracy.over_steps = std::sqrt(square.mean);
+    accuracy.ratio = std::sqrt(square.mean / predicted);
+    const Interval interval = t_interval(square);
+    accuracy.ratio_ci95 = {std::sqrt(std::max(0.0, interval.low) / predicted), std::sqrt(interval.high / predicted)};
+    return accuracy;
+}
+
+/// Ratios of a NEES to its dimension, over the run and step by step: what every chart of the error has.
+template <class Ratios>
+void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
+    const Figure& figure = results.figures[f];
+    const FigureTotals& totals = arm.totals[f];
+    evidence.block = figure.part;
+    evidence.dimension = figure.dimension;
+    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / figure.dimension);
+    std::vector<double> sums;
+    for (std::size_t k = 0; k < totals.sum.size(); ++k) {
+        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / figure.dimension));
+        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * figure.dimension);
+        sums.push_back(totals.sum[k].rounded());
+    }
+    fill_bands(sums, evidence.anees);
+}
+
+bool within(double value, const Interval& interval) { return value >= interval.low && value <= interval.high; }
+
+}  // namespace
+
+Moments moments_at(const ArmResults& arm, const FigureTotals& totals, std::size_t k, double scale) {
+    const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
+    return scaled(moments_from_sums(arm.counted_at(k), totals.sum[k].rounded(), square), scale);
+}
+
+void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
+    for (const double degrees : ratio.degrees) ratio.observed += degrees > 0;
+    double previous = 0;
+    Interval band, simultaneous;
+    for (std::size_t k = 0; k < totals.size(); ++k) {
+        const double degrees = ratio.degrees[k];
+        if (degrees != previous) {  // mostly they stay as they are, and quantiles take their time
+            band = degrees > 0 ? chi_square_band(degrees, 0.05) : Interval{nan, nan};
+            simultaneous = degrees > 0 ? chi_square_band(degrees, 0.05 / ratio.observed) : Interval{nan, nan};
+            previous = degrees;
+        }
+        ratio.ratio.push_back(degrees > 0 ? totals[k] / degrees : nan);
+        ratio.band.push_back(degrees > 0 ? band : Interval{nan, nan});
+        ratio.simultaneous_band.push_back(degrees > 0 ? simultaneous : Interval{nan, nan});
+        ratio.outside += degrees > 0 && !within(ratio.ratio.back(), band);
+        ratio.outside_simultaneous += degrees > 0 && !within(ratio.ratio.back(), simultaneous);
+    }
+}
+
+BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+    BlockEvidence evidence;
+    fill_ratios(results, arm, f, evidence);
+    for (const Moments& step : evidence.step) {
+        const double deviation = step.standard_deviation * evidence.dimension;
+        evidence.variance_ratio.push_back(deviation * deviation / (2 * evidence.dimension));
+    }
+    evidence.coverage = coverage_of(arm, arm.totals[f]);
+    evidence.accuracy = accuracy_of(results, arm, evidence.block);
+    return evidence;
+}
+
+ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+    ChartEvidence evidence;
+    fill_ratios(results, arm, f, evidence);
+    // The figure is nees_CHART or nees_CHART_BLOCK.
+    const std::string rest = results.figures[f].name.substr(std::string("nees_").size());
+    evidence.chart = rest.substr(0, rest.find('_'));
+    return evidence;
+}
+
+}  // namespace credence

@@ -1,0 +1,177 @@
+#include "worlds/deformable/keys.hpp"
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include "worlds/values.hpp"
+
+namespace credence {
+
+namespace {
+
+using Keys = std::vector<ScenarioKey>;
+
+void add_scenario_keys(Keys& keys) {
+    add_common_keys(keys);
+    keys.push_back(choice_key<Process>("model.process", {"heading", "translation"},
+                                       [](auto& s) -> auto& { return s.process; }));
+}
+
+void add_feature_keys(Keys& keys) {
+    keys.push_back({"features.positions", "f_0 as `x y, x y`, 1 to 64 of them (length)",
+                    [](Scenario& s, const std::string& v) { s.features.positions = parse_positions(v); },
+                    [](const Scenario& s) { return positions_text(s.features.positions); }});
+    keys.push_back(choice_key<Path>("features.path", {"straight", "circle", "static"},
+                                    [](auto& s) -> auto& { return s.features.path; }));
+    keys.push_back(real_key("features.step", "d, what features and robot move a step (length)", above(0),
+                            [](auto& s) -> auto& { return s.features.step; }));
+    keys.push_back(real_key("features.turn", "delta, turn per step on the circle (rad)", between(-3.2, 3.2),
+                            [](auto& s) -> auto& { return s.features.turn; }));
+    keys.push_back(real_key("features.sway_amplitude", "A, radius of the known local deformation (length)", from(0),
+                            [](auto& s) -> auto& { return s.features.sway_amplitude; }));
+    keys.push_back(real_key("features.sway_period", "T (poses)", from(1e-3),
+                            [](auto& s) -> auto& { return s.features.sway_period; }));
+}
+
+void add_sensor_keys(Keys& keys) {
+    keys.push_back(real_key("sensor.range_min", "nearest range seen, included (length)", from(0),
+                            [](auto& s) -> auto& { return s.sensor.range_min; }));
+    keys.push_back(real_key("sensor.range_max", "farthest range seen, included (length); inf for no limit",
+                            above_or_infinite(0), [](auto& s) -> auto& { return s.sensor.range_max; }));
+    keys.push_back(choice_key<RangeNoise>("sensor.noise", {"constant", "ranged"},
+                                          [](auto& s) -> auto& { return s.sensor.noise; }));
+    keys.push_back(real_key("sensor.sigma", "constant noise of each axis (length)", from(0),
+                            [](auto& s) -> auto& { return s.sensor.sigma; }));
+    keys.push_back(real_key("sensor.sigma_near", "ranged noise at range_min (length)", from(0),
+                            [](auto& s) -> auto& { return s.sensor.sigma_near; }));
+    keys.push_back(real_key("sensor.sigma_far", "ranged noise at range_max, not clamped beyond (length)", from(0),
+                            [](auto& s) -> auto& { return s.sensor.sigma_far; }));
+    keys.push_back(real_key("sensor.detection", "probability that a feature in range is seen", between(0, 1),
+                            [](auto& s) -> auto& { return s.sensor.detection; }));
+}
+
+void add_noise_keys(Keys& keys) {
+    keys.push_back(real_key("noise.heading", "sigma_head of a step (rad)", from(0),
+                            [](auto& s) -> auto& { return s.noise.heading; }));
+    keys.push_back(real_key("noise.odometry", "sigma_odom of a step and axis (length)", from(0),
+                            [](auto& s) -> auto& { return s.noise.odometry; }));
+    keys.push_back(real_key("noise.walk", "sigma_walk of a feature, step and axis (length)", from(0),
+                            [](auto& s) -> auto& { return s.noise.walk; }));
+    keys.push_back(real_key("noise.deformation", "sigma_def of a feature and axis; also the edges' (length)", from(0),
+                            [](auto& s) -> auto& { return s.noise.deformation; }));
+    keys.push_back(real_key("noise.initial_heading", "sigma of the first heading, known to the filter (rad)", from(0),
+                            [](auto& s) -> auto& { return s.noise.initial_heading; }));
+    keys.push_back(real_key("noise.initial_position", "sigma of the first position, known to the filter (length)",
+                            from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
+    keys.push_back({"noise.truncate", "none, or the multiple of sigma beyond which a draw is redrawn (0.1 to 8)",
+                    [](Scenario& s, const std::string& v) { s.noise.truncate = parse_truncate(v); },
+                    [](const Scenario& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; },
+                    {"none"}});
+}
+
+void add_rule_keys(Keys& keys) {
+    keys.push_back(choice_key<Deformation>("truth.deformation", {"jitter", "walk"},
+                                           [](auto& s) -> auto& { return s.truth.deformation; }));
+    keys.push_back(choice_key<EdgeNoise>("truth.edge_noise", {"none", "independent"},
+                                         [](auto& s) -> auto& { return s.truth.edge_noise; }));
+    keys.push_back({"edges.graph", "all, chain, none, or a list of pairs `0-1, 1-2`",
+                    [](Scenario& s, const std::string& v) { s.edges = parse_graph(v); },
+                    [](const Scenario& s) { return graph_text(s.edges); }, {"all", "chain", "none"}});
+}
+
+void add_filter_keys(Keys& keys) {
+    const auto factor = [&](const char* name, const char* help, auto field) {
+        keys.push_back(real_key(name, help, from(0), field));
+    };
+    factor("filter.heading", "factor on the believed noise.heading", [](auto& s) -> auto& { return s.filter.heading; });
+    factor("filter.odometry", "factor on the believed noise.odometry",
+           [](auto& s) -> auto& { return s.filter.odometry; });
+    factor("filter.features", "factor on the believed walk and deformation",
+           [](auto& s) -> auto& { return s.filter.features; });
+    factor("filter.measurement", "factor on the believed sensor noise",
+           [](auto& s) -> auto& { return s.filter.measurement; });
+    factor("filter.edges", "factor on the believed edge noise", [](auto& s) -> auto& { return s.filter.edges; });
+    factor("filter.covariance", "factor on the reported P, for testing the judge",
+           [](auto& s) -> auto& { return s.filter.covariance; });
+}
+
+std::vector<std::string> estimators_to_offer() {
+    std::vector<std::string> names = estimator_names();
+    names.push_back("default");
+    return names;
+}
+
+void add_control_keys(Keys& keys) {
+    keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
+                                         [](auto& s) -> auto& { return s.fixed_path; }));
+    keys.push_back(
+        {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
+         [](Scenario& s, const std::string& v) {
+             s.planner.speeds.reset();
+             if (v != "default") s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
+         },
+         [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; },
+         {"default"}});
+    keys.push_back({"planner.turns",
+                    "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
+                    [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
+                    [](const Scenario& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
+    keys.push_back(
+        {"planner.horizon",
+         "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
+         [](Scenario& s, const std::string& v) {
+             s.planner.horizon.reset();
+             if (v != "default")
+                 s.planner.horizon = static_cast<int>(parse_integer("planner.horizon", v, 1, largest_horizon));
+         },
+         [](const Scenario& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
+         {"default"}});
+    keys.push_back({"arms.controllers", "any of " + joined(controller_names()),
+                    [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
+                    [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
+                    controller_names()});
+    keys.push_back({"arms.estimators",
+                    "any of " + joined(estimator_names()) + " (kf: translation, the others: heading); default: ekf or kf",
+                    [](Scenario& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
+                    [](const Scenario& s) {
+                        return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";
+                    },
+                    estimators_to_offer()});
+}
+
+void add_published_keys(Keys& keys) {
+    const auto published = [&](const char* name, auto field) {
+        keys.push_back({name, "published figures to show in our distribution, as `arm value, arm value`",
+                        [=](Scenario& s, const std::string& v) { field(s) = parse_published(name, v); },
+                        [=](const Scenario& s) { return published_text(field(s)); }});
+    };
+    published("published.trace_P", [](auto& s) -> auto& { return s.published.trace_P; });
+    published("published.unseen", [](auto& s) -> auto& { return s.published.unseen; });
+    published("published.pose_error", [](auto& s) -> auto& { return s.published.pose_error; });
+}
+
+Keys all_keys() {
+    Keys keys;
+    add_scenario_keys(keys);
+    add_feature_keys(keys);
+    add_sensor_keys(keys);
+    add_noise_keys(keys);
+    add_rule_keys(keys);
+    add_filter_keys(keys);
+    add_control_keys(keys);
+    add_published_keys(keys);
+    return keys;
+}
+
+}  // namespace
+
+const std::vector<ScenarioKey>& scenario_keys() {
+    static const Keys keys = all_keys();
+    return keys;
+}
+
+void set_key(Scenario& scenario, const std::string& name, const std::string& value) {
+    set_one_of(scenario_keys(), scenario, name, value);
+}
+
+}  // namespace credence

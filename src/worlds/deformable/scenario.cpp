@@ -1,0 +1,209 @@
+#include <credence/scenario.hpp>
+
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include "worlds/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+std::vector<double> default_turns(const Scenario& scenario) {
+    if (scenario.process == Process::translation) return {};
+    if (robot_path(scenario) == Path::straight) return {0.0};
+    std::vector<double> turns;  // -pi/4 + m pi/10, m = 0 ... 5 [model.md, Controllers]
+    for (int m = 0; m <= 5; ++m) turns.push_back(-pi / 4 + m * pi / 10);
+    return turns;
+}
+
+bool plans_by_horizon(const Scenario& s) {
+    const std::vector<Controller>& controllers = s.arms.controllers;
+    return std::find(controllers.begin(), controllers.end(), Controller::horizon) != controllers.end();
+}
+
+void check_sensor(const SensorSettings& sensor) {
+    if (!(sensor.range_min < sensor.range_max))
+        throw invalid_value("sensor.range_max", to_text(sensor.range_max),
+                            "must be above sensor.range_min=" + to_text(sensor.range_min),
+                            "Give a range that is not empty");
+    if (sensor.noise == RangeNoise::constant) {
+        if (!has_variance(sensor.sigma))
+            throw invalid_value("sensor.sigma", to_text(sensor.sigma), "it makes S singular",
+                                "Give a standard deviation above 0");
+        return;
+    }
+    if (std::isinf(sensor.range_max))
+        throw invalid_value("sensor.range_max", "inf", "ranged noise grows up to range_max",
+                            "Give a finite range or sensor.noise=constant");
+    if (!has_variance(sensor.sigma_near))
+        throw invalid_value("sensor.sigma_near", to_text(sensor.sigma_near), "it makes S singular",
+                            "Give a standard deviation above 0");
+    if (sensor.sigma_far < sensor.sigma_near)
+        throw invalid_value(
+            "sensor.sigma_far", to_text(sensor.sigma_far),
+            "below sensor.sigma_near=" + to_text(sensor.sigma_near) + " it would turn negative far away",
+            "Give at least sigma_near");
+}
+
+/// A believed sigma of 0 is refused where it makes P or S singular [model.md, Conventions].
+void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why) {
+    if (!harmful || has_variance(sigma * factor)) return;
+    if (!has_variance(sigma))
+        throw invalid_value(std::string("noise.") + key, to_text(sigma), why, "Give a standard deviation above 0");
+    const std::string name = std::string("filter.") + (std::string(key) == "deformation" ? "edges" : key);
+    throw invalid_value(name, to_text(factor), why, "Give a factor above 0");
+}
+
+void check_noise(const Scenario& s) {
+    const bool heading = s.process == Process::heading;
+    check_believed("heading", s.noise.heading, s.filter.heading, heading && s.noise.initial_heading == 0,
+                   "the heading's variance would stay 0 and P singular");
+    check_believed("odometry", s.noise.odometry, s.filter.odometry, s.noise.initial_position == 0,
+                   "the position's variance would stay 0 and P singular");
+    check_believed("deformation", s.noise.deformation, s.filter.edges, !edge_list(s).empty(),
+                   "edges believed exact make S or P singular");
+    for (const auto& [name, factor] : {std::pair{"filter.measurement", s.filter.measurement},
+                                       std::pair{"filter.covariance", s.filter.covariance}})
+        if (!has_variance(factor))
+            throw invalid_value(name, to_text(factor), "it makes S or P singular", "Give a factor above 0");
+    if (!heading && s.noise.initial_heading > 0)
+        throw invalid_value("noise.initial_heading", to_text(s.noise.initial_heading),
+                            "the translation model has no heading", "Set it to 0 or use model.process=heading");
+}
+
+void check_edges(const Scenario& s) {
+    const int features = static_cast<int>(s.features.positions.size());
+    for (const Edge& edge : s.edges.list)
+        if (edge.to >= features)
+            throw invalid_value("edges.graph", graph_text(s.edges),
+                                "there are " + std::to_string(features) + " features",
+                                "Name features 0 to " + std::to_string(features - 1));
+}
+
+void check_horizon(const Scenario& s) {
+    const Scenario filled = resolved(s);
+    const int steps = *filled.planner.horizon, candidates = candidate_count(filled);
+    if (steps > 1 && !plans_by_horizon(s))
+        throw invalid_value("planner.horizon", std::to_string(steps),
+                            "no arm plans ahead: arms.controllers=" +
+                                names_text(s.arms.controllers, controller_names()),
+                            "Add horizon to arms.controllers, or leave planner.horizon out");
+    const double sequences = std::pow(candidates, steps);
+    if (sequences > largest_sequence_count)
+        throw invalid_value("planner.horizon", std::to_string(steps),
+                            std::to_string(candidates) + " candidates make " + to_text(sequences) +
+                                " sequences, above " + to_text(largest_sequence_count),
+                            "Give fewer steps, planner.speeds or planner.turns");
+}
+
+void check_planner(const Scenario& s) {
+    const bool heading = s.process == Process::heading;
+    if (s.planner.turns && s.planner.turns->empty() && heading)
+        throw invalid_value("planner.turns", "none", "the heading model needs at least one", "Give turns in radians");
+    if (s.planner.turns && !s.planner.turns->empty() && !heading)
+        throw invalid_value("planner.turns", turns_text(s.planner.turns), "the translation model does not turn",
+                            "Set it to none");
+    check_horizon(s);
+}
+
+void check_arms(const Scenario& s) {
+    const std::string process = s.process == Process::heading ? "heading" : "translation";
+    std::vector<std::string> fitting;
+    for (std::size_t i = 0; i < estimator_names().size(); ++i)
+        if (process_of(static_cast<Estimator>(i)) == s.process) fitting.push_back(estimator_names()[i]);
+    const std::vector<Estimator> asked = *resolved(s).arms.estimators;
+    for (const Estimator estimator : asked)
+        if (process_of(estimator) != s.process)
+            throw invalid_value("arms.estimators", names_text(asked, estimator_names()),
+                                estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" +
+                                    process,
+                                "Give some of " + joined(fitting) + ", or change the process");
+    std::vector<std::string> names;  // of every arm there is, whichever are run
+    for (const std::string& controller : controller_names())
+        for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);
+    for (const auto& [key, figures] :
+         {std::pair{"published.trace_P", &s.published.trace_P}, std::pair{"published.unseen", &s.published.unseen},
+          std::pair{"published.pose_error", &s.published.pose_error}})
+        for (const PublishedFigure& figure : *figures)
+            if (std::find(names.begin(), names.end(), figure.arm) == names.end())
+                throw invalid_value(key, published_text(*figures), "'" + figure.arm + "' is not an arm",
+                                    "Name arms such as " + joined(names));
+}
+
+}  // namespace
+
+Scenario resolved(Scenario scenario) {
+    const bool heading = scenario.process == Process::heading;
+    if (!scenario.planner.speeds) scenario.planner.speeds = heading ? 10 : 5;
+    if (!scenario.planner.turns) scenario.planner.turns = default_turns(scenario);
+    if (!scenario.planner.horizon) scenario.planner.horizon = plans_by_horizon(scenario) ? 2 : 1;
+    if (!scenario.arms.estimators)
+        scenario.arms.estimators = std::vector{heading ? Estimator::ekf : Estimator::kf};
+    return scenario;
+}
+
+void validate(const Scenario& scenario) {
+    check_sensor(scenario.sensor);
+    check_edges(scenario);
+    check_noise(scenario);
+    check_planner(scenario);
+    check_arms(scenario);
+}
+
+std::vector<Arm> arms_of(const Scenario& scenario) {
+    std::vector<Arm> arms;
+    for (const Controller controller : scenario.arms.controllers)
+        for (const Estimator estimator : *scenario.arms.estimators) arms.push_back({controller, estimator});
+    return arms;
+}
+
+std::string arm_name(const Arm& arm) {
+    return controller_names()[static_cast<std::size_t>(arm.controller)] + "." +
+           estimator_names()[static_cast<std::size_t>(arm.estimator)];
+}
+
+std::vector<Edge> edge_list(const Scenario& scenario) {
+    const int features = static_cast<int>(scenario.features.positions.size());
+    std::vector<Edge> edges;
+    switch (scenario.edges.graph) {
+        case EdgeGraph::none: break;
+        case EdgeGraph::list: edges = scenario.edges.list; break;
+        case EdgeGraph::chain:
+            for (int a = 0; a + 1 < features; ++a) edges.push_back({a, a + 1});
+            break;
+        case EdgeGraph::all:
+            for (int a = 0; a < features; ++a)
+                for (int b = a + 1; b < features; ++b) edges.push_back({a, b});
+            break;
+    }
+    return edges;
+}
+
+int candidate_count(const Scenario& scenario) {
+    const int speeds = 2 * *scenario.planner.speeds + 1;
+    if (scenario.process == Process::heading) return static_cast<int>(scenario.planner.turns->size()) * speeds;
+    return robot_path(scenario) == Path::straight ? speeds : speeds * speeds;
+}
+
+Path robot_path(const Scenario& scenario) {
+    switch (scenario.fixed_path) {
+        case FixedPath::straight: return Path::straight;
+        case FixedPath::circle: return Path::circle;
+        case FixedPath::as_features: break;
+    }
+    return scenario.features.path;
+}
+
+int pose_size(const Scenario& scenario) { return scenario.process == Process::heading ? 3 : 2; }
+
+int state_size(const Scenario& scenario) {
+    return pose_size(scenario) + 2 * static_cast<int>(scenario.features.positions.size());
+}
+
+}  // namespace credence

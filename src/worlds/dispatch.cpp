@@ -1,0 +1,92 @@
+#include <credence/error.hpp>
+#include "worlds/simulate.hpp"
+#include <credence/text.hpp>
+
+#include <cstdlib>
+
+#ifdef CREDENCE_X86_UNITS
+#include <cpuid.h>
+#endif
+
+namespace credence {
+
+inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_UNIT by default, hence inline here too
+#ifdef CREDENCE_X86_UNITS
+CREDENCE_DECLARE_UNIT(v3)
+#endif
+#ifdef CREDENCE_UNIT_V4
+CREDENCE_DECLARE_UNIT(v4)
+#endif
+
+namespace {
+
+#ifdef CREDENCE_X86_UNITS
+/// The instructions of x86-64-v3 that a compiler may use and that clang 14 cannot ask for by name.
+bool has_lzcnt_movbe_f16c() {
+    constexpr unsigned movbe = 1u << 22, f16c = 1u << 29, lzcnt = 1u << 5;
+    unsigned eax = 0, ebx = 0, basic = 0, extended = 0, edx = 0;
+    return __get_cpuid(1, &eax, &ebx, &basic, &edx) && __get_cpuid(0x80000001, &eax, &ebx, &extended, &edx) &&
+           (basic & movbe) && (basic & f16c) && (extended & lzcnt);
+}
+
+bool runs_v3() {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2") && has_lzcnt_movbe_f16c();
+}
+
+#ifdef CREDENCE_UNIT_V4
+bool runs_v4() {
+    return runs_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
+#endif
+#endif
+
+/// A unit of this build, and whether this processor runs it.
+struct BuiltUnit {
+    Unit unit;
+    bool runs = false;
+};
+
+/// The best one first.
+std::vector<BuiltUnit> built_units() {
+    return {
+#ifdef CREDENCE_UNIT_V4
+        {CREDENCE_LIST_UNIT(v4, 8), runs_v4()},
+#endif
+#ifdef CREDENCE_X86_UNITS
+        {CREDENCE_LIST_UNIT(v3, 4), runs_v3()},
+#endif
+        {CREDENCE_LIST_UNIT(portable, 1), true}};
+}
+
+/// The unit of this name; throws InputError where there is none that runs.
+Unit forced_unit(const std::string& name) {
+    std::vector<std::string> runnable;
+    std::string why = "not a unit of this build";
+    for (const auto& [unit, runs] : built_units()) {
+        if (runs && unit.name == name) return unit;
+        if (runs)
+            runnable.push_back(unit.name);
+        else if (unit.name == name)
+            why = "this processor cannot run it";
+    }
+    throw invalid_value(force_unit_variable, name, why, "Unset it, or give one of " + joined(runnable));
+}
+
+}  // namespace
+
+std::vector<Unit> runnable_units() {
+    std::vector<Unit> units;
+    for (const auto& [unit, runs] : built_units())
+        if (runs) units.push_back(unit);
+    return units;
+}
+
+Unit best_unit() {
+    const char* forced = std::getenv(force_unit_variable);
+    return forced ? forced_unit(forced) : runnable_units().front();
+}
+
+}  // namespace credence

@@ -1,0 +1,248 @@
+#include <credence/ini.hpp>
+
+#include "worlds/deformable/deformable.hpp"
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include "base/readable_file.hpp"
+
+#include <boost/program_options.hpp>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
+
+namespace credence {
+
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr std::size_t largest_file = 1 << 20;
+
+/// Keys of a scenario text with their values and lines.
+struct Assignment {
+    std::string key, value;
+    int line = 0;
+};
+
+std::string place(const std::string& origin, int line) { return origin + ":" + std::to_string(line) + ": "; }
+
+/// Reads one line through Boost's INI parser; `section` is carried from line to line.
+std::vector<Assignment> read_line(const std::string& text, const std::string& origin, int line, std::string& section) {
+    const std::string bare = trimmed(text.substr(0, text.find('#')));
+    if (bare.empty()) return {};
+    if (bare.front() == '[') {
+        if (bare.back() != ']' || bare.size() < 3)
+            throw InputError(place(origin, line) + "broken section `" + printable(bare) + "`. Write [section].");
+        section = trimmed(std::string_view(bare).substr(1, bare.size() - 2));
+        return {};
+    }
+    const po::options_description nothing_declared;
+    std::istringstream stream((section.empty() ? "" : "[" + section + "]\n") + bare + "\n");
+    std::vector<Assignment> read;
+    try {
+        for (const auto& option : po::parse_config_file(stream, nothing_declared, true).options)
+            read.push_back({option.string_key, trimmed(joined(option.value)), line});
+    } catch (const po::error&) {
+        throw InputError(place(origin, line) + "broken line `" + printable(bare) + "`. Write key = value.");
+    }
+    return read;
+}
+
+std::vector<Assignment> read_lines(const std::string& text, const std::string& origin) {
+    std::vector<Assignment> all;
+    std::map<std::string, int> lines;
+    const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors begin every text with it
+    std::istringstream stream(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    std::string line, section;
+    for (int number = 1; std::getline(stream, line); ++number)
+        for (Assignment& one : read_line(line, origin, number, section)) {
+            const auto [first, is_new] = lines.emplace(one.key, number);
+            if (!is_new)
+                throw InputError(place(origin, number) + "repeated key " + printable(one.key) + " (it stands in line " +
+                                 std::to_string(first->second) + " already). Keep one of them.");
+            all.push_back(std::move(one));
+        }
+    return all;
+}
+
+/// A value that the text or an override gives to a key, and how messages call its place.
+struct Given {
+    std::string value, where;
+};
+
+/// The last one; nothing where the key is not given.
+std::optional<Given> given(const std::string& key, const std::vector<Assignment>& assignments,
+                           const std::string& origin, const Overrides& overrides) {
+    std::optional<Given> last;
+    for (const Assignment& one : assignments)
+        if (one.key == key) last = Given{one.value, place(origin, one.line)};
+    for (const auto& [name, value] : overrides)
+        if (name == key) last = Given{trimmed(value), "--set " + key + ": "};
+    return last;
+}
+
+/// An empty scenario of the world that the text or an override names.
+std::unique_ptr<Draft> draft_of(const std::vector<Assignment>& assignments, const std::string& origin,
+                                const Overrides& overrides) {
+    const Given world = given(world_key, assignments, origin, overrides).value_or(Given{first_world, origin + ": "});
+    Declaration named;
+    named.world = world.value;
+    try {
+        return world_of(named).draft();
+    } catch (const InputError& error) {
+        throw InputError(world.where + error.what(), error.key());
+    }
+}
+
+/// Sets a key of the world, or of the place in a grid, which scenarios of every world have.
+void set(Draft& draft, SweepPoint& sweep, const std::string& key, const std::string& value) {
+    if (key == "sweep.at") sweep.at = parse_coordinates(value);
+    else if (key == "sweep.of") sweep.of = value;
+    else draft.set(key, value);
+}
+
+/// Sets what the text and the overrides say. Refusals name the line, or --set. Returns the lines of the keys, for
+/// refusals of what comes after.
+std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vector<Assignment>& assignments,
+                                const std::string& origin, const Overrides& overrides) {
+    std::map<std::string, int> lines;
+    for (const Assignment& one : assignments) {
+        if (one.key == world_key) continue;
+        try {
+            set(draft, sweep, one.key, one.value);
+        } catch (const InputError& error) {
+            throw InputError(place(origin, one.line) + error.what(), error.key());
+        }
+        lines[one.key] = one.line;
+    }
+    for (const auto& [key, value] : overrides) {
+        if (key == world_key) continue;
+        try {
+            set(draft, sweep, key, trimmed(value));
+        } catch (const InputError& error) {
+            throw InputError("--set " + printable(key) + ": " + error.what(), error.key());
+        }
+        lines.erase(key);
+    }
+    return lines;
+}
+
+std::string text_of_file(const std::string& path) {
+    const auto refuse = [&](const std::string& why, const std::string& remedy) {
+        return InputError("cannot read scenario " + path + " (" + why + "). " + remedy + ".");
+    };
+    try {
+        std::string text = start_of_file(path, largest_file + 1);
+        if (text.size() > largest_file) throw refuse("it is larger than 1 MiB", "Give an INI file");
+        return text;
+    } catch (const Unreadable& why) {
+        if (why.is_missing()) throw refuse("there is no such file", "Check the path");
+        if (why.is_irregular()) throw refuse("it is not a file", "Give an INI file");
+        throw refuse(why.what(), remedy_for_reading(why.error()));
+    }
+}
+
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
+/// Throws where a scenario is not at the place of a grid that it says.
+void check_place(const Declaration& scenario) {
+    const SweepPoint& sweep = scenario.sweep;
+    if (sweep.at.empty() && sweep.of.empty()) return;
+    if (sweep.at.empty() || sweep.of.empty() || !names_something(sweep.of))
+        throw invalid_value("sweep.of", sweep.of, "a point of a grid says of which scenario, and where in sweep.at",
+                            "Give both, or neither");
+    for (const SweepCoordinate& one : sweep.at) {
+        const std::string value = value_of(scenario, one.key);
+        if (value == one.value) continue;
+        const std::unique_ptr<Draft> said = world_of(scenario).draft();  // `default` may be the same
+        for (const Setting& setting : scenario.settings)
+            if (setting.key != world_key) said->set(setting.key, setting.value);
+        said->set(one.key, one.value);
+        if (value_of(said->declare(), one.key) != value)
+            throw invalid_value("sweep.at", coordinates_text(sweep.at), "the scenario has " + one.key + "=" + value,
+                                "Give the value that it has");
+    }
+}
+
+/// A scenario at a point of its grid, where it goes by another name.
+Declaration declared_at(Draft& draft, const std::string& origin, const SweepPoint& point, const std::string& name) {
+    for (const SweepCoordinate& one : point.at) {
+        try {
+            draft.set(one.key, one.value);
+        } catch (const InputError& error) {
+            throw InputError("--sweep " + printable(one.key) + ": " + error.what(), error.key());
+        }
+    }
+    try {
+        draft.set("scenario.name", name);
+        Declaration scenario = draft.declare();
+        scenario.sweep = point;
+        return scenario;
+    } catch (const InputError& error) {
+        throw InputError(origin + " at " + printable(coordinates_text(point.at)) + ": " + error.what(), error.key());
+    }
+}
+
+}  // namespace
+
+std::vector<Setting> read_settings(const std::string& text, const std::string& origin) {
+    std::vector<Setting> settings;
+    for (Assignment& one : read_lines(text, origin)) settings.push_back({std::move(one.key), std::move(one.value)});
+    return settings;
+}
+
+Declaration read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                                  const Overrides& overrides) {
+    const std::vector<Assignment> assignments = read_lines(text, origin);
+    const std::unique_ptr<Draft> draft = draft_of(assignments, origin, overrides);
+    SweepPoint sweep;
+    const std::map<std::string, int> lines = fill(*draft, sweep, assignments, origin, overrides);
+    try {
+        // It is refused only where it is used.
+        if (!given("scenario.name", assignments, origin, overrides)) draft->set("scenario.name", default_name);
+        Declaration scenario = draft->declare();
+        scenario.sweep = std::move(sweep);
+        check_place(scenario);
+        return scenario;
+    } catch (const InputError& error) {
+        const auto line = lines.find(error.key());
+        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
+                         error.key());
+    }
+}
+
+Declaration read_declaration(const std::string& path, const Overrides& overrides) {
+    return read_declaration_text(text_of_file(path), path, stem(path), overrides);
+}
+
+std::vector<Declaration> read_grid(const std::string& path, const Overrides& overrides,
+                                   const std::vector<SweepAxis>& axes) {
+    if (axes.empty()) return {read_declaration(path, overrides)};
+    const std::vector<Assignment> assignments = read_lines(text_of_file(path), path);
+    const std::string name = given("scenario.name", assignments, path, overrides).value_or(Given{stem(path), ""}).value;
+    std::vector<Declaration> scenarios;
+    for (const std::vector<SweepCoordinate>& at : grid_points(axes)) {
+        const std::unique_ptr<Draft> draft = draft_of(assignments, path, overrides);
+        SweepPoint before;
+        fill(*draft, before, assignments, path, overrides);
+        if (!before.of.empty())
+            throw InputError("cannot sweep " + path + " (it is a point of a grid already: sweep.of=" +
+                             printable(before.of) + "). Remove its section [sweep], or sweep the scenario it is of.");
+        scenarios.push_back(declared_at(*draft, path, {name, at}, point_name(name, axes, at)));
+    }
+    return scenarios;
+}
+
+Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+                            const Overrides& overrides) {
+    return scenario_of(read_declaration_text(text, origin, default_name, overrides));
+}
+
+Scenario read_scenario(const std::string& path, const Overrides& overrides) {
+    return scenario_of(read_declaration(path, overrides));
+}
+
+}  // namespace credence

@@ -1,0 +1,37 @@
+#pragma once
+// The world of landmarks as one of the worlds.
+
+#include "worlds/landmarks/problem.hpp"
+#include "worlds/simulate.hpp"
+#include <credence/worlds.hpp>
+
+#include <memory>
+#include <string>
+
+namespace credence {
+
+inline const std::string landmark_world_name = "landmarks";
+
+std::unique_ptr<const World> landmark_world();
+
+/// A valid scenario as everything from the block up knows it, and back. The second throws InputError where the settings
+/// are not those of the world of landmarks.
+Declaration declaration_of(const LandmarkScenario& scenario);
+LandmarkScenario landmark_scenario_of(const Declaration& declared);
+
+/// The trials of a valid scenario, on a unit.
+class LandmarkSimulation : public Simulation {
+public:
+    explicit LandmarkSimulation(const LandmarkScenario& scenario, Unit unit = best_unit());
+    const SimulationShape& shape() const override { return shape_; }
+    std::size_t workspace_size(std::size_t arm) const override;
+    void simulate(std::size_t arm, const Batch& batch) const override;
+
+private:
+    LandmarkProblem problem_;
+    Unit unit_;
+    std::vector<Estimator> arms_;
+    SimulationShape shape_;
+};
+
+}  // namespace credence

@@ -1,0 +1,83 @@
+#include "worlds/landmarks/problem.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+Scenario reported_as(const LandmarkScenario& scenario) {
+    Scenario slam;
+    slam.length_unit = scenario.length_unit;
+    slam.features.positions.resize(static_cast<std::size_t>(scenario.landmarks.count));
+    slam.edges.graph = EdgeGraph::none;
+    slam.arms.estimators = scenario.estimators;
+    return slam;
+}
+
+std::vector<Figure> landmark_figures(const LandmarkScenario& scenario) {
+    std::vector<Figure> figures = step_figures(reported_as(scenario));
+    figures.push_back({"unsettled_updates", "iterated updates whose last pass still moved the mean", "1",
+                       FigureRole::other, 0, true, "", "", 0});
+    return figures;
+}
+
+LandmarkProblem::LandmarkProblem(const LandmarkScenario& scenario) {
+    const Scenario slam = reported_as(scenario);
+    view_.poses = scenario.poses;
+    view_.features = scenario.landmarks.count;
+    view_.state_size = state_size(slam);
+    const std::vector<StateBlock> blocks = state_blocks(slam);
+    coverage_bounds_ = coverage_bounds(blocks);
+    view_.block_count = static_cast<int>(blocks.size());
+    view_.coverage_bounds = coverage_bounds_.data();
+    view_.charts = charts_of(slam);
+    view_.figure_count = static_cast<int>(landmark_figures(scenario).size());
+    fill_loop(scenario);
+    fill_world(scenario);
+    fill_filter(scenario);
+}
+
+/// theta_k = theta_{k-1} + omega, r_k = r_{k-1} + R(theta_{k-1}) v.
+void LandmarkProblem::fill_loop(const LandmarkScenario& scenario) {
+    const double turn = 2 * pi / scenario.loop.sides;
+    const std::size_t steps = static_cast<std::size_t>(scenario.poses - 1);
+    motion_.assign(steps, {turn, {scenario.loop.step, 0}});
+    pose_.resize(steps + 1);
+    for (std::size_t k = 1; k <= steps; ++k) {
+        const LoopPose& before = pose_[k - 1];
+        const Point move = polar(scenario.loop.step, before.heading);
+        pose_[k] = {before.heading + turn, {before.position.x + move.x, before.position.y + move.y}};
+    }
+}
+
+void LandmarkProblem::fill_world(const LandmarkScenario& scenario) {
+    const Rotation<double> half_turn = rotation(pi / scenario.loop.sides);
+    const double radius = scenario.loop.step / (2 * half_turn.sine);
+    const Point centre{scenario.loop.step / 2, radius * half_turn.cosine};
+    for (int j = 0; j < scenario.landmarks.count; ++j) {
+        const double offset = j % 2 == 0 ? scenario.landmarks.offset : -scenario.landmarks.offset;
+        const Point arm = polar(radius + offset, 2 * pi * j / scenario.landmarks.count);
+        landmark_.push_back({centre.x + arm.x, centre.y + arm.y});
+    }
+    set_range(view_.sensor, 0, scenario.sensor.range_max);
+    view_.sensor.sigma = scenario.sensor.sigma;
+    for (const Point& landmark : landmark_) {
+        const auto sees = [&](const LoopPose& pose) {
+            return in_range(view_.sensor, squared_range(broadcast<double>(pose.position), broadcast<double>(landmark)));
+        };
+        first_pose_.push_back(static_cast<int>(std::find_if(pose_.begin(), pose_.end(), sees) - pose_.begin()));
+    }
+    view_.world = {pose_.data(), motion_.data(), landmark_.data(), first_pose_.data(), scenario.noise.heading,
+                   scenario.noise.odometry, scenario.landmarks.prior};
+}
+
+void LandmarkProblem::fill_filter(const LandmarkScenario& scenario) {
+    still_.resize(pose_.size() * landmark_.size());
+    FilterParameters& filter = view_.filter;
+    filter.features = view_.features;
+    filter.translation = still_.data();
+    filter.sway_increment = still_.data();
+    filter.variance_heading = scenario.noise.heading * scenario.noise.heading;
+    filter.variance_odometry = scenario.noise.odometry * scenario.noise.odometry;
+}
+
+}  // namespace credence

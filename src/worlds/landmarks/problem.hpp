@@ -1,0 +1,47 @@
+#pragma once
+// A scenario of the world of landmarks made ready: the tables that its equations read, computed once.
+
+#include "worlds/landmarks/scenario.hpp"
+#include "worlds/landmarks/world.hpp"
+#include "slam/trial/problem.hpp"
+
+namespace credence {
+
+/// What a trial among landmarks reads: plain numbers and pointers into a LandmarkProblem.
+struct LandmarkView : CommonView {
+    LandmarkParameters world;
+};
+
+/// The SLAM scenario whose trials report what these do: one with a heading, as many features, the same estimators and no
+/// edges.
+Scenario reported_as(const LandmarkScenario& scenario);
+
+/// The per-step figures, in the order in which landmark_trial.hpp writes them: those of a SLAM scenario, and whether an
+/// iterated update had come to rest.
+std::vector<Figure> landmark_figures(const LandmarkScenario& scenario);
+
+/// Owns the tables of one validated scenario. The truth is the same bits everywhere: its geometry uses the project's own
+/// sincos, and what is in sight is found as a trial finds it.
+class LandmarkProblem {
+public:
+    explicit LandmarkProblem(const LandmarkScenario& scenario);
+    LandmarkProblem(const LandmarkProblem&) = delete;
+    LandmarkProblem& operator=(const LandmarkProblem&) = delete;
+
+    const LandmarkView& view() const { return view_; }
+
+private:
+    void fill_loop(const LandmarkScenario& scenario);
+    void fill_world(const LandmarkScenario& scenario);
+    void fill_filter(const LandmarkScenario& scenario);
+
+    std::vector<LoopPose> pose_;
+    std::vector<Control> motion_;
+    std::vector<Point> landmark_;
+    std::vector<int> first_pose_;
+    std::vector<Point> still_;            ///< [K, M] zeros: landmarks neither drift nor sway
+    std::vector<double> coverage_bounds_;
+    LandmarkView view_;
+};
+
+}  // namespace credence

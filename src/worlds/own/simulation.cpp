@@ -1,0 +1,299 @@
+// Trials of a world of somebody's own, one after the other: judged like a record, added up like a unit's batch.
+
+#include "numeric/chi_square.hpp"
+#include <credence/detail/draws.hpp>
+#include <credence/own_trial.hpp>
+#include "scenario/state_figures.hpp"
+
+#include "worlds/own/step.hpp"
+#include "worlds/own/lag_products.hpp"
+#include "base/nan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+namespace credence {
+
+namespace {
+
+std::size_t size(int count) { return static_cast<std::size_t>(count); }
+
+RecordShape judged_shape(const Declaration& scenario, const OwnReport& report) {
+    RecordShape shape;
+    shape.steps = scenario.poses - 1;
+    shape.n = static_cast<int>(scenario.components.size());
+    shape.m = report.largest_innovation;
+    shape.blocks = scenario.blocks;
+    shape.covariance_epsilon = shape.innovation_epsilon = std::numeric_limits<double>::epsilon();
+    return shape;
+}
+
+/// What every trial of a scenario reads.
+struct Case {
+    Declaration scenario;
+    OwnReport report;
+    std::vector<Column> columns;
+    RecordShape shape;
+    StateFigures figures;
+    std::vector<double> coverage_bounds;  ///< [blocks, levels]
+    std::function<void(OwnTrial&)> run;
+
+    Case(const Declaration& declared, const OwnReport& reported, std::function<void(OwnTrial&)> one)
+        : scenario(declared),
+          report(reported),
+          columns(own_columns(declared, reported)),
+          shape(judged_shape(declared, reported)),
+          figures(declared.components, declared.blocks,
+                  reported.largest_innovation > 0 ? Innovations::given : Innovations::none),
+          run(std::move(one)) {
+        for (const StateBlock& block : scenario.blocks)
+            for (const double level : coverage_levels)
+                coverage_bounds.push_back(stable_chi_square_quantile(level, block.count));
+    }
+    std::size_t steps() const { return size(scenario.poses - 1); }
+};
+
+/// A failed trial's way out of the user's function.
+struct TrialEnds {};
+
+/// One trial after the other, judged step by step.
+class JudgedTrial : public OwnTrial {
+public:
+    JudgedTrial(const Case& of, std::size_t arm)
+        : case_(of),
+          arm_(arm),
+          judge_(of.shape, of.figures),
+          figures_(of.figures.list.size() * of.steps()),
+          errors_(of.steps() * size(of.shape.n)),
+          own_(of.report.columns.size()),
+          step_figures_(of.figures.list.size()),
+          products_(size(lag_count(of.scenario.poses)), size(of.shape.m)) {}
+
+    void run(std::uint64_t root_seed, std::uint64_t trial) {
+        draws_.emplace(root_seed, trial, std::numeric_limits<double>::infinity());
+        std::fill(own_.begin(), own_.end(), 0.0);
+        products_.start_trial();
+        status_ = Status::completed;
+        status_pose_ = -1;
+        step_ = 0;
+        try {
+            case_.run(*this);
+        } catch (const TrialEnds&) {
+            return;
+        }
+        if (step_ != case_.steps())
+            throw std::logic_error("world " + case_.scenario.world + ": a trial took " + std::to_string(step_) +
+                                   " steps, not " + std::to_string(case_.steps()) + ".");
+    }
+
+    std::size_t arm() const override { return arm_; }
+    int poses() const override { return case_.scenario.poses; }
+    // (Left to itself, g++ keeps the generator's rounds out of line, which costs a fifteenth of a tracker's time.)
+    CREDENCE_FLAT Eigen::Vector2d normal(int source, int pose, int index) const override {
+        const Vector2<double> draw = draws_->normal(static_cast<Source>(source), pose, key_index(source, pose, index));
+        return {draw.x, draw.y};
+    }
+    CREDENCE_FLAT double uniform(int source, int pose, int index) const override {
+        return draws_->uniform(static_cast<Source>(source), pose, key_index(source, pose, index));
+    }
+    void set(std::size_t column, double value) override {
+        require(column < own_.size(), "a column that it does not have is set");
+        own_[column] = value;
+    }
+
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) override {
+        checked_.rows.clear();
+        take(error, P);
+    }
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
+              const Eigen::MatrixXd& S) override {
+        require(innovation.size() <= case_.shape.m, "an innovation longer than innovation_rows");
+        require(S.rows() == innovation.size() && S.cols() == S.rows(), "an S of another size than its innovation");
+        checked_.rows.clear();
+        for (Eigen::Index row = 0; row < innovation.size(); ++row)
+            if (!std::isnan(innovation(row))) checked_.rows.push_back(static_cast<int>(row));
+        const auto m = static_cast<Eigen::Index>(checked_.rows.size());
+        checked_.nu.resize(m);
+        checked_.S.resize(m, m);
+        for (Eigen::Index a = 0; a < m; ++a) {
+            const int i = checked_.rows[static_cast<std::size_t>(a)];
+            checked_.nu(a) = innovation(i);
+            for (Eigen::Index b = 0; b <= a; ++b)
+                checked_.S(a, b) = checked_.S(b, a) = S(i, checked_.rows[static_cast<std::size_t>(b)]);
+        }
+        take(error, P);
+    }
+
+    /// [figure_count, K - 1]; steps of a failed trial hold anything.
+    const std::vector<double>& figures() const { return figures_; }
+    const std::vector<double>& errors() const { return errors_; }  ///< [K - 1, n]
+    const LagProducts& products() const { return products_; }
+    bool counts() const { return !failed(status_); }
+
+    void columns(std::vector<double>& row) const {
+        const auto total = [&](std::size_t f) {
+            double sum = 0;
+            for (std::size_t k = 0; k < case_.steps(); ++k) sum += figures_[f * case_.steps() + k];
+            return sum;
+        };
+        const StateFigures& at = case_.figures;
+        const double steps = static_cast<double>(case_.steps());
+        const bool innovations = case_.shape.has_innovations();
+        row = {figures_[(at.variance + 1) * case_.steps() - 1]};
+        row.insert(row.end(), own_.begin(), own_.end());
+        row.insert(row.end(), {total(at.squared_error), total(0) / steps / case_.shape.n,
+                               innovations ? total(at.nis) / total(at.rows) : nan, total(at.variance) / steps,
+                               static_cast<double>(status_), static_cast<double>(status_pose_)});
+    }
+
+private:
+    /// The index as a key has it. Two keys that the counter could not tell apart would be one draw, and are refused.
+    int key_index(int source, int pose, int index) const {
+        const bool usual = ((source & ~(source_count - 1)) | (index & ~0xffff)) == 0 && pose >= 0;
+        return usual ? index : rare_index(source, pose, index);
+    }
+    [[gnu::cold, gnu::noinline]] int rare_index(int source, int pose, int index) const {
+        const auto check = [&](const char* what, int value, int largest) {
+            if (value < 0 || value > largest)
+                throw std::logic_error("world " + case_.scenario.world + ": invalid " + what + " of a draw " +
+                                       std::to_string(value) + " (must be 0 to " + std::to_string(largest) + ").");
+        };
+        check("source", source, source_count - 1);
+        check("pose", pose, std::numeric_limits<int>::max());
+        check("index", index, largest_wide_index);
+        return wide_index(index);
+    }
+
+    void require(bool good, const char* otherwise) const {
+        if (!good) throw std::logic_error("world " + case_.scenario.world + ": " + otherwise + ".");
+    }
+
+    void take(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
+        const Eigen::Index n = case_.shape.n;
+        require(step_ < case_.steps(), "a trial took more steps than it has");
+        require(error.size() == n && P.rows() == n && P.cols() == n, "an error or P of another size than the state");
+        checked_.e = error;
+        checked_.P = P.selfadjointView<Eigen::Lower>();
+        if (!error.allFinite() || !checked_.P.allFinite() ||
+            (!checked_.rows.empty() && !(checked_.nu.allFinite() && checked_.S.allFinite())))
+            end(Status::non_finite);
+        if (!judge_.judge(checked_, step_figures_.data(), products_.at(step_).data()).empty())
+            end(Status::covariance_not_positive_definite);
+        if (!figures_add_up(step_figures_.data(), step_figures_.size())) end(Status::non_finite);
+        if (status_ == Status::completed && error.cwiseAbs().maxCoeff() > divergence_bound) note(Status::diverged);
+        for (std::size_t f = 0; f < step_figures_.size(); ++f) figures_[f * case_.steps() + step_] = step_figures_[f];
+        std::copy(error.begin(), error.end(), errors_.begin() + static_cast<std::ptrdiff_t>(step_) * n);
+        products_.correlate(step_);
+        ++step_;
+    }
+
+    void note(Status status) {
+        status_ = status;
+        status_pose_ = static_cast<int>(step_) + 1;
+    }
+    [[noreturn]] void end(Status status) {
+        note(status);
+        throw TrialEnds();
+    }
+
+    const Case& case_;
+    std::size_t arm_;
+    StepJudge judge_;
+    std::optional<KeyedDraws<double>> draws_;
+    CheckedStep checked_;
+    Status status_ = Status::completed;
+    int status_pose_ = -1;
+    std::size_t step_ = 0;
+    std::vector<double> figures_, errors_, own_, step_figures_;
+    LagProducts products_;
+};
+
+/// Adds a trial to a batch's running sums, at its place among eight.
+class BatchSums {
+public:
+    BatchSums(const Case& of, const Batch& batch) : case_(of), batch_(batch) {}
+
+    void add(int trial, const JudgedTrial& judged, const std::vector<double>& row) {
+        const std::size_t i = size(trial), place = i % octet, steps = case_.steps();
+        for (std::size_t c = 0; c < row.size(); ++c)
+            batch_.columns[(i / octet * row.size() + c) * octet + place] = row[c];
+        const std::size_t padded = size((batch_.trials + octet - 1) / octet * octet);
+        for (std::size_t k = 0; k < steps; ++k) batch_.nees[k * padded + i] = judged.figures()[k];
+        if (batch_.errors != nullptr)
+            for (std::size_t c = 0, n = case_.scenario.components.size(); c < n; ++c)
+                for (std::size_t k = 0; k < steps; ++k)
+                    batch_.errors[(c * steps + k) * padded + i] = judged.errors()[k * n + c];
+        if (!judged.counts()) return;
+        for (std::size_t f = 0; f < case_.figures.list.size(); ++f) add_figure(f, place, judged);
+        for (std::size_t b = 0; b < case_.scenario.blocks.size(); ++b) add_coverage(b, judged);
+        if (batch_.errors != nullptr) add_products(place, judged.products());
+    }
+
+private:
+    void add_figure(std::size_t f, std::size_t place, const JudgedTrial& judged) {
+        const std::size_t steps = case_.steps();
+        double run = 0;
+        for (std::size_t cell = f * steps; cell < (f + 1) * steps; ++cell) {
+            const double value = judged.figures()[cell];
+            batch_.sums[cell * octet + place] += value;
+            batch_.square_sums[cell * octet + place] += value * value;
+            run += value;
+        }
+        batch_.run_square_sums[f * octet + place] += run * run;
+    }
+
+    void add_coverage(std::size_t b, const JudgedTrial& judged) {
+        for (std::size_t cell = b * case_.steps(); cell < (b + 1) * case_.steps(); ++cell)
+            for (std::size_t level = 0; level < coverage_level_count; ++level)
+                batch_.covered[cell * coverage_level_count + level] +=
+                    judged.figures()[cell] < case_.coverage_bounds[b * coverage_level_count + level];
+    }
+
+    void add_products(std::size_t place, const LagProducts& products) {
+        for (std::size_t lag = 0; lag < products.sum.size(); ++lag) {
+            batch_.product_sums[lag * octet + place] += products.sum[lag];
+            batch_.product_square_sums[lag * octet + place] += products.sum[lag] * products.sum[lag];
+            batch_.product_counts[lag * octet + place] += products.count[lag];
+        }
+    }
+
+    const Case& case_;
+    const Batch& batch_;
+};
+
+class OwnSimulation : public Simulation {
+public:
+    OwnSimulation(const Declaration& scenario, const OwnReport& report, std::function<void(OwnTrial&)> run)
+        : case_(scenario, report, std::move(run)),
+          shape_{scenario.poses, case_.shape.n, static_cast<int>(case_.columns.size()),
+                 static_cast<int>(case_.figures.list.size()), static_cast<int>(scenario.blocks.size())} {}
+
+    const SimulationShape& shape() const override { return shape_; }
+    std::size_t workspace_size(std::size_t) const override { return 0; }
+    void simulate(std::size_t arm, const Batch& batch) const override {
+        JudgedTrial trial(case_, arm);
+        BatchSums sums(case_, batch);
+        std::vector<double> row;
+        for (int i = 0; i < batch.trials; ++i) {
+            trial.run(batch.root_seed, static_cast<std::uint64_t>(batch.first_trial + i));
+            trial.columns(row);
+            sums.add(i, trial, row);
+        }
+    }
+
+private:
+    Case case_;
+    SimulationShape shape_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Simulation> own_simulation(const Declaration& scenario, const OwnReport& report,
+                                                 std::function<void(OwnTrial&)> run) {
+    return std::make_unique<OwnSimulation>(scenario, report, std::move(run));
+}
+
+}  // namespace credence

@@ -1,0 +1,48 @@
+#pragma once
+// The door between the engine and the units: the same source, compiled once for each instruction set.
+
+#include <credence/detail/batch.hpp>
+#include "worlds/landmarks/problem.hpp"
+#include "slam/trial/problem.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace credence {
+
+/// Simulates a batch of an arm. The same bits from every unit.
+using SimulateFunction = void (*)(const ProblemView&, const Arm&, const Batch&);
+
+/// A unit by name: v4 (AVX-512), v3 (AVX2 and FMA) or portable; with the number of trials it runs at once.
+struct Unit {
+    std::string name;
+    int lanes = 1;
+    SimulateFunction simulate = nullptr;
+    std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
+    void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
+    std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
+};
+
+/// What a unit compiled from src/worlds/deformable/unit.cpp and src/worlds/landmarks/unit.cpp offers under its name, and its
+/// entry in a list of units.
+#define CREDENCE_DECLARE_UNIT(name)                    \
+    namespace name {                                   \
+    void simulate(const ProblemView&, const Arm&, const Batch&); \
+    std::size_t workspace_size(const ProblemView&, Estimator); \
+    void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
+    std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
+    }
+#define CREDENCE_LIST_UNIT(name, lanes) \
+    Unit{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
+
+/// Environment variable that names the unit to run, for tests.
+inline constexpr const char* force_unit_variable = "CREDENCE_FORCE_UNIT";
+
+/// Every unit that was built and that this processor can run, the best one first.
+std::vector<Unit> runnable_units();
+
+/// The unit that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
+/// InputError where that is none of runnable_units; who computes calls this before anything else.
+Unit best_unit();
+
+}  // namespace credence

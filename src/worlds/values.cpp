@@ -1,0 +1,225 @@
+#include "worlds/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+std::string range_text(const ValueRange& range) {
+    std::string text = range.low_included ? "at least " + to_text(range.low) : "above " + to_text(range.low);
+    text += " and at most " + to_text(range.high);
+    return "must be " + text + (range.infinity_allowed ? ", or inf" : "");
+}
+
+bool inside(double value, const ValueRange& range) {
+    if (std::isinf(value)) return value > 0 && range.infinity_allowed;
+    return (range.low_included ? value >= range.low : value > range.low) && value <= range.high;
+}
+
+std::string characters_not_in(const std::string& value, bool (*allowed)(char)) {
+    const auto bad = std::find_if_not(value.begin(), value.end(), allowed);
+    return bad == value.end() ? "" : "it holds a character that is not allowed there";
+}
+
+int parse_feature_index(const std::string& value, const std::string& text) {
+    const std::optional<std::int64_t> index = to_integer(text);
+    if (!index || *index < 0 || *index >= largest_feature_count)
+        throw invalid_value("edges.graph", value, "'" + text + "' is not a feature", "Features count from 0");
+    return static_cast<int>(*index);
+}
+
+/// A list of names of an enumeration, without repeats.
+template <class Enum>
+std::vector<Enum> parse_names(const std::string& name, const std::string& value,
+                              const std::vector<std::string>& names) {
+    std::vector<Enum> values;
+    for (const std::string& part : split_list(value)) {
+        const Enum one = static_cast<Enum>(parse_choice(name, part, names));
+        if (std::find(values.begin(), values.end(), one) != values.end())
+            throw invalid_value(name, value, part + " stands there twice", "Name each once");
+        values.push_back(one);
+    }
+    if (values.empty()) throw invalid_value(name, value, "it is empty", "Give at least one of " + joined(names));
+    return values;
+}
+
+}  // namespace
+
+double parse_real(const std::string& name, const std::string& value, const ValueRange& range) {
+    const std::optional<double> number = to_number(value);
+    if (!number) throw invalid_value(name, value, "not a number", "It " + range_text(range));
+    if (!inside(*number, range)) throw invalid_value(name, value, range_text(range), "Give a number in that range");
+    return *number;
+}
+
+std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high) {
+    const std::optional<std::int64_t> number = to_integer(value);
+    const std::string bounds = low == high
+                                   ? "must be " + std::to_string(low)
+                                   : "must be at least " + std::to_string(low) + " and at most " + std::to_string(high);
+    if (!number) throw invalid_value(name, value, "not a whole number", "It " + bounds);
+    if (*number < low || *number > high) throw invalid_value(name, value, bounds, "Give a number in that range");
+    return *number;
+}
+
+std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices) {
+    const auto found = std::find(choices.begin(), choices.end(), value);
+    if (found == choices.end())
+        throw invalid_value(name, value, "not one of its choices", "Give one of " + joined(choices));
+    return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::vector<Point> parse_positions(const std::string& value) {
+    const std::string name = "features.positions";
+    std::vector<Point> positions;
+    for (const std::string& pair : split_list(value)) {
+        const std::size_t space = pair.find_first_of(" \t");
+        const std::string x = pair.substr(0, space), y = space == std::string::npos ? "" : trimmed(pair.substr(space));
+        const ValueRange anywhere = between(-largest_value, largest_value);
+        positions.push_back({parse_real(name, x, anywhere), parse_real(name, y, anywhere)});
+    }
+    if (positions.empty() || positions.size() > largest_feature_count)
+        throw invalid_value(name, value, std::to_string(positions.size()) + " features",
+                            "Give 1 to " + std::to_string(largest_feature_count) + " as `x y, x y`");
+    return positions;
+}
+
+std::string positions_text(const std::vector<Point>& positions) {
+    std::vector<std::string> parts;
+    for (const Point& p : positions) parts.push_back(to_text(p.x) + " " + to_text(p.y));
+    return joined(parts);
+}
+
+EdgeSettings parse_graph(const std::string& value) {
+    if (value == "all") return {EdgeGraph::all, {}};
+    if (value == "chain") return {EdgeGraph::chain, {}};
+    if (value == "none") return {EdgeGraph::none, {}};
+    EdgeSettings edges{EdgeGraph::list, {}};
+    for (const std::string& pair : split_list(value)) {
+        const std::size_t dash = pair.find('-');
+        if (dash == std::string::npos)
+            throw invalid_value("edges.graph", value, "'" + pair + "' is not a pair",
+                                "Give all, chain, none or pairs such as `0-1, 1-2`");
+        const Edge edge{parse_feature_index(value, trimmed(pair.substr(0, dash))),
+                        parse_feature_index(value, trimmed(pair.substr(dash + 1)))};
+        if (edge.from >= edge.to)
+            throw invalid_value("edges.graph", value, "'" + pair + "' does not go from a lower to a higher feature",
+                                "Write pairs as `0-1`");
+        if (std::find(edges.list.begin(), edges.list.end(), edge) != edges.list.end())
+            throw invalid_value("edges.graph", value, "'" + pair + "' stands there twice", "Name each edge once");
+        edges.list.push_back(edge);
+    }
+    if (edges.list.empty()) throw invalid_value("edges.graph", value, "it is empty", "Write none for no edges");
+    return edges;
+}
+
+std::string graph_text(const EdgeSettings& edges) {
+    switch (edges.graph) {
+        case EdgeGraph::all: return "all";
+        case EdgeGraph::chain: return "chain";
+        case EdgeGraph::none: return "none";
+        case EdgeGraph::list: break;
+    }
+    std::vector<std::string> parts;
+    for (const Edge& edge : edges.list) parts.push_back(std::to_string(edge.from) + "-" + std::to_string(edge.to));
+    return joined(parts);
+}
+
+std::optional<double> parse_truncate(const std::string& value) {
+    if (value == "none") return std::nullopt;
+    return parse_real("noise.truncate", value, between(0.1, 8));
+}
+
+std::optional<std::vector<double>> parse_turns(const std::string& value) {
+    if (value == "default") return std::nullopt;
+    if (value == "none") return std::vector<double>{};
+    std::vector<double> turns;
+    for (const std::string& part : split_list(value))
+        turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
+    if (turns.empty() || turns.size() > 100)
+        throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns",
+                            "Give 1 to 100, in radians");
+    return turns;
+}
+
+std::string turns_text(const std::optional<std::vector<double>>& turns) {
+    if (!turns) return "default";
+    if (turns->empty()) return "none";
+    std::vector<std::string> parts;
+    for (const double turn : *turns) parts.push_back(to_text(turn));
+    return joined(parts);
+}
+
+std::vector<PublishedFigure> parse_published(const std::string& name, const std::string& value) {
+    std::vector<PublishedFigure> figures;
+    for (const std::string& part : split_list(value)) {
+        const std::size_t space = part.find_first_of(" \t");
+        const std::string number = space == std::string::npos ? "" : trimmed(part.substr(space));
+        figures.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
+    }
+    return figures;
+}
+
+std::string published_text(const std::vector<PublishedFigure>& figures) {
+    std::vector<std::string> parts;
+    for (const PublishedFigure& figure : figures) parts.push_back(figure.arm + " " + to_text(figure.value));
+    return joined(parts);
+}
+
+const std::vector<std::string>& controller_names() {
+    static const std::vector<std::string> names{"fixed", "greedy", "horizon"};
+    return names;
+}
+
+const std::vector<std::string>& estimator_names() {
+    static const std::vector<std::string> names{
+#define CREDENCE_ESTIMATOR(name, process, Type) #name,
+        CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
+#undef CREDENCE_ESTIMATOR
+    };
+    return names;
+}
+
+Process process_of(Estimator estimator) {
+    static constexpr Process processes[] = {
+#define CREDENCE_ESTIMATOR(name, process, Type) Process::process,
+        CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
+#undef CREDENCE_ESTIMATOR
+    };
+    return processes[static_cast<std::size_t>(estimator)];
+}
+
+std::vector<Controller> parse_controllers(const std::string& value) {
+    return parse_names<Controller>("arms.controllers", value, controller_names());
+}
+
+std::optional<std::vector<Estimator>> parse_estimators(const std::string& value) {
+    if (value == "default") return std::nullopt;
+    return parse_names<Estimator>("arms.estimators", value, estimator_names());
+}
+
+std::string is_name(const std::string& value) {
+    if (value == "run") return "the results file has a group of that name";
+    if (value.empty() || value.size() > 100) return "must have 1 to 100 characters";
+    return characters_not_in(value, is_name_character).empty() ? "" : "only letters, digits, _ and - are allowed";
+}
+
+std::string is_title(const std::string& value) {
+    if (value.size() > 300) return "must have at most 300 characters";
+    if (!is_utf8(value)) return "it is not UTF-8";
+    return characters_not_in(value, [](char c) {
+        return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '#';
+    });
+}
+
+std::string is_unit(const std::string& value) {
+    if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
+    if (!is_utf8(value)) return "it is not UTF-8";
+    return characters_not_in(value, [](char c) {
+        return is_name_character(c) || static_cast<unsigned char>(c) >= 0x80;
+    });
+}
+
+}  // namespace credence

@@ -1,0 +1,121 @@
+#pragma once
+// Values of scenario keys: their ranges, texts and refusals.
+
+#include <credence/error.hpp>
+#include "worlds/deformable/keys.hpp"
+#include <credence/text.hpp>
+
+#include <limits>
+
+namespace credence {
+
+/// Lengths and angles beyond this are a slip of the pen, and would drown in rounding.
+inline constexpr double largest_value = 1e9;
+
+struct ValueRange {
+    double low = 0, high = largest_value;
+    bool low_included = true;
+    bool infinity_allowed = false;
+};
+
+inline ValueRange from(double low) { return {low, largest_value, true, false}; }
+inline ValueRange above(double low) { return {low, largest_value, false, false}; }
+inline ValueRange above_or_infinite(double low) { return {low, largest_value, false, true}; }
+inline ValueRange between(double low, double high) { return {low, high, true, false}; }
+
+/// Whether sigma^2 is a number that an inverse can be taken of.
+inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
+
+double parse_real(const std::string& name, const std::string& value, const ValueRange& range);
+std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
+std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
+
+std::vector<Point> parse_positions(const std::string& value);
+std::string positions_text(const std::vector<Point>& positions);
+EdgeSettings parse_graph(const std::string& value);
+std::string graph_text(const EdgeSettings& edges);
+std::optional<double> parse_truncate(const std::string& value);
+std::optional<std::vector<double>> parse_turns(const std::string& value);
+std::string turns_text(const std::optional<std::vector<double>>& turns);
+std::vector<PublishedFigure> parse_published(const std::string& name, const std::string& value);
+std::string published_text(const std::vector<PublishedFigure>& figures);
+
+const std::vector<std::string>& controller_names();
+const std::vector<std::string>& estimator_names();
+/// The process model that an estimator is for.
+Process process_of(Estimator estimator);
+std::vector<Controller> parse_controllers(const std::string& value);
+std::optional<std::vector<Estimator>> parse_estimators(const std::string& value);
+
+/// Why a text is refused, or empty where it is good.
+std::string is_name(const std::string& value);
+std::string is_title(const std::string& value);
+std::string is_unit(const std::string& value);
+
+template <class Enum>
+std::string names_text(const std::vector<Enum>& values, const std::vector<std::string>& names) {
+    std::vector<std::string> parts;
+    for (const Enum value : values) parts.push_back(names[static_cast<std::size_t>(value)]);
+    return joined(parts);
+}
+
+// A key of one field. `field` gives the field of a scenario, constant or not, as a reference.
+
+template <class S = Scenario, class Field>
+KeyOf<S> real_key(const std::string& name, const std::string& help, const ValueRange& range, Field field) {
+    return {name, help, [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
+            [=](const S& s) { return to_text(field(s)); }};
+}
+
+template <class S = Scenario, class Field>
+KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, int high, Field field) {
+    return {name, help,
+            [=](S& s, const std::string& v) { field(s) = static_cast<int>(parse_integer(name, v, low, high)); },
+            [=](const S& s) { return std::to_string(field(s)); }};
+}
+
+template <class Enum, class Field>
+ScenarioKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
+    return {name, joined(choices),
+            [=](Scenario& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
+            [=](const Scenario& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
+}
+
+template <class S = Scenario, class Field, class Check>
+KeyOf<S> text_key(const std::string& name, const std::string& help, Field field, Check refusal) {
+    return {name, help,
+            [=](S& s, const std::string& v) {
+                const std::string why = refusal(v);
+                if (!why.empty()) throw invalid_value(name, v, why, "Give another text");
+                field(s) = v;
+            },
+            [=](const S& s) { return field(s); }};
+}
+
+/// The keys that scenarios of every world of ours have.
+template <class S>
+void add_common_keys(std::vector<KeyOf<S>>& keys) {
+    keys.push_back(text_key<S>("scenario.name", "letters, digits, _ and -; unique in a run; default the file's stem",
+                               [](auto& s) -> auto& { return s.name; }, is_name));
+    keys.push_back(text_key<S>("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
+    keys.push_back(text_key<S>("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
+                               [](auto& s) -> auto& { return s.length_unit; }, is_unit));
+    keys.push_back(integer_key<S>("scenario.poses", "K, the first pose included", 2, largest_pose_count,
+                                  [](auto& s) -> auto& { return s.poses; }));
+}
+
+/// Sets one of these keys [scenario_keys.hpp, set_key].
+template <class S>
+void set_one_of(const std::vector<KeyOf<S>>& keys, S& scenario, const std::string& name, const std::string& value) {
+    std::vector<std::string> names;
+    for (const KeyOf<S>& key : keys) {
+        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
+        names.push_back(key.name);
+    }
+    const std::string meant = closest(name, names);
+    throw InputError("unknown key " + printable(name) + ". " +
+                         (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
+                     name);
+}
+
+}  // namespace credence

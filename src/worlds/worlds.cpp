@@ -1,0 +1,54 @@
+#include <credence/worlds.hpp>
+
+#include "worlds/deformable/deformable.hpp"
+#include <credence/error.hpp>
+#include "worlds/landmarks/landmarks.hpp"
+#include <credence/text.hpp>
+
+namespace credence {
+
+namespace {
+
+std::vector<std::unique_ptr<const World>>& registry() {
+    static std::vector<std::unique_ptr<const World>> all = [] {
+        std::vector<std::unique_ptr<const World>> known;
+        known.push_back(deformable_world());
+        known.push_back(landmark_world());
+        return known;
+    }();
+    return all;
+}
+
+}  // namespace
+
+void add_world(std::unique_ptr<const World> world) {
+    if (find_world(world->name()))
+        throw invalid_value(world_key, world->name(), "there is a world of that name", "Give yours another name");
+    registry().push_back(std::move(world));
+}
+
+std::vector<const World*> all_worlds() {
+    std::vector<const World*> all;
+    for (const auto& world : registry()) all.push_back(world.get());
+    return all;
+}
+
+const World* find_world(const std::string& name) {
+    for (const auto& world : registry())
+        if (world->name() == name) return world.get();
+    return nullptr;
+}
+
+const World& world_of(const Declaration& scenario) {
+    if (const World* world = find_world(scenario.world)) return *world;
+    std::vector<std::string> names;
+    for (const World* world : all_worlds()) names.push_back(world->name());
+    throw invalid_value(world_key, printable(scenario.world), "this program has no such world",
+                        "Use the program that has it, or give one of " + joined(names));
+}
+
+std::unique_ptr<const Simulation> simulation_of(const Declaration& scenario) {
+    return world_of(scenario).simulation(scenario);
+}
+
+}  // namespace credence

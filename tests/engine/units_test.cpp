@@ -1,0 +1,87 @@
+// Room 9: which unit runs, and that it makes no difference. That units agree to the bit: block_test, and tests/digest.
+
+#include "worlds/simulate.hpp"
+#include <credence/study.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "catch.hpp"
+#include "program.hpp"
+#include "of_scenarios.hpp"
+
+using namespace credence;
+using Catch::Contains;
+
+namespace {
+
+/// Runs the program with the variable set to `unit`.
+Outcome forced(const Workplace& here, const std::string& unit, const std::string& arguments) {
+    return here.shell("CREDENCE_FORCE_UNIT='" + unit + "' " CREDENCE_PROGRAM " " + arguments);
+}
+
+std::string source_file(const std::string& name) {
+    std::ifstream stream(std::string(CREDENCE_SOURCE) + "/" + name);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+bool runs_here(const std::string& name) {
+    for (const Unit& unit : runnable_units())
+        if (unit.name == name) return true;
+    return false;
+}
+
+}  // namespace
+
+TEST_CASE("units: --version says which one runs, and the variable chooses it") {
+    const Workplace here;
+    CHECK_THAT(here.shell("env -u CREDENCE_FORCE_UNIT " CREDENCE_PROGRAM " --version").out,
+               Contains("instruction_set: " + runnable_units().front().name + "\n"));
+    for (const Unit& unit : runnable_units()) {
+        const Outcome version = forced(here, unit.name, "--version");
+        CHECK(version.exit_code == 0);
+        CHECK_THAT(version.out, Contains("instruction_set: " + unit.name + "\n"));
+        CHECK_THAT(version.out, Contains("lane_width: " + std::to_string(unit.lanes) + "\n"));
+    }
+}
+
+TEST_CASE("units: one that is unknown or that the processor cannot run is refused before any work") {
+    const Workplace here;
+    for (const std::string name : {"", "v5", "V3", "portable ", "v3", "v4"}) {
+        if (runs_here(name)) continue;
+        CAPTURE(name);
+        for (const std::string& arguments : {"run " + seed_scenario("ekf-straight-constant") + " --trials 10",
+                                             std::string("show"), std::string("--version")}) {
+            const Outcome refused = forced(here, name, arguments);
+            INFO(refused.err);
+            CHECK(refused.exit_code == 2);
+            CHECK(refused.out.empty());
+            CHECK_THAT(refused.err, Contains("invalid CREDENCE_FORCE_UNIT=" + name + " ("));
+            CHECK_THAT(refused.err, Contains("portable.\n"));
+            CHECK(refused.err.find('\n') == refused.err.size() - 1);
+        }
+    }
+    CHECK(here.names().empty());
+    CHECK(forced(here, "v5", "--help").exit_code == 0);
+}
+
+TEST_CASE("units: each writes the same results, and /run says which one did") {
+    const Workplace here;
+    const std::string study = "run " + seed_scenario("ekf-straight-ranged") + " " +
+                              seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 --quiet -o ";
+    for (const Unit& unit : runnable_units()) {
+        CAPTURE(unit.name);
+        REQUIRE(forced(here, unit.name, study + unit.name + ".h5").exit_code == 0);
+        CHECK_THAT(here.shell("h5dump -a /run/instruction_set " + unit.name + ".h5").out,
+                   Contains("\"" + unit.name + "\""));
+    }
+    for (const Unit& unit : runnable_units())
+        CHECK(here.shell("h5diff --exclude-path /run portable.h5 " + unit.name + ".h5").exit_code == 0);
+}
+
+TEST_CASE("units: the committed digest is of this schema version, and the changelog has it") {
+    const std::string schema = "schema " + std::to_string(schema_version);
+    CHECK(source_file("tests/digest/expected.txt").starts_with(schema + "\n"));
+    CHECK_THAT(source_file("CHANGELOG.md"), Contains("(" + schema + ")"));
+}

@@ -1,0 +1,201 @@
+// Room 13: the page says what the JSON says, whatever names a file brings, and loads nothing.
+
+#include "catch.hpp"
+#include "program.hpp"
+#include "study_support.hpp"
+
+#include "report/html/html.hpp"
+#include <credence/report.hpp>
+#include <credence/text.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <set>
+
+using namespace credence;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A small study of one scenario under both arms, with a published figure.
+Report titled_report(const std::string& title) {
+    Scenario scenario = small_scenarios().back();
+    scenario.title = title;
+    scenario.published.trace_P = {{"greedy.kf", 0.1234}};
+    Study study = new_study({scenario}, 1);
+    run_study(study, {300, 1, {}});
+    return make_report(study, 0.05);
+}
+
+const Report& small_report() {
+    static const Report report = titled_report("");
+    return report;
+}
+
+/// Two estimators, so that there is a second chart of the error.
+Report charts_report() {
+    Scenario scenario = small_scenarios().front();
+    scenario.arms.controllers = {Controller::fixed};
+    scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
+    Study study = new_study({scenario}, 1);
+    run_study(study, {300, 1, {}});
+    return make_report(study, 0.05);
+}
+
+std::string page_of(const Report& report) {
+    return report_html(report,
+                       {"study.h5", {{"command_line", "credence run a.ini & <b>"}, {"threads", "2"}}, "credence test"});
+}
+
+/// Everything on the page that could be a number.
+std::set<std::string> numbers_of(const std::string& page) {
+    std::set<std::string> numbers;
+    std::string word;
+    for (const char c : page) {
+        if (is_name_character(c) || c == '.' || c == '+') {
+            word += c;
+        } else {
+            numbers.insert(word.substr(0, word.find_last_not_of('.') + 1));
+            word.clear();
+        }
+    }
+    return numbers;
+}
+
+/// Numbers of the JSON that the page shows neither exactly nor to five digits. Keys name levels as percents there.
+void missing_numbers(const Json& json, const std::string& key, const std::set<std::string>& shown,
+                     std::vector<std::string>& missing) {
+    if (json.is_structured()) {
+        for (const auto& [name, child] : json.items())
+            missing_numbers(child, json.is_array() ? key : key + "/" + name, shown, missing);
+    } else if (json.is_number() && !key.ends_with("/level")) {
+        const double value = json.get<double>();
+        if (shown.count(to_text(value)) + shown.count(short_number(value)) + shown.count(json.dump()) == 0)
+            missing.push_back(key + " = " + json.dump());
+    }
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("page: every figure of the JSON is on it") {
+    const Report with_charts = charts_report();
+    for (const Report* report : {&with_charts, &small_report()}) {
+        std::vector<std::string> missing;
+        missing_numbers(Json::parse(report_json(*report)), "", numbers_of(page_of(*report)), missing);
+        CAPTURE(joined(missing));
+        CHECK(missing.empty());
+    }
+    const Json arms = Json::parse(report_json(small_report()));
+    const std::set<std::string> shown = numbers_of(page_of(small_report()));
+    std::vector<std::string> missing;
+    Json changed = arms.front();  // the test itself: a figure that is not there is missed
+    changed["blocks"][0]["anees"]["ratio"][2] = 0.123456789;
+    missing_numbers(changed, "", shown, missing);
+    CHECK(missing.size() == 1);
+}
+
+TEST_CASE("page: verdicts, findings and why come before tables, tables before charts") {
+    const Report& report = small_report();
+    const std::string page = page_of(report);
+    std::size_t last = 0;
+    for (const char* part :
+         {"<h1>", "<h2 id=\"verdict\">", "<h3>Findings</h3>", "<h3>Figures</h3>", "<h3>Is the covariance right?</h3>",
+          ">Charts</h3>", "<h3>Scenario</h3>", "<h2 id=\"provenance\">", "<h2 id=\"again\">", "<h2 id=\"terms\">"}) {
+        CAPTURE(part);
+        CHECK(count_of(page, part) == 1);
+        CHECK(page.find(part) > last);
+        last = page.find(part);
+    }
+    for (const ArmReport& arm : report.arms) {
+        CHECK_THAT(page, Contains("<b>" + arm.arm + "</b>"));
+        CHECK_THAT(page, Contains("<span class=\"badge " + verdict_name(arm.consistency.verdict) + "\">"));
+        for (const Finding& finding : arm.consistency.findings) CHECK_THAT(page, Contains(finding.when));
+    }
+    CHECK_THAT(page, Contains("published 0.1234 ("));
+    CHECK_THAT(page, Contains("credence run translation-circle.ini --trials 300 --seed 1 -o again.h5"));
+}
+
+TEST_CASE("page: every chart has marks with their values, and words for who does not see it") {
+    const std::string page = page_of(small_report());
+    // The verdict's picture and coverage; NEES of 6 blocks; NIS of 3 groups; whiteness of 2 arms; 3 distributions; 6
+    // differences.
+    CHECK(count_of(page, "<svg viewBox") == 2 + 6 + 3 + 2 + 3 + 6);
+    for (auto at = page.find("<svg viewBox"); at != std::string::npos; at = page.find("<svg viewBox", at + 1)) {
+        const std::string svg = page.substr(at, page.find("</svg>", at) - at);
+        CHECK(count_of(svg, "class=\"mark") + count_of(svg, "class=\"bar") >= 4);
+        CHECK(count_of(svg, "role=\"img\" aria-labelledby=") == 1);
+        CHECK_THAT(svg, Contains("<desc id=") && !Contains("<desc></desc>") && !Contains("nan") && !Contains("inf"));
+    }
+}
+
+TEST_CASE("page: it loads nothing and runs nothing, whatever a file says") {
+    const std::string title =
+        "</title></style><script src=https://example.org/x.js></script><img src=x onerror=alert(1)> & \"co\"";
+    Report report = titled_report(title);
+    report.arms.front().arm = "<b>\"arm'";
+    const std::string page = page_of(report);
+    CHECK_THAT(page, !Contains("<script") && !Contains("<img") && !Contains("<iframe") && !Contains("@import") &&
+                         !Contains("url(") && !Contains("<b>\"arm"));
+    CHECK_THAT(page, Contains(escaped(title).text()));
+    CHECK_THAT(page, Contains("credence run a.ini &amp; &lt;b&gt;"));
+    for (const char* attribute : {" href=\"", " src=\""})
+        for (auto at = page.find(attribute); at != std::string::npos; at = page.find(attribute, at + 1)) {
+            const std::string target = page.substr(page.find('"', at) + 1, 5);
+            CHECK((target.starts_with("#") || target == "data:"));
+        }
+    CHECK_THAT(page, Contains("default-src 'none'"));
+}
+
+TEST_CASE("page: the same report gives the same bytes, and arms without a trial left have no charts") {
+    CHECK(page_of(small_report()) == page_of(titled_report("")));
+    Study study = small_study(1, 300, 1);
+    for (ScenarioResults& results : study.scenarios)
+        for (ArmResults& arm : results.arms) {
+            const std::string name = arm.name;
+            arm = empty_results(results.scenario).arms.front();
+            arm.name = name;
+            arm.columns.assign(results.columns.size(),
+                               std::vector<double>(300, std::numeric_limits<double>::quiet_NaN()));
+            arm.columns[column_status].assign(300, static_cast<double>(Status::non_finite));
+            arm.columns[column_status_pose].assign(300, 3);
+            arm.errors.assign(300 * 7 * static_cast<std::size_t>(results.state_size()),
+                              std::numeric_limits<double>::quiet_NaN());
+            arm.nees.assign(300 * 7, std::numeric_limits<double>::quiet_NaN());
+        }
+    const std::string page = page_of(make_report(study, 0.05));
+    CHECK_THAT(page, Contains("WARNING: 300 of 300 trials") && Contains("no trial is left that could be judged") &&
+                         !Contains("<svg") && !Contains(">nan"));
+}
+
+TEST_CASE("page: report, compare and judge write it") {
+    const Workplace work;
+    REQUIRE(work.credence("run " + seed_scenario("kf-straight-constant") + " --trials 40 --quiet -o s.h5").exit_code ==
+            0);
+    CHECK(work.credence("report s.h5 --format html -o page.html").exit_code == 0);
+    const std::string page = work.read("page.html");
+    CHECK_THAT(page, Contains("s.h5: 40 trials of each arm, root seed 1.") && Contains("git revision") &&
+                         Contains("instruction set"));
+    CHECK(work.credence("report s.h5 --format html").out == page);
+    CHECK(work.credence("report s.h5 --format html -o page.html").exit_code == 2);  // it is there already
+    CHECK_THAT(work.credence("report --help").out, Contains("html"));
+
+    const std::string compared = work.credence("compare s.h5 --format html").out;
+    CHECK(count_of(compared, "<svg ") == 6);
+    std::vector<std::string> missing;
+    missing_numbers(Json::parse(work.credence("compare s.h5 --format json").out), "", numbers_of(compared), missing);
+    CAPTURE(joined(missing));
+    CHECK(missing.empty());
+
+    const std::string record = CREDENCE_SOURCE "/tests/reference/record_single.h5";
+    const std::string judged = work.credence("judge '" + record + "' --format html --quiet").out;
+    CHECK_THAT(judged, Contains("record_single.h5") && Contains("<svg ") && !Contains("<h3>Scenario</h3>") &&
+                           !Contains(CREDENCE_SOURCE));
+}

@@ -1,0 +1,311 @@
+// A world of one's own: the tracker of experiments/own_filter, and worlds that do what they must not.
+
+#include "catch.hpp"
+#include "study_support.hpp"
+#include "temporary_folder.hpp"
+
+#include "../../experiments/own_filter/tracker.hpp"
+
+#include <credence/consistency.hpp>
+#include <credence/evidence.hpp>
+#include <credence/ini.hpp>
+#include <credence/merge.hpp>
+#include <credence/report.hpp>
+#include <credence/store.hpp>
+#include "files/stored_run.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+
+using namespace credence;
+using test::TemporaryFolder;
+
+namespace {
+
+/// A random walk judged exactly, and arms that spoil one thing at one step.
+struct Spoiled {
+    struct Settings {
+        int step = 3;  ///< at which it happens
+    };
+    static constexpr const char* name = "spoiled";
+    static void keys(OwnKeys<Settings>& keys) { keys.integer("fault.step", &Settings::step, 1, 100, "where"); }
+    static std::vector<Component> components(const Settings&) { return {{"a", "m"}, {"b", "m"}}; }
+    static std::vector<StateBlock> blocks(const Settings&) { return {}; }
+    static std::vector<std::string> arms(const Settings&) { return {"sound", "indefinite", "nan", "large", "missing"}; }
+    static int innovation_rows(const Settings&) { return 3; }
+    static void run(const Settings& s, OwnTrial& trial) {
+        for (int k = 1; k < trial.poses(); ++k) {
+            Eigen::VectorXd error = trial.normal(0, k);
+            Eigen::MatrixXd P = Eigen::Matrix2d::Identity();
+            Eigen::VectorXd innovation(3);
+            innovation << trial.normal(1, k), trial.normal(1, k, 1).x();
+            const bool here = k == s.step;
+            if (here && trial.arm() == 1) P(1, 1) = -1;
+            if (here && trial.arm() == 2) error(0) = std::nan("");
+            if (here && trial.arm() == 3) error(0) = 1e13;
+            if (here && trial.arm() == 4) innovation(1) = std::nan("");
+            trial.step(error, P, innovation, Eigen::Matrix3d::Identity());
+        }
+    }
+};
+
+/// Takes one step too few.
+struct Short : Spoiled {
+    static constexpr const char* name = "short";
+    static void run(const Settings&, OwnTrial& trial) {
+        for (int k = 2; k < trial.poses(); ++k) trial.step(Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity());
+    }
+};
+
+/// Asks for one draw of each kind, under the key that its settings name.
+struct Keyed : Spoiled {
+    struct Settings {
+        int source = 0, pose = 0, index = 0;
+    };
+    static constexpr const char* name = "keyed";
+    static void keys(OwnKeys<Settings>& keys) {
+        constexpr int low = std::numeric_limits<int>::min(), high = std::numeric_limits<int>::max();
+        keys.integer("draw.source", &Settings::source, low, high, "of the key");
+        keys.integer("draw.pose", &Settings::pose, low, high, "of the key");
+        keys.integer("draw.index", &Settings::index, low, high, "of the key");
+    }
+    static std::vector<Component> components(const Settings&) { return {{"a", "m"}, {"b", "m"}}; }
+    static std::vector<StateBlock> blocks(const Settings&) { return {}; }
+    static std::vector<std::string> arms(const Settings&) { return {"normal", "uniform"}; }
+    static int innovation_rows(const Settings&) { return 0; }
+    static std::vector<Column> columns(const Settings&) { return {{"x", "of the draw", "1", ColumnType::real, -1}}; }
+    static void run(const Settings& s, OwnTrial& trial) {
+        trial.set(0, trial.arm() == 0 ? trial.normal(s.source, s.pose, s.index).x()
+                                      : trial.uniform(s.source, s.pose, s.index));
+        for (int k = 1; k < trial.poses(); ++k) trial.step(Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity());
+    }
+};
+
+/// Sets a column that it has not declared.
+struct Undeclared : Spoiled {
+    static constexpr const char* name = "undeclared";
+    static void run(const Settings&, OwnTrial& trial) { trial.set(0, 1); }
+};
+
+/// The worlds of this file, added once.
+const bool added = [] {
+    add_own_world<Tracker>();
+    add_own_world<Spoiled>();
+    add_own_world<Short>();
+    add_own_world<Keyed>();
+    add_own_world<Undeclared>();
+    return true;
+}();
+
+Declaration tracker(const Overrides& more = {}) {
+    return read_declaration_text("[scenario]\nworld = tracker\nposes = 30\n", "test", "mine", more);
+}
+
+Study run(const Declaration& scenario, std::int64_t trials, int threads = 1, std::uint64_t seed = 1) {
+    Study study = new_study(std::vector<Declaration>{scenario}, seed);
+    RunOptions options;
+    options.trials = trials;
+    options.threads = threads;
+    run_study(study, options);
+    return study;
+}
+
+Study run_spoiled(std::int64_t trials) {
+    return run(read_declaration_text("[scenario]\nworld = spoiled\nposes = 10\n", "test", "mine"), trials);
+}
+
+/// x of the draws under this key: [arm], normal and uniform.
+std::vector<double> keyed(int source, int pose, int index) {
+    const auto set = [](const char* key, int value) { return std::pair{std::string(key), std::to_string(value)}; };
+    const Study study = run(read_declaration_text("[scenario]\nworld = keyed\nposes = 2\n", "test", "mine",
+                                                  {set("draw.source", source), set("draw.pose", pose), set("draw.index", index)}),
+                            1);
+    const ScenarioResults& results = study.scenarios[0];
+    return {results.arms[0].columns[1][0], results.arms[1].columns[1][0]};
+}
+
+double statuses(const ArmResults& arm, std::size_t column, Status status) {
+    double count = 0;
+    for (const double one : arm.columns[column]) count += one == static_cast<double>(status);
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("own world: the filter that knows its model is consistent, the calm one optimistic in velocity first") {
+    REQUIRE(added);
+    const Report report = make_report(run(tracker(), 4000), 0.05);
+    CHECK(report.arms[0].consistency.verdict == Verdict::consistent);
+    CHECK(report.arms[1].consistency.verdict == Verdict::optimistic);
+    const Evidence &kf = report.arms[0].evidence, &calm = report.arms[1].evidence;
+    REQUIRE(kf.blocks.size() == 3);
+    CHECK(kf.blocks[2].block == "velocity");
+    // Means of 4000 trials, each over 29 correlated steps: five standard errors.
+    for (const BlockEvidence& block : kf.blocks) CHECK(std::abs(block.run.mean - 1) < 5 * block.run.standard_error);
+    CHECK(calm.blocks[2].run.mean > 2 * calm.blocks[1].run.mean / 1.5);
+    CHECK(kf.nis.front().ratio == Approx(1).margin(0.02));
+    CHECK(std::abs(kf.whiteness.front().correlation) < kf.whiteness.front().simultaneous_bound);
+    CHECK(calm.whiteness.front().correlation > 5 * calm.whiteness.front().bound);
+}
+
+TEST_CASE("own world: the same bits for any number of threads, over shards, and after resuming") {
+    const Declaration scenario = tracker();
+    const Study whole = run(scenario, 700);
+    CHECK(same_results(whole, run(scenario, 700, 3)));
+    CHECK_FALSE(same_results(whole, run(scenario, 700, 1, 2)));
+
+    const TemporaryFolder folder;
+    std::vector<std::string> parts;
+    for (const std::int64_t shard : {1, 0}) {
+        StoredRun stored(folder / ("part" + std::to_string(shard)), new_study(std::vector<Declaration>{scenario}, 1),
+                         Start::fresh);
+        RunOptions options;
+        options.trials = 700;
+        options.shard = {shard, 2};
+        options.keeper = &stored.begin(700, 1, options.shard);
+        run_study(stored.study(), options);
+        stored.finish({});
+        parts.push_back(folder / ("part" + std::to_string(shard)));
+    }
+    write_results(folder / "whole", merge_results(parts), {});
+    CHECK(same_results(read_results(folder / "whole").study, whole));
+
+    StoredRun grown(folder / "whole", new_study(std::vector<Declaration>{scenario}, 1), Start::resume);
+    RunOptions options;
+    options.trials = 900;
+    options.keeper = &grown.begin(900, 1, {});
+    run_study(grown.study(), options);
+    grown.finish({});
+    CHECK(same_results(read_results(folder / "whole").study, run(scenario, 900)));
+}
+
+TEST_CASE("own world: arms share their draws, and a setting changes what it should") {
+    const Study study = run(tracker(), 300), other = run(tracker({{"sensor.detection", "0.5"}}), 300);
+    const auto& columns = study.scenarios[0].columns;
+    REQUIRE(columns[1].name == "measurements");
+    const auto &kf = study.scenarios[0].arms[0].columns, &calm = study.scenarios[0].arms[1].columns;
+    CHECK(kf[1] == calm[1]);
+    CHECK(kf[0] != calm[0]);
+    double fewer = 0, all = 0;
+    for (const double count : other.scenarios[0].arms[0].columns[1]) fewer += count;
+    for (const double count : kf[1]) all += count;
+    CHECK(fewer / all == Approx(0.5 / 0.9).margin(0.02));  // 8700 coins: sd 0.006
+}
+
+TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
+    const Study study = run_spoiled(20);
+    const ScenarioResults& results = study.scenarios[0];
+    const std::size_t status = status_column(results.columns);
+    const auto all_are = [&](std::size_t arm, Status what, double pose) {
+        CHECK(statuses(results.arms[arm], status, what) == 20);
+        for (const double at : results.arms[arm].columns[status + 1]) CHECK(at == pose);
+    };
+    all_are(0, Status::completed, -1);
+    all_are(1, Status::covariance_not_positive_definite, 3);
+    all_are(2, Status::non_finite, 3);
+    all_are(3, Status::diverged, 3);
+    all_are(4, Status::completed, -1);
+    CHECK(results.arms[1].counted == 0);
+    CHECK(results.arms[3].counted == 20);
+    CHECK(std::isnan(results.arms[1].columns[0][0]));
+    // One row was not observed at one of nine steps; rows stand for themselves from step to step.
+    const Evidence sound = evidence_of(results, results.arms[0]), missing = evidence_of(results, results.arms[4]);
+    CHECK(sound.nis[0].degrees == 20 * 27);
+    CHECK(missing.nis[0].degrees == 20 * 26);
+    CHECK(sound.whiteness[0].count == 20 * 8 * 3);
+    CHECK(missing.whiteness[0].count == 20 * (8 * 3 - 2));
+}
+
+TEST_CASE("own world: figures are those of the formulas") {
+    // P = I and S = I: NEES |e|^2 with e the draw itself, NIS the same of the innovation.
+    const ScenarioResults results = run_spoiled(1).scenarios[0];
+    const KeyedDraws<double> draws(1, 0, std::numeric_limits<double>::infinity());
+    double nees = 0, nis = 0;
+    for (int k = 1; k < 10; ++k) {
+        const auto e = draws.normal(static_cast<Source>(0), k, 0), a = draws.normal(static_cast<Source>(1), k, 0);
+        const double c = draws.normal(static_cast<Source>(1), k, 1).x;
+        nees += e.x * e.x + e.y * e.y;
+        nis += a.x * a.x + a.y * a.y + c * c;
+    }
+    const auto column = [&](const std::string& name) {
+        for (std::size_t c = 0; c < results.columns.size(); ++c)
+            if (results.columns[c].name == name) return results.arms[0].columns[c][0];
+        return std::nan("");
+    };
+    CHECK(column("trace_P") == 2);
+    CHECK(column("squared_error") == Approx(nees).epsilon(1e-14));
+    CHECK(column("nees_ratio") == Approx(nees / 9 / 2).epsilon(1e-14));
+    CHECK(column("nis_ratio") == Approx(nis / 27).epsilon(1e-14));
+}
+
+TEST_CASE("own world: what a world does wrong is said, not counted") {
+    const Declaration shorter = read_declaration_text("[scenario]\nworld = short\n", "test", "mine");
+    REQUIRE_THROWS_WITH(run(shorter, 1), "world short: a trial took 18 steps, not 19.");
+    REQUIRE_THROWS_AS(add_own_world<Tracker>(), InputError);
+    Declaration broken = tracker();
+    broken.blocks.push_back({"beyond", 3, 2});
+    REQUIRE_THROWS_WITH(check_declared(broken), "world tracker: block beyond is not in the state.");
+    broken = tracker();
+    broken.components[0].name = "p x";
+    REQUIRE_THROWS_AS(check_declared(broken), std::invalid_argument);
+}
+
+TEST_CASE("own world: a key of a draw that the counter has no room for is refused with its number") {
+    const std::string last = "134217727";
+    REQUIRE_THROWS_WITH(keyed(16, 1, 0), "world keyed: invalid source of a draw 16 (must be 0 to 15).");
+    REQUIRE_THROWS_WITH(keyed(-1, 1, 0), "world keyed: invalid source of a draw -1 (must be 0 to 15).");
+    REQUIRE_THROWS_WITH(keyed(0, -1, 0), "world keyed: invalid pose of a draw -1 (must be 0 to 2147483647).");
+    REQUIRE_THROWS_WITH(keyed(0, 1, -1), "world keyed: invalid index of a draw -1 (must be 0 to " + last + ").");
+    REQUIRE_THROWS_WITH(keyed(0, 1, 134217728), "world keyed: invalid index of a draw 134217728 (must be 0 to " + last + ").");
+    const Declaration undeclared = read_declaration_text("[scenario]\nworld = undeclared\n", "test", "mine");
+    REQUIRE_THROWS_WITH(run(undeclared, 1), "world undeclared: a column that it does not have is set.");
+}
+
+TEST_CASE("own world: keys that differ are draws that differ, and small indices keep theirs") {
+    std::set<std::vector<double>> draws;
+    std::size_t asked = 0;
+    for (const int source : {0, 1, 15})
+        for (const int pose : {0, 1, std::numeric_limits<int>::max()})
+            for (const int index : {0, 1, 65535, 65536, 65537, 131072, 1 << 20, 1 << 26, largest_wide_index}) {
+                draws.insert(keyed(source, pose, index));
+                ++asked;
+            }
+    CHECK(draws.size() == asked);
+    const KeyedDraws<double> small(1, 0, std::numeric_limits<double>::infinity());
+    for (const int index : {0, 1, 4660, 65535}) {
+        CHECK(keyed(7, 3, index)[0] == small.normal(static_cast<Source>(7), 3, index).x);
+        CHECK(keyed(7, 3, index)[1] == small.uniform(static_cast<Source>(7), 3, index));
+    }
+}
+
+TEST_CASE("own world: its keys are read, refused and shown like any other") {
+    CHECK(scenario_text(tracker({{"target.period", "0.5"}})) ==
+          "[scenario]\nworld = tracker\nname = mine\ntitle = \nlength_unit = m\nposes = 30\n\n"
+          "[target]\nperiod = 0.5\nacceleration = 0.2\n\n[sensor]\nsigma = 2\ndetection = 0.9\n");
+    const auto refused = [](const std::string& text, const std::string& message) {
+        REQUIRE_THROWS_WITH(read_declaration_text(text, "file.ini", "mine"), Catch::Contains(message));
+    };
+    refused("[scenario]\nworld = trakcer\n", "file.ini:2: invalid scenario.world=trakcer (this program has no such world)");
+    refused("[scenario]\nworld = tracker\n[sensor]\ndetection = 2\n", "file.ini:4: invalid sensor.detection=2");
+    refused("[scenario]\nworld = tracker\n[sensor]\ndetections = 1\n",
+            "file.ini:4: unknown key sensor.detections. Did you mean sensor.detection?");
+    refused("[scenario]\nworld = tracker\n[noise]\nheading = 1\n", "file.ini:4: unknown key noise.heading");
+}
+
+TEST_CASE("own world: its keys are swept like those of any other") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "mine.ini") << "[scenario]\nworld = tracker\nposes = 30\n";
+    const std::vector<Declaration> grid = read_grid(folder / "mine.ini", {}, parse_grid({"sensor.sigma=0.5,1"}));
+    REQUIRE(grid.size() == 2);
+    CHECK(grid[1].name == "mine_sigma-1");
+    CHECK(grid[1].sweep == SweepPoint{"mine", {{"sensor.sigma", "1"}}});
+    const std::string text = scenario_text(grid[0]);
+    CHECK(scenario_text(read_declaration_text(text, "test", "x")) == text);
+    CHECK(same_results(run(grid[0], 20), run(tracker({{"sensor.sigma", "0.5"}}), 20)));
+    CHECK_THROWS_WITH(read_grid(folder / "mine.ini", {}, parse_grid({"target.period=0"})),
+                      Catch::Contains("--sweep target.period: invalid target.period=0"));
+    CHECK_THROWS_WITH(read_declaration_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
+                      Catch::Contains("the scenario has sensor.sigma=0.5"));
+}
