@@ -1,5 +1,5 @@
 #pragma once
-// Room 1: masks of packs beside the same comparisons of plain doubles. Included by a test and, compiled for AVX-512, by
+// Masks of packs beside the same comparisons of plain doubles. Included by a test and, compiled for AVX-512, by
 // lane_masks_v4.cpp.
 
 #include "numeric/lane.hpp"

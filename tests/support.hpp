@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of rooms 1 to 9 share: scenarios by their keys, noise sources made of functions, and one trial of the
+// What the tests of the core share: scenarios by their keys, noise sources made of functions, and one trial of the
 // production code with everything that happened in it.
 
 #include "oracle/oracle.hpp"

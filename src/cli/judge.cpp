@@ -1,6 +1,6 @@
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
-#include "cli/progress.hpp"
+#include "cli/process/progress.hpp"
 
 #include <credence/error.hpp>
 #include <credence/record.hpp>

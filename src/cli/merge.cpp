@@ -1,7 +1,7 @@
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
-#include "cli/limits.hpp"
-#include "cli/progress.hpp"
+#include "cli/process/limits.hpp"
+#include "cli/process/progress.hpp"
 #include "cli/version.hpp"
 
 #include <credence/error.hpp>

@@ -1,10 +1,10 @@
 // The program: its subcommands, and what becomes of errors.
 
 #include "cli/command.hpp"
-#include "cli/limits.hpp"
-#include "cli/progress.hpp"
-#include "cli/ranks.hpp"
-#include "cli/streams.hpp"
+#include "cli/process/limits.hpp"
+#include "cli/process/progress.hpp"
+#include "cli/run/ranks.hpp"
+#include "cli/process/streams.hpp"
 #include "cli/version.hpp"
 
 #include <credence/error.hpp>

@@ -1,7 +1,7 @@
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/screen.hpp"
+#include "cli/process/interrupt.hpp"
+#include "cli/process/screen.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>

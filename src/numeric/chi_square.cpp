@@ -1,4 +1,4 @@
-#include <credence/chi_square.hpp>
+#include "numeric/chi_square.hpp"
 
 #include <cmath>
 #include <limits>

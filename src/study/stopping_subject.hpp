@@ -1,5 +1,5 @@
 #pragma once
-// What a goal is about in a given study (private to room 11).
+// What a goal is about in a given study.
 
 #include "study/stopping.hpp"
 

@@ -1,4 +1,4 @@
-// Room 12: a disk that cannot be read in the middle of a file [reading_fails.c].
+// A disk that cannot be read in the middle of a file [reading_fails.c].
 
 #include "catch.hpp"
 #include "judgement_support.hpp"

@@ -1,4 +1,4 @@
-// Room 3: numbers and lists as text.
+// Numbers and lists as text.
 
 #include "catch.hpp"
 

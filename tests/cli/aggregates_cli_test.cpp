@@ -1,4 +1,4 @@
-// Room 14: --keep aggregates on the command line.
+// `--keep aggregates` on the command line.
 
 #include "catch.hpp"
 #include "program.hpp"

@@ -1,4 +1,4 @@
-// Room 14: files, names and surroundings that the program has to refuse, or to show without harm.
+// Files, names and surroundings that the program has to refuse, or to show without harm.
 
 #include "catch.hpp"
 #include "judgement_support.hpp"

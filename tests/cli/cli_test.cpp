@@ -1,4 +1,4 @@
-// Room 14: the program as its user meets it.
+// The program as its user meets it.
 
 #include "catch.hpp"
 #include "program.hpp"

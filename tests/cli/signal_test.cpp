@@ -1,4 +1,4 @@
-// Room 14: signals stop a run with everything kept.
+// Signals stop a run with everything kept.
 
 #include <credence/store.hpp>
 

@@ -1,4 +1,4 @@
-// Room 14: a program that is started with its standard streams closed.
+// A program that is started with its standard streams closed.
 
 #include "catch.hpp"
 #include "program.hpp"

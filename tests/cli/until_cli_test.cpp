@@ -1,4 +1,4 @@
-// Room 14: `credence run --until` as its user meets it.
+// `credence run --until` as its user meets it.
 
 #include "catch.hpp"
 #include "program.hpp"

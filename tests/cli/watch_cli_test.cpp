@@ -1,4 +1,4 @@
-// Room 14: `credence watch` as its user meets it.
+// `credence watch` as its user meets it.
 
 #include "catch.hpp"
 #include "program.hpp"

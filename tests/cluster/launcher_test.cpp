@@ -1,4 +1,4 @@
-// Room 11: which shard a launcher names.
+// Which shard a launcher names.
 
 #include <credence/error.hpp>
 #include "cluster/launcher.hpp"

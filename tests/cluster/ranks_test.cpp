@@ -1,4 +1,4 @@
-// Rooms 11 and 12: a run that several ranks share, here threads that pass messages in memory. tests/cluster has mpirun.
+// A run that several ranks share, here threads that pass messages in memory. tests/cluster has mpirun.
 
 #include <credence/error.hpp>
 #include "cluster/ranks.hpp"

@@ -1,4 +1,4 @@
-// Room 9: which unit runs, and that it makes no difference. That units agree to the bit: block_test, and tests/digest.
+// Which unit runs, and that it makes no difference. That units agree to the bit: block_test, and tests/digest.
 
 #include "worlds/simulate.hpp"
 #include <credence/study.hpp>

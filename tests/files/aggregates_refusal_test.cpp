@@ -1,4 +1,4 @@
-// Room 12: files and journals of aggregates that are damaged or hostile are refused by name and place.
+// Files and journals of aggregates that are damaged or hostile are refused by name and place.
 
 #include "files/hdf5/read.hpp"
 #include "journal_forged.hpp"

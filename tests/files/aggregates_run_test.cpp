@@ -1,4 +1,4 @@
-// Rooms 10 to 13: studies that keep totals of their columns and no trial: the same totals however they are run, and what is
+// Studies that keep totals of their columns and no trial: the same totals however they are run, and what is
 // said of them agrees with what is said of the trials.
 
 #include <credence/compare.hpp>

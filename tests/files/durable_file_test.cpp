@@ -1,4 +1,4 @@
-// Room 12, files: what happens when the system refuses. What was there stays, and nothing is left behind.
+// Files: what happens when the system refuses. What was there stays, and nothing is left behind.
 
 #include "files/system/durable_file.hpp"
 #include "files/system/system_file.hpp"

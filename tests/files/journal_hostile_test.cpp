@@ -1,4 +1,4 @@
-// Room 12, the journal: bytes that somebody made up, with right checksums, are refused and never believed.
+// The journal: bytes that somebody made up, with right checksums, are refused and never believed.
 
 #include "journal_forged.hpp"
 #include "of_scenarios.hpp"

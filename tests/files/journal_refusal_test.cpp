@@ -1,4 +1,4 @@
-// Room 12, the journal: what is not this run's is refused, and the message says what differs.
+// The journal: what is not this run's is refused, and the message says what differs.
 
 #include "journal_support.hpp"
 

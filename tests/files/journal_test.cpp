@@ -1,4 +1,4 @@
-// Room 12, the journal: cut and damaged anywhere, it keeps what came before, and the study ends the same.
+// The journal: cut and damaged anywhere, it keeps what came before, and the study ends the same.
 
 #include "journal_support.hpp"
 

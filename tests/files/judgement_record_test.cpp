@@ -1,4 +1,4 @@
-// Room 12, records for `judge`: every figure against NumPy and SciPy, and the ways in which other programs write.
+// Records for `judge`: every figure against NumPy and SciPy, and the ways in which other programs write.
 
 #include "numeric/chi_square.hpp"
 

@@ -1,4 +1,4 @@
-// Room 12, records for `judge`: what cannot be judged is refused by dataset, trial and step, in words for the program
+// Records for `judge`: what cannot be judged is refused by dataset, trial and step, in words for the program
 // that wrote it.
 
 #include "judgement_support.hpp"

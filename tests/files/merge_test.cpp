@@ -1,4 +1,4 @@
-// Room 12: shards merge to what one run gives, and to nothing else.
+// Shards merge to what one run gives, and to nothing else.
 
 #include <credence/merge.hpp>
 

@@ -1,4 +1,4 @@
-// Room 12, files: what other tools find in them, and that docs/results-format.md tells it.
+// Files: what other tools find in them, and that docs/results-format.md tells it.
 
 #include "slam/trial/problem.hpp"
 

@@ -1,4 +1,4 @@
-// Room 12, files: what is damaged, foreign or hostile is refused by name and place, before anything is computed.
+// Files: what is damaged, foreign or hostile is refused by name and place, before anything is computed.
 
 #include "store_damage.hpp"
 #include "of_scenarios.hpp"

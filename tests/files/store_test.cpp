@@ -1,4 +1,4 @@
-// Room 12, files: what is written reads back, and the same study gives the same bytes.
+// Files: what is written reads back, and the same study gives the same bytes.
 
 #include "worlds/deformable/keys.hpp"
 

@@ -1,4 +1,4 @@
-// Room 12, files: recorded noise and trajectories of single trials.
+// Files: recorded noise and trajectories of single trials.
 
 #include "slam/trial/problem.hpp"
 

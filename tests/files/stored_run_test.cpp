@@ -1,4 +1,4 @@
-// Room 12, files: what a run finds, and what it meets in the meantime: nothing is mixed, replaced unasked or lost.
+// Files: what a run finds, and what it meets in the meantime: nothing is mixed, replaced unasked or lost.
 
 #include "files/system/system_file.hpp"
 #include "journal_support.hpp"

@@ -12,12 +12,12 @@ cmake --preset fuzz -B $folder -DCREDENCE_SANITIZE= -DCMAKE_CXX_FLAGS="$flags" >
 nice -n 15 cmake --build $folder --target "fuzz_$target" -j "${FUZZ_JOBS:-1}" | tail -n 1
 
 declare -A readers=(
-  [scenario]="ini scenario scenario_keys scenario_values sweep text"
-  [noise]="store_noise hdf5_read hdf5_handle"
-  [judge]="judgement_record judgement_file judgement_blocks judgement_check judgement_step judgement_totals
-    judgement_results hdf5_slab hdf5_read hdf5_handle"
-  [results]="store_read store_columns store_evidence store_sweep store_sums study_hash exact_sum hdf5_dataset hdf5_read hdf5_handle"
-  [journal]="journal_load journal_record journal_totals journal_file bytes"
+  [scenario]="worlds/ini worlds/deformable/scenario worlds/deformable/keys worlds/values scenario/sweep base/text"
+  [noise]="files/trajectory/noise files/hdf5/read files/hdf5/handle"
+  [judge]="files/record/record files/record/file files/record/blocks files/record/check worlds/own/step files/record/totals
+    files/record/results files/hdf5/slab files/hdf5/read files/hdf5/handle"
+  [results]="files/results/read files/results/columns files/results/evidence files/results/sweep files/results/sums study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
+  [journal]="files/journal/load files/journal/commit files/journal/totals files/journal/file base/bytes"
 )
 sources=()
 for name in ${readers[$target]}; do sources+=(src/"$name".[ch]pp); done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Label compilers: what clang makes of rooms 1 to 9 at -O2 prints the committed digest. (That it builds all of the rest
+# Label compilers: what clang makes of the core at -O2 prints the committed digest. (That it builds all of the rest
 # without a warning, and that its program gives the bits of g++'s, the label sanitizers shows. `cmake --preset clang`
 # builds program and tests, and writes three features out, which takes clang twice the time.)
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Label digest: rooms 1 to 9 print the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and the
+# Label digest: the core print the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and the
 # core's own build of them on older x86 processors, both emulated. The core label has g++ at -O3, the label compilers
 # clang at -O2. (g++ at -O2 on this processor: `cmake --preset digest-o2`.)
 set -euo pipefail

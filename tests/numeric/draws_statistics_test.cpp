@@ -1,4 +1,4 @@
-// Room 2: the distribution of the keyed draws. Fixed seeds; a false-alarm rate is what another seed would have.
+// The distribution of the keyed draws. Fixed seeds; a false-alarm rate is what another seed would have.
 
 #include "catch.hpp"
 

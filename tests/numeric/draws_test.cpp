@@ -1,4 +1,4 @@
-// Room 2: the keyed draws, against the Random123 library and against what normal draws must be. Statistical tests run
+// The keyed draws, against the Random123 library and against what normal draws must be. Statistical tests run
 // on fixed seeds, so they either always pass or always fail; the false-alarm rates are what another seed would have.
 
 #include "catch.hpp"

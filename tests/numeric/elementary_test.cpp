@@ -1,4 +1,4 @@
-// Room 1 against the 80-bit long double functions of the C library. Bounds in units in the last place (ulp) of the
+// Elementary functions against the 80-bit long double functions of the C library. Bounds in units in the last place (ulp) of the
 // correctly rounded double.
 
 #include "catch.hpp"

@@ -1,4 +1,4 @@
-// Room 10: exact sums, against a big integer.
+// Exact sums, against a big integer.
 
 #include "catch.hpp"
 

@@ -1,4 +1,4 @@
-// Room 1: packs of doubles. That whole trials are the same in every lane, the digest says.
+// Packs of doubles. That whole trials are the same in every lane, the digest says.
 
 #include "catch.hpp"
 #include "lane_masks.hpp"

@@ -1,4 +1,4 @@
-"""Prints statistics.json: inputs and expected values for the tests of room 10 (statistics, bootstrap, paired, goodness,
+"""Prints statistics.json: inputs and expected values for the tests of statistics (statistics, bootstrap, paired, goodness,
 credibility), computed by NumPy and SciPy instead of the project's code.
 
     /usr/bin/python3 tests/reference/make_statistics.py > tests/reference/statistics.json

@@ -1,4 +1,4 @@
-// Room 13: which arms of which files are compared, and what is refused.
+// Which arms of which files are compared, and what is refused.
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// Room 13: arms and runs compared trial by trial: the figures, their signs, ties, and failed trials.
+// Arms and runs compared trial by trial: the figures, their signs, ties, and failed trials.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// Room 13: pieces of a page: escaped texts, numbers, scales with round ticks, points that are left out, histograms.
+// Pieces of a page: escaped texts, numbers, scales with round ticks, points that are left out, histograms.
 
 #include "catch.hpp"
 

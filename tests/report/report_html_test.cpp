@@ -1,4 +1,4 @@
-// Room 13: the page says what the JSON says, whatever names a file brings, and loads nothing.
+// The page says what the JSON says, whatever names a file brings, and loads nothing.
 
 #include "catch.hpp"
 #include "program.hpp"

@@ -1,4 +1,4 @@
-// Room 13: the report says what the study holds.
+// The report says what the study holds.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,4 +1,4 @@
-// Room 13: following a run: a look says what the trials so far say, and the run does not notice.
+// Following a run: a look says what the trials so far say, and the run does not notice.
 
 #include "watch_support.hpp"
 

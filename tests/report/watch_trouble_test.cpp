@@ -1,4 +1,4 @@
-// Room 13, following a run: begun anew, locked by its run, with failed trials, or not there.
+// Following a run: begun anew, locked by its run, with failed trials, or not there.
 
 #include "files/journal/file.hpp"
 #include "watch_support.hpp"

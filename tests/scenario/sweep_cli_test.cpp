@@ -1,4 +1,4 @@
-// Room 14: sweeps as the program's user meets them.
+// Sweeps as the program's user meets them.
 
 #include "catch.hpp"
 #include "program.hpp"

@@ -1,4 +1,4 @@
-// Room 3: sweeps: values and ranges, grids, names of points, and places as text.
+// Sweeps: values and ranges, grids, names of points, and places as text.
 
 #include "catch.hpp"
 

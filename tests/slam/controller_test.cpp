@@ -1,4 +1,4 @@
-// Room 7: who steers [model.md, Controllers].
+// Who steers [model.md, Controllers].
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

@@ -1,4 +1,4 @@
-// Room 6: the estimators over thousands of trials, against a published table of an independent implementation (batched
+// The estimators over thousands of trials, against a published table of an independent implementation (batched
 // numpy, its own draws), and the engine's lanes against one trial at a time.
 
 #include <credence/detail/block.hpp>

@@ -1,4 +1,4 @@
-// Room 6: the estimators beside the Kalman filter: against their papers' own forms, against each other where they must
+// The estimators beside the Kalman filter: against their papers' own forms, against each other where they must
 // be the same, and what each makes of a heading that nothing observes.
 
 #include "slam/estimators/estimators.hpp"

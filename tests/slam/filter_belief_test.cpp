@@ -1,4 +1,4 @@
-// Room 6: what a belief must always be, and what can be asked of it.
+// What a belief must always be, and what can be asked of it.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 6: long trials and other numbers of features against the oracle, to a bound that follows from the condition of S.
+// Long trials and other numbers of features against the oracle, to a bound that follows from the condition of S.
 //
 // One update: the gain comes from solving with S, m rows, so either way of computing it errs by m cond(S) u relative,
 // u = 2^-53 [Higham, Accuracy and Stability of Numerical Algorithms, 10.1], and what it takes off P, K S K', is at most

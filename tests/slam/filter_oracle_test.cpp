@@ -1,4 +1,4 @@
-// Room 6 and 8: whole trials against the oracle's joint updates, pose by pose.
+// Whole trials against the oracle's joint updates, pose by pose.
 
 #include "catch.hpp"
 #include "support.hpp"

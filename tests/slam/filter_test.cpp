@@ -1,4 +1,4 @@
-// Room 6: the filter's pieces by themselves: its Jacobians against finite differences of its own functions, its update
+// The filter's pieces by themselves: its Jacobians against finite differences of its own functions, its update
 // against the joint one, its covariance, its squared errors. Whole trials: filter_oracle_test.cpp, filter_long_test.cpp.
 
 #include "catch.hpp"

@@ -1,4 +1,4 @@
-// Room 7: planning several steps ahead: as the oracle's brute force, and as a brute force of plain steps.
+// Planning several steps ahead: as the oracle's brute force, and as a brute force of plain steps.
 
 #include "catch.hpp"
 #include "support.hpp"

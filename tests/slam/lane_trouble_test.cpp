@@ -1,4 +1,4 @@
-// Room 8: numerical trouble in one lane becomes that trial's status, and its neighbours keep every bit.
+// Numerical trouble in one lane becomes that trial's status, and its neighbours keep every bit.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 7: what the planner's fast forms compute on the way to their choice: costs, and bounds below them.
+// What the planner's fast forms compute on the way to their choice: costs, and bounds below them.
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

@@ -1,4 +1,4 @@
-// Room 7: the planner's fast forms choose as the plain form does, and the plain form as the oracle (controller_test).
+// The planner's fast forms choose as the plain form does, and the plain form as the oracle (controller_test).
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

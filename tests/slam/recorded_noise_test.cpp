@@ -1,4 +1,4 @@
-// Room 2: recorded noise, its layout and what it must cover.
+// Recorded noise, its layout and what it must cover.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 3: every key of a scenario: its default, what it takes, what it refuses, and the way to text and back.
+// Every key of a scenario: its default, what it takes, what it refuses, and the way to text and back.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 5: the sensor [model.md, Filter: See, Edges], with noise that the test chooses.
+// The sensor [model.md, Filter: See, Edges], with noise that the test chooses.
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

@@ -1,4 +1,4 @@
-// Room 8: numerical trouble inside a trial is data: its status, the pose where it happened, and what is left of its
+// Numerical trouble inside a trial is data: its status, the pose where it happened, and what is left of its
 // columns [model.md, Conventions; design.md, House style].
 
 #include "catch.hpp"

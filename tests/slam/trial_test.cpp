@@ -1,4 +1,4 @@
-// Room 8: one trial. Which draws it asks for, and what its columns and figures mean [model.md, Reported per trial].
+// One trial. Which draws it asks for, and what its columns and figures mean [model.md, Reported per trial].
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 3: what keys together may not say, and the defaults that depend on other keys.
+// What keys together may not say, and the defaults that depend on other keys.
 
 #include "catch.hpp"
 #include "support.hpp"

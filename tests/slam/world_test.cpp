@@ -1,4 +1,4 @@
-// Room 4: the truth [model.md, Truth], with noise that the test chooses.
+// The truth [model.md, Truth], with noise that the test chooses.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// Room 10: totals of columns are the exact sums over the trials that have a value, and what follows from them.
+// Totals of columns are the exact sums over the trials that have a value, and what follows from them.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"

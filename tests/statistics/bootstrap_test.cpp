@@ -1,4 +1,4 @@
-// Room 10: the bootstrap of a mean, against a second program made from its description (its own Philox, NumPy's sums
+// The bootstrap of a mean, against a second program made from its description (its own Philox, NumPy's sums
 // and quantiles), and by replication.
 
 #include "statistics/bootstrap.hpp"

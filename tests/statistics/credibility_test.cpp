@@ -1,4 +1,4 @@
-// Room 10: credibility after Li and Zhao, against NumPy, by hand, and on synthetic errors.
+// Credibility after Li and Zhao, against NumPy, by hand, and on synthetic errors.
 
 #include <credence/credibility.hpp>
 

@@ -1,4 +1,4 @@
-// Room 10: goodness of fit, against SciPy and published figures, and by replication.
+// Goodness of fit, against SciPy and published figures, and by replication.
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-// Room 10: paired comparison of two arms, against SciPy and NumPy, and by replication.
+// Paired comparison of two arms, against SciPy and NumPy, and by replication.
 
 #include <credence/paired.hpp>
 

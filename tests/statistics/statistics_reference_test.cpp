@@ -1,4 +1,4 @@
-// Room 10: quantiles and figures of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
+// Quantiles and figures of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
 
 #include "reference.hpp"
 

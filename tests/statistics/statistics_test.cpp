@@ -1,4 +1,4 @@
-// Room 10: figures of samples, against values computed by SciPy 1.10 and NumPy 1.24.
+// Figures of samples, against values computed by SciPy 1.10 and NumPy 1.24.
 
 #include "catch.hpp"
 

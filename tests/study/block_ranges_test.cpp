@@ -1,4 +1,4 @@
-// Room 10: sets of blocks as ranges, against sets of numbers.
+// Sets of blocks as ranges, against sets of numbers.
 
 #include <credence/detail/block_ranges.hpp>
 

@@ -1,4 +1,4 @@
-// Room 12, files: which release computed which trials, and which releases may not be mixed.
+// Files: which release computed which trials, and which releases may not be mixed.
 
 #include <credence/merge.hpp>
 

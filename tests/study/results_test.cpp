@@ -1,4 +1,4 @@
-// Room 10: what blocks add up to.
+// What blocks add up to.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"

@@ -1,4 +1,4 @@
-// Room 11: the interval at which a study stops covers the truth as often as it says, early stopping included.
+// The interval at which a study stops covers the truth as often as it says, early stopping included.
 // Replications with fixed seeds; each one runs the production's looks and decisions.
 
 #include "catch.hpp"

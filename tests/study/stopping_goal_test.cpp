@@ -1,4 +1,4 @@
-// Room 11: goals as they are written, and what of a study they are about.
+// Goals as they are written, and what of a study they are about.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,4 +1,4 @@
-// Room 11: stopping at a precision: looks, and the study that grows from look to look.
+// Stopping at a precision: looks, and the study that grows from look to look.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,4 +1,4 @@
-// Room 11: the same results for any number of threads and any history.
+// The same results for any number of threads and any history.
 
 #include "catch.hpp"
 #include "study_support.hpp"

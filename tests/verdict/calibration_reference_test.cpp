@@ -1,4 +1,4 @@
-// Room 10: the same machinery on draws made elsewhere. NumPy's normal draws are errors and innovations of a filter that
+// The same machinery on draws made elsewhere. NumPy's normal draws are errors and innovations of a filter that
 // is right; their totals are put together here by hand, and every figure of the evidence must be what SciPy computes
 // from the values (tests/reference/make_chi_square.py).
 

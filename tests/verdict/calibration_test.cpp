@@ -1,4 +1,4 @@
-// Room 10: the judge is judged. Where the filter is exact, every test rejects as often as it says, over replications
+// The judge is judged. Where the filter is exact, every test rejects as often as it says, over replications
 // with fixed seeds [statistics.md, The judge is judged]. Each count must lie within the central 99.9 % of its binomial:
 // another set of seeds fails a count with 1e-3, of 90 here. 2,000 replications tell 5 % from 3.5 % and from 6.7 %.
 

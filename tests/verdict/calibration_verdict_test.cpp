@@ -1,4 +1,4 @@
-// Room 10: filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
+// Filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
 // the test names, and with the figures of model.md [statistics.md, The judge is judged; model.md, Truth against
 // filter].
 

@@ -1,4 +1,4 @@
-// Room 13: what shared draws gain, and how often a conclusion is wrong, by replication.
+// What shared draws gain, and how often a conclusion is wrong, by replication.
 
 #include <algorithm>
 #include <credence/detail/draws.hpp>

@@ -1,4 +1,4 @@
-// Room 10: what stands beside a verdict, and what few trials may not be told.
+// What stands beside a verdict, and what few trials may not be told.
 
 #include "catch.hpp"
 #include "matched.hpp"

@@ -1,4 +1,4 @@
-// Room 10: the verdict. Every kind has a case that must get it and one that must not.
+// The verdict. Every kind has a case that must get it and one that must not.
 
 #include "catch.hpp"
 #include "matched.hpp"

@@ -1,4 +1,4 @@
-// Rooms 8 to 10: the totals behind NIS by group, accuracy, coverage, shape, whiteness and credibility, against the
+// The totals behind NIS by group, accuracy, coverage, shape, whiteness and credibility, against the
 // oracle's matrices and plain loops over trials.
 
 #include "catch.hpp"

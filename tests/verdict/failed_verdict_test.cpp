@@ -1,4 +1,4 @@
-// Room 10, the verdict `failed`: a filter that fails in more than the stated share of its trials is nothing else.
+// The verdict `failed`: a filter that fails in more than the stated share of its trials is nothing else.
 
 #include <credence/consistency.hpp>
 #include <credence/report.hpp>

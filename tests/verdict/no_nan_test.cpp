@@ -1,4 +1,4 @@
-// Room 13: no sentence of a report says `nan` or `inf`, whatever became of the trials; and an arm that is not run yet is
+// No sentence of a report says `nan` or `inf`, whatever became of the trials; and an arm that is not run yet is
 // said to be so, in every form.
 
 #include "catch.hpp"

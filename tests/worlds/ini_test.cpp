@@ -1,4 +1,4 @@
-// Room 12: scenario files.
+// Scenario files.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"

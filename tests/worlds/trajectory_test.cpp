@@ -1,4 +1,4 @@
-// Room 8: a replayed trial is the engine's, bit for bit, and what it writes down agrees with itself.
+// A replayed trial is the engine's, bit for bit, and what it writes down agrees with itself.
 
 #include "catch.hpp"
 #include "study_support.hpp"

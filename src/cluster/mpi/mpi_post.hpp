@@ -1,5 +1,5 @@
 #pragma once
-// The ranks of an MPI job [room 12, ranks.hpp]. mpi_post.cpp where MPI is built in, no_mpi.cpp where it is not.
+// The ranks of an MPI job [cluster/ranks.hpp]. mpi_post.cpp where MPI is built in, no_mpi.cpp where it is not.
 
 #include "cluster/ranks.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
-// Room 14: `credence run --until`: growing a study while saying how precise it is and how far it still has to go.
+// `credence run --until`: growing a study while saying how precise it is and how far it still has to go.
 
-#include "cli/run_request.hpp"
+#include "cli/run/request.hpp"
 
 namespace credence::cli {
 

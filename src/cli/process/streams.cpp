@@ -1,4 +1,4 @@
-#include "cli/streams.hpp"
+#include "cli/process/streams.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
-#include "cli/run_until.hpp"
+#include "cli/run/until.hpp"
 
-#include "cli/progress.hpp"
+#include "cli/process/progress.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "cli/ranks.hpp"
+#include "cli/run/ranks.hpp"
 
 #include "cluster/mpi/mpi_post.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/process/interrupt.hpp"
 
 #include <credence/error.hpp>
 #include "cluster/launcher.hpp"

@@ -1,7 +1,7 @@
 #pragma once
-// Room 14: `credence run --dry-run`: what a run is expected to take.
+// `credence run --dry-run`: what a run is expected to take.
 
-#include "cli/run_request.hpp"
+#include "cli/run/request.hpp"
 
 namespace credence::cli {
 

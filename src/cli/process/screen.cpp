@@ -1,4 +1,4 @@
-#include "cli/screen.hpp"
+#include "cli/process/screen.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

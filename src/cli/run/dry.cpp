@@ -1,7 +1,7 @@
-#include "cli/run_dry.hpp"
+#include "cli/run/dry.hpp"
 
-#include "cli/limits.hpp"
-#include "cli/progress.hpp"
+#include "cli/process/limits.hpp"
+#include "cli/process/progress.hpp"
 
 #include <credence/error.hpp>
 

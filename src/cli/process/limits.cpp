@@ -1,4 +1,4 @@
-#include "cli/limits.hpp"
+#include "cli/process/limits.hpp"
 
 #include <credence/error.hpp>
 

@@ -1,4 +1,4 @@
-#include "cli/progress.hpp"
+#include "cli/process/progress.hpp"
 
 #include <unistd.h>
 

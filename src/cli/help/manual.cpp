@@ -1,7 +1,7 @@
 // The manual page credence(1), made of the descriptions that the program itself reads.
 
 #include "cli/command.hpp"
-#include "cli/roff.hpp"
+#include "cli/help/roff.hpp"
 
 #include "build_info.hpp"  // made by CMake
 

@@ -1,8 +1,8 @@
-#include "cli/interrupt.hpp"
-#include "cli/progress.hpp"
-#include "cli/ranks.hpp"
-#include "cli/run_dry.hpp"
-#include "cli/run_until.hpp"
+#include "cli/process/interrupt.hpp"
+#include "cli/process/progress.hpp"
+#include "cli/run/ranks.hpp"
+#include "cli/run/dry.hpp"
+#include "cli/run/until.hpp"
 #include "cli/version.hpp"
 
 #include <credence/error.hpp>

@@ -1,4 +1,4 @@
-#include "cli/run_request.hpp"
+#include "cli/run/request.hpp"
 
 #include "cli/version.hpp"
 #include "cli/file_kind.hpp"
