@@ -44,11 +44,11 @@ void compare(const Row& row, const std::string& who, const std::unique_ptr<Basel
 }
 
 /// Other units, the counted one among them, must give the same bits.
-void compare(const Row& row, const Unit& unit, const std::vector<double>& columns, int trials) {
-    const std::vector<double> own = run_block(row.problem, root_seed, 0, trials, unit).arms.front().columns;
+void compare(const Row& row, const Target& target, const std::vector<double>& columns, int trials) {
+    const std::vector<double> own = run_block(row.problem, root_seed, 0, trials, target).arms.front().columns;
     for (std::size_t i = 0; i < columns.size(); ++i)
         if (!agree(own[i], columns[i], 0))
-            disagree(row, unit.name, static_cast<int>(i) % trials, static_cast<int>(i) / trials, own[i], columns[i]);
+            disagree(row, target.name, static_cast<int>(i) % trials, static_cast<int>(i) / trials, own[i], columns[i]);
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ void require_agreement(const std::deque<Row>& rows, const Effort& effort) {
         const std::vector<double> columns = run_block(row.problem, root_seed, 0, trials).arms.front().columns;
         if (has_dynamic(row)) compare(row, "A", make_dynamic(view, row.controller, Draws::keyed), columns, trials);
         compare(row, "B", make_fixed(view, row.controller, Draws::keyed), columns, trials);
-        for (const Unit& unit : measured_units()) compare(row, unit, columns, trials);
-        compare(row, counted_unit(), columns, trials);
+        for (const Target& target : measured_targets()) compare(row, target, columns, trials);
+        compare(row, counted_target(), columns, trials);
     }
 }
 

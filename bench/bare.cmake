@@ -38,7 +38,7 @@ without(src/engine/simulate_batch.hpp
   "problem.figure_count" "(problem.block_count + 3)"
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
 
-credence_unit(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
-set_target_properties(credence_unit_bare PROPERTIES INCLUDE_DIRECTORIES "${bare_folder}/include;${bare_folder}/src" SOURCES
-  "${PROJECT_SOURCE_DIR}/src/worlds/deformable/unit.cpp;${PROJECT_SOURCE_DIR}/src/worlds/landmarks/unit.cpp")
-target_compile_options(credence_unit_bare PRIVATE -Wno-unused-but-set-variable)
+credence_target(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
+set_target_properties(credence_target_bare PROPERTIES INCLUDE_DIRECTORIES "${bare_folder}/include;${bare_folder}/src" SOURCES
+  "${PROJECT_SOURCE_DIR}/src/worlds/deformable/target.cpp;${PROJECT_SOURCE_DIR}/src/worlds/landmarks/target.cpp")
+target_compile_options(credence_target_bare PRIVATE -Wno-unused-but-set-variable)

@@ -5,7 +5,7 @@
 #include <credence/detail/draws.hpp>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 struct Counted {
     double value = 0;
@@ -55,5 +55,5 @@ void draw_several(const KeyedDraws<Counted>& noise, const DrawKey* keys, Vector2
     for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -8,21 +8,21 @@
 #include "counted.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 template <>
 struct PackOf<CREDENCE_LANES> {
     using type = Counted;
 };
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence
 
 #define CREDENCE_WRITTEN_OUT 3
-#include "../src/worlds/deformable/unit.cpp"
+#include "../src/worlds/deformable/target.cpp"
 
 namespace credence::bench {
 
-Unit counted_unit() {
-    return {"counted", 1, credence::CREDENCE_UNIT::simulate, credence::CREDENCE_UNIT::workspace_size};
+Target counted_target() {
+    return {"counted", 1, credence::CREDENCE_TARGET::simulate, credence::CREDENCE_TARGET::workspace_size};
 }
 
 std::uint64_t counted_operations() { return Counted::operations; }

@@ -5,7 +5,7 @@
 
 namespace credence::bench {
 
-Unit counted_unit();
+Target counted_target();
 
 /// Floating-point operations since the program began. Not for several threads.
 std::uint64_t counted_operations();

@@ -7,7 +7,7 @@ namespace credence {
 namespace bench_portable {
 extern const bench::Kernels kernels;
 }
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
 namespace bench_v3 {
 extern const bench::Kernels kernels;
 }
@@ -20,14 +20,14 @@ namespace bench {
 
 std::vector<Kernels> runnable_kernels() {
     std::vector<Kernels> built{bench_portable::kernels};
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
     built.push_back(bench_v3::kernels);
     built.push_back(bench_v4::kernels);
 #endif
     std::vector<Kernels> runnable;
-    for (const Unit& unit : runnable_units())
+    for (const Target& target : runnable_targets())
         for (const Kernels& kernels : built)
-            if (unit.name == kernels.unit) runnable.push_back(kernels);
+            if (target.name == kernels.target) runnable.push_back(kernels);
     return runnable;
 }
 

@@ -10,7 +10,7 @@ namespace credence::bench {
 
 /// Each function returns a number that depends on all that it computed.
 struct Kernels {
-    const char* unit = "";
+    const char* target = "";
     int lanes = 1;
     int chains = 1;                                    ///< of fused multiply-adds that do not wait for one another
     bool hardware_fma = false;                         ///< else an fma is a library call, and its rate no peak

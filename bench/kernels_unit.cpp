@@ -6,7 +6,7 @@
 #include "kernels.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 namespace {
 
@@ -57,7 +57,7 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
         predict_features(work.belief, problem.filter, layout, 1);
         update_belief(work.belief, problem.filter, layout, work.sightings, edge_measurement,
                       AtMean<Layout, Real>(work.belief.mean), work.update);
-        judge_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome, figures);
+        evaluate_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome, figures);
     }
     return first_lane(sums.nees + sums.nis);
 }
@@ -103,7 +103,7 @@ constexpr bool hardware_fma = false;
 #define CREDENCE_TEXT(x) CREDENCE_TEXT_OF(x)
 
 extern const bench::Kernels kernels;
-const bench::Kernels kernels{CREDENCE_TEXT(CREDENCE_UNIT) + sizeof "bench",
+const bench::Kernels kernels{CREDENCE_TEXT(CREDENCE_TARGET) + sizeof "bench",
                              CREDENCE_LANES,
                              chains,
                              hardware_fma,
@@ -111,5 +111,5 @@ const bench::Kernels kernels{CREDENCE_TEXT(CREDENCE_UNIT) + sizeof "bench",
                              filter_steps,
                              multiply_adds};
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -34,14 +34,14 @@ std::string cpu_model() {
 
 /// What the numbers stand on.
 Json context(const Effort& effort) {
-    std::string units;
-    for (const Unit& unit : runnable_units())
-        units += (units.empty() ? "" : ", ") + unit.name + " (" + std::to_string(unit.lanes) + " lanes)";
+    std::string targets;
+    for (const Target& target : runnable_targets())
+        targets += (targets.empty() ? "" : ", ") + target.name + " (" + std::to_string(target.lanes) + " lanes)";
     return {{"processor", cpu_model()},
             {"compiler", CREDENCE_BENCH_COMPILER},
             {"flags of credence", CREDENCE_BENCH_FLAGS},
             {"flags of A and B", CREDENCE_BENCH_BASELINE_FLAGS},
-            {"units", units},
+            {"units", targets},
             {"input",
              "the seed's scenario but for what a row names: K = 20 poses (19 steps), M = 3; a trial is the truth "
              "with all draws, planning, filter, NEES, NIS and trace(P) at each step, for credence all its "

@@ -31,7 +31,7 @@ struct Measured {
     int trials = octet;  ///< as many as take a tenth of a second, or a block
     std::vector<double> microseconds;
 
-    Measured(const std::string& name, const Scenario& scenario) : row(name, scenario, block_size) {}
+    Measured(const std::string& name, const DeformableSettings& scenario) : row(name, scenario, block_size) {}
 
     double seconds(int count) const {
         const double start = processor_seconds();

@@ -64,7 +64,7 @@ void write_bytes(const std::string& path, std::size_t size) {
 /// What the parts of a case share.
 struct Job {
     const test::TemporaryFolder folder;
-    Scenario scenario;
+    DeformableSettings scenario;
     std::int64_t trials = 0;
     Study study;  ///< run once, for what is written
     std::size_t size = 0;
@@ -72,7 +72,7 @@ struct Job {
     Job(const Case& c, const Effort& effort)
         : scenario(scenario_with("program", {"arms.controllers", c.controllers})),
           trials(effort.of(c.trials, c.quick_trials)),
-          study(new_study({declaration_of(scenario)}, 1)) {
+          study(new_study({scenario_of(scenario)}, 1)) {
         run_study(study, {trials, 1, {}});
         write_results(folder / "results.h5", study, {});
         size = std::filesystem::file_size(folder / "results.h5");
@@ -84,7 +84,7 @@ struct Job {
                             "--threads", "1", "--output", folder / "program.h5", "--overwrite", "--quiet"});
     }
     void engine() const {
-        Study fresh = new_study({declaration_of(scenario)}, 1);
+        Study fresh = new_study({scenario_of(scenario)}, 1);
         run_study(fresh, {trials, 1, {}});
     }
 };
@@ -106,7 +106,7 @@ void add_part(const std::string& name, const Effort& effort, const std::function
         ->Iterations(1)
         ->Repetitions(effort.of(5, 1))
         ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
+        ->Target(benchmark::kMillisecond);
 }
 
 }  // namespace

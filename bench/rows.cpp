@@ -44,8 +44,8 @@ std::string positions(int M) {
 
 }  // namespace
 
-Scenario scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values) {
-    Scenario scenario;
+DeformableSettings scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values) {
+    DeformableSettings scenario;
     scenario.name = name;
     for (std::size_t i = 0; i + 1 < keys_and_values.size(); i += 2)
         set_key(scenario, keys_and_values[i], keys_and_values[i + 1]);
@@ -54,7 +54,7 @@ Scenario scenario_with(const std::string& name, const std::vector<std::string>& 
     return scenario;
 }
 
-Row::Row(std::string row_name, const Scenario& scenario, int trials_at_once)
+Row::Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once)
     : name(std::move(row_name)),
       controller(scenario.arms.controllers.front()),
       trials(trials_at_once),

@@ -15,7 +15,7 @@ struct Row {
     int trials = 0;
     Problem problem;
 
-    Row(std::string row_name, const Scenario& scenario, int trials_at_once);
+    Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once);
     Row(const Row&) = delete;
     int features() const { return problem.view().features; }
     /// Steps of all the trials that are run at once.
@@ -29,6 +29,6 @@ const std::deque<Row>& seed_rows();
 const std::deque<Row>& growth_rows();
 
 /// The defaults with keys set: name and value in turns. Resolved and validated.
-Scenario scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values);
+DeformableSettings scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values);
 
 }  // namespace credence::bench

@@ -7,7 +7,7 @@
 
 namespace credence {
 
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
 CREDENCE_DECLARE_UNIT(bare)
 #endif
 
@@ -19,10 +19,10 @@ constexpr std::int64_t usual_block = 1000;  ///< beyond the detailed trials
 
 std::string group_of(const Row& row) { return "statistics/" + row.name; }
 
-void add_block(const Row& row, const std::string& name, const Unit& unit, const Effort& effort) {
-    add(group_of(row) + "/" + name, effort, [&row, unit](benchmark::State& state) {
+void add_block(const Row& row, const std::string& name, const Target& target, const Effort& effort) {
+    add(group_of(row) + "/" + name, effort, [&row, target](benchmark::State& state) {
         std::int64_t index = usual_block;
-        for (auto _ : state) benchmark::DoNotOptimize(run_block(row.problem, 1, index++, row.trials, unit));
+        for (auto _ : state) benchmark::DoNotOptimize(run_block(row.problem, 1, index++, row.trials, target));
     });
 }
 
@@ -45,8 +45,8 @@ void add_cells(const Row& row, const Effort& effort) {
 
 /// Its instruction set is that of the best unit.
 bool has_bare_unit() {
-#ifdef CREDENCE_X86_UNITS
-    return best_unit().name == "v4";
+#ifdef CREDENCE_X86_TARGETS
+    return best_target().name == "v4";
 #else
     return false;
 #endif
@@ -55,10 +55,10 @@ bool has_bare_unit() {
 }  // namespace
 
 void add_statistics(const std::deque<Row>& rows, const Effort& effort) {
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
     if (!has_bare_unit()) return;
     for (const Row& row : rows) {
-        add_block(row, "all", best_unit(), effort);
+        add_block(row, "all", best_target(), effort);
         add_block(row, "bare", CREDENCE_LIST_UNIT(bare, 8), effort);
         add_cells(row, effort);
     }

@@ -35,21 +35,21 @@ std::vector<int> thread_counts() {
 
 void add_threads(const Effort& effort) {
     for (const Case& c : cases) {
-        const Scenario scenario = scenario_with(
+        const DeformableSettings scenario = scenario_with(
             "threads", {"arms.controllers", c.controller, "features.path", c.path, "sensor.noise", c.noise});
         for (const int T : thread_counts()) {
             const RunOptions options{effort.of(c.trials, c.quick_trials), T, {}};
             benchmark::RegisterBenchmark((benchmark_name(c) + "/" + std::to_string(T)).c_str(),
                                          [scenario, options](benchmark::State& state) {
                                              for (auto _ : state) {
-                                                 Study study = new_study({declaration_of(scenario)}, 1);
+                                                 Study study = new_study({scenario_of(scenario)}, 1);
                                                  run_study(study, options);
                                              }
                                          })
                 ->Iterations(1)
                 ->Repetitions(effort.repetitions())
                 ->UseRealTime()
-                ->Unit(benchmark::kMillisecond);
+                ->Target(benchmark::kMillisecond);
         }
     }
 }

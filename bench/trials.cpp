@@ -36,10 +36,10 @@ void add_baseline(const Row& row, const std::string& name, MakeBaseline make, co
 constexpr std::int64_t usual_block = 1000;
 
 /// One block an iteration.
-void add_unit(const Row& row, const Unit& unit, const Effort& effort) {
-    add("trial/" + row.name + "/" + unit.name, effort, [&row, unit](benchmark::State& state) {
+void add_unit(const Row& row, const Target& target, const Effort& effort) {
+    add("trial/" + row.name + "/" + target.name, effort, [&row, target](benchmark::State& state) {
         std::int64_t index = usual_block;
-        for (auto _ : state) benchmark::DoNotOptimize(run_block(row.problem, 1, index++, row.trials, unit));
+        for (auto _ : state) benchmark::DoNotOptimize(run_block(row.problem, 1, index++, row.trials, target));
         state.SetItemsProcessed(state.iterations() * row.trials);
     });
 }
@@ -48,7 +48,7 @@ void add_unit(const Row& row, const Unit& unit, const Effort& effort) {
 double operations_per_step(const Row& row) {
     const int trials = std::min(row.trials, row.features() <= 3 ? 32 : row.features() <= 8 ? 8 : 1);
     const std::uint64_t before = counted_operations();
-    run_block(row.problem, 1, usual_block, trials, counted_unit());
+    run_block(row.problem, 1, usual_block, trials, counted_target());
     return static_cast<double>(counted_operations() - before) / (trials * (row.problem.view().poses - 1));
 }
 
@@ -58,9 +58,9 @@ Json microseconds_of(const std::map<std::string, Samples>& samples, const std::s
 }
 
 /// GFLOP/s of multiply-adds, measured among the row's own benchmarks: the clock drifts. NaN where it is no peak.
-double peak_of(const std::map<std::string, Samples>& samples, const std::string& unit) {
+double peak_of(const std::map<std::string, Samples>& samples, const std::string& target) {
     for (const Kernels& kernels : runnable_kernels())
-        if (kernels.unit == unit && kernels.hardware_fma) return bench::peak_of(samples.at("peak-" + unit), kernels);
+        if (kernels.target == target && kernels.hardware_fma) return bench::peak_of(samples.at("peak-" + target), kernels);
     return std::nan("");
 }
 
@@ -87,36 +87,36 @@ void add_trials(const std::deque<Row>& rows, const Effort& effort) {
     for (const Row& row : rows) {
         if (has_dynamic(row)) add_baseline(row, "A", make_dynamic, effort);
         add_baseline(row, "B", make_fixed, effort);
-        for (const Unit& unit : measured_units())
-            if (!effort.quick || row.features() <= 8 || unit.name == best_unit().name) add_unit(row, unit, effort);
+        for (const Target& target : measured_targets())
+            if (!effort.quick || row.features() <= 8 || target.name == best_target().name) add_unit(row, target, effort);
         for (const Kernels& kernels : runnable_kernels())
-            add_peak("trial/" + row.name + "/peak-" + kernels.unit, kernels, effort);
+            add_peak("trial/" + row.name + "/peak-" + kernels.target, kernels, effort);
     }
 }
 
 std::vector<Table> trial_tables(const std::string& key, const std::string& title, const std::deque<Row>& rows) {
-    const std::vector<Unit> units = measured_units();
-    const std::string best = units.front().name;
+    const std::vector<Target> targets = measured_targets();
+    const std::string best = targets.front().name;
     Table table{key,
                 title + ", unit " + best,
                 {"row", "A us/step", "B us/step", "us/step", "trials/s", "x A", "x B", "operations/step", "GFLOP/s",
                  "% of peak"},
                 {}};
     Table others{key + "_units", title + ", other units", {"row"}, {}};
-    for (std::size_t u = 1; u < units.size(); ++u)
+    for (std::size_t u = 1; u < targets.size(); ++u)
         for (const char* what : {" us/step", " x A", " x B", " % of peak"})
-            others.columns.push_back(units[u].name + what);
+            others.columns.push_back(targets[u].name + what);
     for (const Row& row : rows) {
         const std::map<std::string, Samples> samples = measure("trial/" + row.name);
         const int steps = row.problem.view().poses - 1;
         const Json A = microseconds_of(samples, "A", steps), B = microseconds_of(samples, "B", steps);
         const double operations = operations_per_step(row);
         others.rows.push_back({row.name});
-        for (const Unit& unit : units) {
-            const Json measured = microseconds_of(samples, unit.name, row.steps());
+        for (const Target& target : targets) {
+            const Json measured = microseconds_of(samples, target.name, row.steps());
             const double ours = measured.is_null() ? std::nan("") : measured.get<double>();
-            const double rate = operations / ours / 1e3, share = 100 * rate / peak_of(samples, unit.name);
-            if (unit.name == best)
+            const double rate = operations / ours / 1e3, share = 100 * rate / peak_of(samples, target.name);
+            if (target.name == best)
                 table.rows.push_back({row.name, A, B, ours, 1e6 / (ours * steps), ratio(A, ours), ratio(B, ours),
                                       operations, rate, share});
             else

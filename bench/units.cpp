@@ -4,19 +4,19 @@
 
 namespace credence {
 
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
 CREDENCE_DECLARE_UNIT(one_lane)
 #endif
 
 namespace bench {
 
-std::vector<Unit> measured_units() {
-    std::vector<Unit> units = runnable_units();
-#ifdef CREDENCE_X86_UNITS
-    const auto v3 = std::find_if(units.begin(), units.end(), [](const Unit& unit) { return unit.name == "v3"; });
-    if (v3 != units.end()) units.insert(v3 + 1, CREDENCE_LIST_UNIT(one_lane, 1));
+std::vector<Target> measured_targets() {
+    std::vector<Target> targets = runnable_targets();
+#ifdef CREDENCE_X86_TARGETS
+    const auto v3 = std::find_if(targets.begin(), targets.end(), [](const Target& target) { return target.name == "v3"; });
+    if (v3 != targets.end()) targets.insert(v3 + 1, CREDENCE_LIST_UNIT(one_lane, 1));
 #endif
-    return units;
+    return targets;
 }
 
 }  // namespace bench

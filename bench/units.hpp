@@ -5,8 +5,8 @@
 
 namespace credence::bench {
 
-/// runnable_units(), and, where AVX2 is, the engine one trial at a time with fused multiply-adds in hardware
+/// runnable_targets(), and, where AVX2 is, the engine one trial at a time with fused multiply-adds in hardware
 /// ("one_lane"): what is left of the gain without lanes is the algebra's and the compiler's.
-std::vector<Unit> measured_units();
+std::vector<Target> measured_targets();
 
 }  // namespace credence::bench

@@ -12,31 +12,31 @@ namespace credence::test {
 namespace drawn {
 
 inline constexpr std::size_t trials = 200, steps = 5, n = 4, rows = 4, lags = 4;
-inline constexpr std::size_t row_figure = 4;  ///< NEES of three blocks, NIS, its rows ...
+inline constexpr std::size_t row_series = 4;  ///< NEES of three blocks, NIS, its rows ...
 
 inline const Json& expected() {
     static const Json values = Json::parse(std::ifstream(CREDENCE_SOURCE "/tests/reference/chi_square.json"));
     return values;
 }
 
-inline const std::vector<StateBlock>& blocks() {
-    static const std::vector<StateBlock> blocks{{"all", 0, 4}, {"pose", 0, 2}, {"features", 2, 2}};
+inline const std::vector<ComponentGroup>& blocks() {
+    static const std::vector<ComponentGroup> blocks{{"all", 0, 4}, {"pose", 0, 2}, {"features", 2, 2}};
     return blocks;
 }
 
-inline std::vector<Figure> figures() {
-    std::vector<Figure> figures;
-    const auto add = [&](FigureRole role, int dimension, const std::string& part) {
+inline std::vector<Series> figures() {
+    std::vector<Series> figures;
+    const auto add = [&](SeriesRole role, int dimension, const std::string& part) {
         figures.push_back({"figure_" + std::to_string(figures.size()), "", "1", role, dimension, false, part, "", 0});
     };
-    for (const StateBlock& block : blocks()) add(FigureRole::nees, block.count, block.name);
-    add(FigureRole::nis, 0, "all");
-    figures.back().rows = "figure_" + std::to_string(row_figure);
-    add(FigureRole::rows, 0, "all");
+    for (const ComponentGroup& block : blocks()) add(SeriesRole::nees, block.count, block.name);
+    add(SeriesRole::nis, 0, "all");
+    figures.back().rows = "figure_" + std::to_string(row_series);
+    add(SeriesRole::rows, 0, "all");
     figures.back().integer = true;
-    for (const StateBlock& block : blocks()) add(FigureRole::squared_error, block.count, block.name);
-    for (const StateBlock& block : blocks()) add(FigureRole::variance, block.count, block.name);
-    for (std::size_t j = 0; j < n; ++j) add(FigureRole::standardised_error, 1, std::to_string(j));
+    for (const ComponentGroup& block : blocks()) add(SeriesRole::squared_error, block.count, block.name);
+    for (const ComponentGroup& block : blocks()) add(SeriesRole::variance, block.count, block.name);
+    for (std::size_t j = 0; j < n; ++j) add(SeriesRole::standardised_error, 1, std::to_string(j));
     return figures;
 }
 
@@ -46,7 +46,7 @@ inline std::vector<std::vector<double>> trial_values(const double* draws, const 
     for (std::size_t k = 0; k < steps; ++k) {
         const double sigma = expected()["sigma"][k];
         std::vector<double> nees, squares, variances, standardised;
-        for (const StateBlock& block : blocks()) {
+        for (const ComponentGroup& block : blocks()) {
             double sum = 0;
             for (int j = block.first; j < block.first + block.count; ++j) sum += draws[k * n + j] * draws[k * n + j];
             nees.push_back(sum / claimed);
@@ -70,10 +70,10 @@ inline std::vector<std::vector<double>> trial_values(const double* draws, const 
 }
 
 /// Adds a trial's values to the totals.
-inline void add_trial(const std::vector<std::vector<double>>& values, const std::vector<Figure>& figures,
+inline void add_trial(const std::vector<std::vector<double>>& values, const std::vector<Series>& figures,
                       ArmResults& arm) {
     for (std::size_t f = 0; f < figures.size(); ++f) {
-        FigureTotals& totals = arm.totals[f];
+        SeriesTotals& totals = arm.totals[f];
         double run = 0;
         for (std::size_t k = 0; k < steps; ++k) {
             const double value = values[k][f];
@@ -88,7 +88,7 @@ inline void add_trial(const std::vector<std::vector<double>>& values, const std:
     }
     for (std::size_t k = 0; k < steps; ++k) {
         arm.nees.push_back(values[k][0]);
-        ++arm.cells[k * shape_cells + static_cast<std::size_t>(equiprobable_cells(n)->cell(values[k][0]))];
+        ++arm.cells[k * distribution_cells + static_cast<std::size_t>(equiprobable_cells(n)->cell(values[k][0]))];
     }
     ++arm.counted;
 }
@@ -106,23 +106,23 @@ inline void add_products(const double* innovations, ProductTotals& products) {
 /// The results of a filter that claims `claimed` times the covariance that its errors have.
 inline ScenarioResults results(double claimed) {
     const std::vector<double> draws = numbers(expected()["draws"]), innovations = numbers(expected()["innovations"]);
-    Declaration scenario;
+    Scenario scenario;
     scenario.poses = steps + 1;
     ScenarioResults results{scenario, status_columns(), figures(), {}, trials};
     ArmResults arm;
     for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
-    for (const Figure& figure : results.figures)
+    for (const Series& figure : results.all_series)
         arm.totals.push_back(
             {std::vector<ExactSum>(steps),
              std::vector<ExactSum>(figure.integer ? 0 : steps),
              {},
              {},
-             std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)});
-    arm.cells.resize(steps * shape_cells);
+             std::vector<std::int64_t>(figure.role == SeriesRole::nees ? steps * coverage_level_count : 0)});
+    arm.cells.resize(steps * distribution_cells);
     arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     for (std::size_t i = 0; i < trials; ++i) {
         const double* seen = innovations.data() + i * steps * rows;
-        add_trial(trial_values(draws.data() + i * steps * n, seen, claimed), results.figures, arm);
+        add_trial(trial_values(draws.data() + i * steps * n, seen, claimed), results.all_series, arm);
         add_products(seen, arm.products);
     }
     for (std::size_t i = 0; i < draws.size(); ++i)

@@ -17,13 +17,13 @@ namespace credence::test {
 
 /// The same where each feature is missed with 0.3, by its own draw: rows and P vary from trial to trial, and all is
 /// exact as before. (Gating on the true range is not: what is seen then tells of the error.)
-inline Scenario matched_with_gaps() {
-    Scenario s = matched_linear();
+inline DeformableSettings matched_with_gaps() {
+    DeformableSettings s = matched_linear();
     s.sensor.detection = 0.7;
     return s;
 }
 
-inline ScenarioResults replication(const Scenario& scenario, std::int64_t trials, std::uint64_t root_seed) {
+inline ScenarioResults replication(const DeformableSettings& scenario, std::int64_t trials, std::uint64_t root_seed) {
     validate(scenario);
     Study study = new_study({resolved(scenario)}, root_seed);
     run_study(study, {trials, 1, {}});
@@ -32,7 +32,7 @@ inline ScenarioResults replication(const Scenario& scenario, std::int64_t trials
 
 /// The evidence of studies with the root seeds 1 ... replications, one after the other; without the credibility
 /// indices, which have no level and take their time.
-inline void replicate(const Scenario& scenario, std::int64_t trials, int replications,
+inline void replicate(const DeformableSettings& scenario, std::int64_t trials, int replications,
                       const std::function<void(const Evidence&)>& look) {
     for (int r = 1; r <= replications; ++r) {
         ScenarioResults results = replication(scenario, trials, static_cast<std::uint64_t>(r));

@@ -10,22 +10,22 @@
 
 namespace credence::test {
 
-inline Study run(const std::vector<Scenario>& scenarios, std::uint64_t seed, std::int64_t trials) {
+inline Study run(const std::vector<DeformableSettings>& scenarios, std::uint64_t seed, std::int64_t trials) {
     Study study = new_study(scenarios, seed);
     run_study(study, {trials, 1, {}});
     return study;
 }
 
-inline Scenario changed(Scenario scenario, const std::string& key, const std::string& value) {
+inline DeformableSettings changed(DeformableSettings scenario, const std::string& key, const std::string& value) {
     set_key(scenario, key, value);
     return resolved(scenario);
 }
 
 /// The matched linear world under both controllers.
-inline Scenario matched() {
-    Scenario s = matched_linear();
+inline DeformableSettings matched() {
+    DeformableSettings s = matched_linear();
     s.name = "matched";
-    s.arms = Scenario{}.arms;
+    s.arms = DeformableSettings{}.arms;
     return resolved(s);
 }
 
@@ -36,7 +36,7 @@ inline CompareReport compared(const std::vector<StudyFile>& files, const std::st
 }
 
 inline const PairedComparison& of(const ComparedPair& pair, int column) {
-    return pair.comparison.figures[static_cast<std::size_t>(column)].paired;
+    return pair.comparison.columns[static_cast<std::size_t>(column)].paired;
 }
 
 inline double mean_of(const std::vector<double>& values) {

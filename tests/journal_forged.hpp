@@ -12,7 +12,7 @@ namespace credence::test {
 /// A record in its parts: each can be made up.
 struct Record {
     std::uint32_t scenario = 0;
-    RecordStart start;
+    CommitStart start;
     std::string values, totals;
     std::optional<std::int64_t> payload;      ///< as its head says; none: as it is
     std::optional<std::uint32_t> blocks;      ///< as its start says
@@ -20,10 +20,10 @@ struct Record {
 
     std::string bytes() const {
         ByteWriter begin, head;
-        put_record_start(begin, start, keep);
-        if (blocks) begin.set(record_start_size - sizeof *blocks, *blocks);
+        put_commit_start(begin, start, keep);
+        if (blocks) begin.set(commit_start_size - sizeof *blocks, *blocks);
         const std::string all = begin.bytes() + values + totals;
-        put_record_head(head, {scenario, payload.value_or(static_cast<std::int64_t>(all.size()))});
+        put_commit_head(head, {scenario, payload.value_or(static_cast<std::int64_t>(all.size()))});
         return sealed(head.bytes() + all);
     }
 };
@@ -45,12 +45,12 @@ struct Made {
     explicit Made(Keep keep = Keep::trials) : asked{3, 1, {}, {tiny("a")}, 1, keep}, study(undisturbed(asked)) {
         run_and_die(path, asked);
         const std::string bytes = bytes_of(path + ".journal");
-        const std::vector<std::size_t> ends = record_ends(bytes);
+        const std::vector<std::size_t> ends = commit_ends(bytes);
         header = bytes.substr(0, ends[0]);
         record.keep = keep;
         record.start = {3, 3, {{0, 3}}, {}, {{0, 0}}, unknown_release};
         const BlockLayout layout(study.scenarios.front());
-        record.values = bytes.substr(ends[0] + record_head_size + record_start_size + block_list_size(record.start, keep),
+        record.values = bytes.substr(ends[0] + commit_head_size + commit_start_size + block_list_size(record.start, keep),
                                      static_cast<std::size_t>(layout.size({0, 3})));
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));

@@ -14,7 +14,7 @@
 namespace credence::test {
 
 /// A world of one step, one feature and one arm: few bytes.
-inline Scenario tiny(const std::string& name) {
+inline DeformableSettings tiny(const std::string& name) {
     return read_scenario_text("[scenario]\nname = " + name + "\nposes = 2\n[features]\npositions = 0.5 0.5\n" +
                                   "[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1", name, name);
 }
@@ -24,7 +24,7 @@ struct Asked {
     std::int64_t trials = 3;
     std::uint64_t root_seed = 1;
     Shard shard;
-    std::vector<Scenario> scenarios{tiny("a"), tiny("b"), tiny("c")};
+    std::vector<DeformableSettings> scenarios{tiny("a"), tiny("b"), tiny("c")};
     int threads = 1;
     Keep keep = Keep::trials;
     std::string release = unknown_release;
@@ -79,12 +79,12 @@ inline std::int64_t blocks_in(const Study& study) {
 }
 
 /// Where the records of a journal end, its header first.
-inline std::vector<std::size_t> record_ends(const std::string& journal) {
+inline std::vector<std::size_t> commit_ends(const std::string& journal) {
     std::vector<std::size_t> ends{header_size(journal.substr(0, header_prefix), "journal")};
     while (ends.back() < journal.size()) {
         ByteReader from(journal.data() + ends.back(), journal.size() - ends.back());
-        const auto payload = static_cast<std::size_t>(get_record_head(from).payload);
-        ends.push_back(ends.back() + record_head_size + payload + record_tail_size);
+        const auto payload = static_cast<std::size_t>(get_commit_head(from).payload);
+        ends.push_back(ends.back() + commit_head_size + payload + commit_tail_size);
     }
     return ends;
 }

@@ -12,18 +12,18 @@ using Heading = Layout<Process::heading, any_count>;
 using HeadingTruth = Truth<double, Heading::feature_capacity>;
 using HeadingBelief = Belief<double, Heading::capacity>;
 
-inline const std::vector<Estimator> all_estimators = LandmarkScenario().estimators;
+inline const std::vector<Estimator> all_estimators = LandmarkSettings().estimators;
 
 /// The classical loop, walked `poses` - 1 steps.
-inline LandmarkScenario classical(int poses) {
-    LandmarkScenario scenario;
+inline LandmarkSettings classical(int poses) {
+    LandmarkSettings scenario;
     scenario.poses = poses;
     return scenario;
 }
 
 /// Another loop, with its own numbers.
-inline LandmarkScenario other() {
-    LandmarkScenario scenario;
+inline LandmarkSettings other() {
+    LandmarkSettings scenario;
     scenario.poses = 40;
     scenario.loop = {17, 2.5};
     scenario.landmarks = {9, 2, 3};
@@ -66,24 +66,24 @@ struct Watcher {
 
 struct LandmarkRun {
     std::vector<double> columns;
-    MatrixXd figures;          ///< [figure_count, K - 1]
+    MatrixXd figures;          ///< [series_count, K - 1]
     std::vector<Held> steps;
     std::vector<int> first_pose;
 
-    double figure(const LandmarkScenario& scenario, const std::string& name, int k) const {
-        const std::vector<Figure> declared = landmark_figures(scenario);
-        const auto found = std::find_if(declared.begin(), declared.end(), [&](const Figure& f) { return f.name == name; });
+    double figure(const LandmarkSettings& scenario, const std::string& name, int k) const {
+        const std::vector<Series> declared = landmark_series(scenario);
+        const auto found = std::find_if(declared.begin(), declared.end(), [&](const Series& f) { return f.name == name; });
         return figures(found - declared.begin(), k - 1);
     }
 };
 
 template <class Estimating>
-LandmarkRun run_with(const LandmarkScenario& scenario, const AnyNoise& noise) {
+LandmarkRun run_with(const LandmarkSettings& scenario, const AnyNoise& noise) {
     const LandmarkProblem problem(scenario);
     const LandmarkView& view = problem.view();
     const auto work = std::make_unique<CommonWorkspace<Heading, double, Estimating>>();
     Watcher watcher;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> figures(view.figure_count, view.poses - 1);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> figures(view.series_count, view.poses - 1);
     LandmarkRun run{std::vector<double>(column_count), {}, {}, {}};
     run_trial(view, noise, watcher, *work, run.columns.data(), figures.data());
     run.figures = figures;
@@ -92,7 +92,7 @@ LandmarkRun run_with(const LandmarkScenario& scenario, const AnyNoise& noise) {
     return run;
 }
 
-inline LandmarkRun run_landmarks(const LandmarkScenario& scenario, Estimator estimator, const AnyNoise& noise) {
+inline LandmarkRun run_landmarks(const LandmarkSettings& scenario, Estimator estimator, const AnyNoise& noise) {
     return with_estimator<Process::heading>(estimator, [&](auto tag) {
         return run_with<typename decltype(tag)::template type<Heading, double>>(scenario, noise);
     });

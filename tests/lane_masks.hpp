@@ -5,7 +5,7 @@
 #include "numeric/lane.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// In how many lanes packs of W of the numbers are told wrong whether low <= x <= high, or lose the answer on the way from
 /// a mask to bits and back. `numbers` [count], count a multiple of W.
@@ -23,5 +23,5 @@ int wrong_masks(const double* numbers, int count, double low, double high) {
     return wrong;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -3,11 +3,11 @@
 #include "lane_masks.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 int wrong_masks_of_eight(const double* numbers, int count, double low, double high) {
     return wrong_masks<8>(numbers, count, low, high);
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

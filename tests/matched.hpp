@@ -9,8 +9,8 @@ namespace credence::test {
 
 /// The truth that the linear filter assumes, every feature always in range: NEES ~ chi-square(n), NIS ~ chi-square(m),
 /// innovations white, all of them exactly; P is the same in every trial [model.md, Truth against filter].
-inline Scenario matched_linear() {
-    Scenario s;
+inline DeformableSettings matched_linear() {
+    DeformableSettings s;
     s.process = Process::translation;
     s.truth = {Deformation::walk, EdgeNoise::independent};
     s.sensor.range_min = 0;

@@ -8,18 +8,18 @@
 
 namespace credence {
 
-inline std::vector<Declaration> declarations_of(const std::vector<Scenario>& scenarios) {
-    std::vector<Declaration> declared;
-    for (const Scenario& scenario : scenarios) declared.push_back(declaration_of(scenario));
+inline std::vector<Scenario> declarations_of(const std::vector<DeformableSettings>& scenarios) {
+    std::vector<Scenario> declared;
+    for (const DeformableSettings& scenario : scenarios) declared.push_back(scenario_of(scenario));
     return declared;
 }
 
-inline Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials) {
+inline Study new_study(const std::vector<DeformableSettings>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials) {
     return new_study(declarations_of(scenarios), root_seed, keep);
 }
 
-inline ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials) {
-    return empty_results(declaration_of(scenario), keep);
+inline ScenarioResults empty_results(const DeformableSettings& scenario, Keep keep = Keep::trials) {
+    return empty_results(scenario_of(scenario), keep);
 }
 
 }  // namespace credence

@@ -105,7 +105,7 @@ inline void write_variable_text(const Handle& root) {
 
 /// The text of a scenario with one key changed.
 inline std::string text_of(const std::string& name, const std::string& key, const std::string& value) {
-    Scenario other = scenario(name);
+    DeformableSettings other = scenario(name);
     set_key(other, key, value);
     return scenario_text(other);
 }

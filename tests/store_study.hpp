@@ -39,7 +39,7 @@ std::string refusal(Call call) {
     return {};
 }
 
-inline Scenario scenario(const std::string& name, const std::string& process = "heading") {
+inline DeformableSettings scenario(const std::string& name, const std::string& process = "heading") {
     return read_scenario_text("[scenario]\nname = " + name + "\ntitle = größer als 1\nposes = 4\n" +
                                   "[model]\nprocess = " + process, name, name);
 }
@@ -56,7 +56,7 @@ inline ExactSum awkward_sum(std::size_t i) {
 }
 
 /// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 diverged.
-inline Study made_up_study(const std::vector<Scenario>& scenarios = {scenario("first"), scenario("second", "translation")}) {
+inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {scenario("first"), scenario("second", "translation")}) {
     Study study = new_study(scenarios, 18446744073709551615u);
     study.trials = 5;
     study.complete = true;
@@ -73,8 +73,8 @@ inline Study made_up_study(const std::vector<Scenario>& scenarios = {scenario("f
             arm.columns[column_trace_P][1] = -NAN;
             arm.columns[column_unseen][1] = -1;
             std::size_t next = 0;
-            for (std::size_t f = 0; f < results.figures.size(); ++f) {
-                const bool integer = results.figures[f].integer;
+            for (std::size_t f = 0; f < results.all_series.size(); ++f) {
+                const bool integer = results.all_series[f].integer;
                 for (ExactSum& sum : arm.totals[f].sum) {
                     sum = integer ? ExactSum::from_parts({0x1p60, 1, -static_cast<double>(next)}) : awkward_sum(next);
                     ++next;
@@ -85,7 +85,7 @@ inline Study made_up_study(const std::vector<Scenario>& scenarios = {scenario("f
                     arm.totals[f].covered[i] = static_cast<std::int64_t>(1 + i % 4);
             }
             for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k)
-                arm.cells[k * shape_cells + 17 * k] = arm.counted;
+                arm.cells[k * distribution_cells + 17 * k] = arm.counted;
             for (std::size_t lag = 0; lag < arm.products.sum.size(); ++lag) {
                 arm.products.sum[lag] = awkward_sum(next++);
                 arm.products.square_sum[lag] = awkward_sum(next++);

@@ -59,11 +59,11 @@ bool same_arm(const ArmResults& a, const ArmResults& b) {
 
 }  // namespace
 
-std::vector<Scenario> small_scenarios() {
-    Scenario straight;
+std::vector<DeformableSettings> small_scenarios() {
+    DeformableSettings straight;
     straight.name = "heading-straight";
     straight.poses = 8;
-    Scenario circle;
+    DeformableSettings circle;
     circle.name = "translation-circle";
     circle.poses = 8;
     circle.process = Process::translation;

@@ -6,7 +6,7 @@
 namespace credence {
 
 /// Two scenarios with both arms each, of either model; resolved.
-std::vector<Scenario> small_scenarios();
+std::vector<DeformableSettings> small_scenarios();
 
 /// The study of small_scenarios, run.
 Study small_study(std::uint64_t root_seed, std::int64_t trials, int threads);

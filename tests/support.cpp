@@ -10,14 +10,14 @@
 
 namespace credence::test {
 
-Scenario scenario_with(Scenario base, const Settings& settings) {
+DeformableSettings scenario_with(DeformableSettings base, const Settings& settings) {
     for (const auto& [key, value] : settings) set_key(base, key, value);
-    const Scenario scenario = resolved(base);
+    const DeformableSettings scenario = resolved(base);
     validate(scenario);
     return scenario;
 }
 
-Scenario scenario_with(const Settings& settings) { return scenario_with(Scenario{}, settings); }
+DeformableSettings scenario_with(const Settings& settings) { return scenario_with(DeformableSettings{}, settings); }
 
 std::vector<Settings> seed_cells() {
     std::vector<Settings> cells;
@@ -39,7 +39,7 @@ Settings matched_world() {
             {"sensor.range_max", "inf"}};
 }
 
-AnyNoise keyed_noise(const Scenario& scenario, std::uint64_t root_seed, std::uint64_t trial) {
+AnyNoise keyed_noise(const DeformableSettings& scenario, std::uint64_t root_seed, std::uint64_t trial) {
     const KeyedDraws<double> draws(root_seed, trial, scenario.noise.truncate.value_or(infinity));
     return {[draws](Source source, int pose, int index) { return draws.normal(source, pose, index); },
             [draws](Source source, int pose, int index) { return draws.uniform(source, pose, index); }};
@@ -159,18 +159,18 @@ void run_process(const ProblemView& view, const Arm& arm, const AnyNoise& noise,
 
 }  // namespace
 
-Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form) {
+Run run_arm(const DeformableSettings& scenario, Controller controller, const AnyNoise& noise, Form form) {
     return run_arm(scenario, Arm{controller, own_estimator(scenario.process)}, noise, form);
 }
 
-Run run_arm(const Scenario& scenario, const Arm& arm, const AnyNoise& noise, Form form) {
+Run run_arm(const DeformableSettings& scenario, const Arm& arm, const AnyNoise& noise, Form form) {
     const Problem problem(scenario);
     const ProblemView& view = problem.view();
     Run run;
     run.columns.resize(column_count);
     run.steps.resize(static_cast<std::size_t>(view.poses));
-    for (const Figure& figure : step_figures(scenario)) run.names.push_back(figure.name);
-    Eigen::MatrixXd by_step(view.poses - 1, view.figure_count);  // Eigen's columns are the engine's rows
+    for (const Series& figure : step_series(scenario)) run.names.push_back(figure.name);
+    Eigen::MatrixXd by_step(view.poses - 1, view.series_count);  // Eigen's columns are the engine's rows
     Scribe scribe(run, view, arm.controller);
     if (view.process == Process::heading)
         run_process<Process::heading>(view, arm, noise, form, scribe, run.columns.data(), by_step.data());

@@ -26,9 +26,9 @@ inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// The seed's scenario with some keys set, resolved and validated.
-Scenario scenario_with(const Settings& settings);
+DeformableSettings scenario_with(const Settings& settings);
 /// The same, on top of another scenario; what depends on other keys is resolved anew where `base` was not resolved.
-Scenario scenario_with(Scenario base, const Settings& settings);
+DeformableSettings scenario_with(DeformableSettings base, const Settings& settings);
 
 /// The eight cells of the document, {heading, translation} x {straight, circle} x {constant, ranged}, as settings.
 std::vector<Settings> seed_cells();
@@ -49,7 +49,7 @@ struct AnyNoise {
 };
 
 /// Keyed draws of one trial, as a scenario has them.
-AnyNoise keyed_noise(const Scenario& scenario, std::uint64_t root_seed, std::uint64_t trial);
+AnyNoise keyed_noise(const DeformableSettings& scenario, std::uint64_t root_seed, std::uint64_t trial);
 /// No noise at all: every normal draw is 0, every uniform too.
 AnyNoise silent_noise();
 /// Another noise in which one draw is changed.
@@ -77,7 +77,7 @@ struct RunStep {
 /// One trial of one arm by the production code.
 struct Run {
     std::vector<double> columns;    ///< [column_count], not filled
-    Eigen::MatrixXd figures;        ///< [figure_count, K - 1]
+    Eigen::MatrixXd figures;        ///< [series_count, K - 1]
     std::vector<std::string> names; ///< of the figures
     std::vector<RunStep> steps;     ///< [K]
 
@@ -89,9 +89,9 @@ struct Run {
 /// Which compiled form of the equations: the one that the engine picks, or always that for any number of features.
 enum class Form { engine, any_number };
 
-Run run_arm(const Scenario& scenario, const Arm& arm, const AnyNoise& noise, Form form = Form::engine);
+Run run_arm(const DeformableSettings& scenario, const Arm& arm, const AnyNoise& noise, Form form = Form::engine);
 /// The same with the process model's own estimator.
-Run run_arm(const Scenario& scenario, Controller controller, const AnyNoise& noise, Form form = Form::engine);
+Run run_arm(const DeformableSettings& scenario, Controller controller, const AnyNoise& noise, Form form = Form::engine);
 
 /// Greatest differences of a production trial from the oracle's, over its poses.
 struct Difference {

@@ -23,7 +23,7 @@ inline std::vector<double> trace_of(const ScenarioResults& results, const ArmRes
 }
 
 /// The look says what these trials say.
-inline void check_says(const WatchLook& look, const Study& study) {
+inline void check_says(const Snapshot& look, const Study& study) {
     REQUIRE(look.scenarios.size() == study.scenarios.size());
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         const ScenarioResults& results = study.scenarios[s];
@@ -37,8 +37,8 @@ inline void check_says(const WatchLook& look, const Study& study) {
             const WatchedArm& arm = scenario.arms[a];
             CAPTURE(scenario.name, arm.name);
             CHECK(arm.failed == results.trials - results.arms[a].counted);
-            for (std::size_t f = 0; f < arm.figures.size(); ++f)
-                check_same(arm.figures[f], summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
+            for (std::size_t f = 0; f < arm.columns.size(); ++f)
+                check_same(arm.columns[f], summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
             const ArmResults* fixed = partner_of(results, results.arms[a]);
             CHECK(arm.other == (fixed ? fixed->name : ""));
             if (fixed) {

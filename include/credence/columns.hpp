@@ -9,10 +9,10 @@
 
 namespace credence {
 
-/// Numerical trouble inside a trial is data. Only the last two exclude a trial from figures.
+/// Numerical trouble inside a trial is data. Only the last two exclude a trial from series.
 enum class Status : std::int8_t {
     completed = 0,
-    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; figures are kept
+    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; series are kept
     covariance_not_positive_definite = 2,
     non_finite = 3,
 };
@@ -31,8 +31,8 @@ struct Column {
     double fill = 0;                       ///< value of a failed trial: NaN for real columns
 };
 
-/// What a figure means to the statistics.
-enum class FigureRole {
+/// What a series means to the statistics.
+enum class SeriesRole {
     nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
     standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
     nis,                 ///< normalised innovation squared, chi-square with as many degrees as it has rows
@@ -44,13 +44,13 @@ enum class FigureRole {
 };
 
 /// One number per trial and step k = 1 ... K - 1, of which the file keeps totals over trials.
-struct Figure {
+struct Series {
     std::string name, long_name, unit;
-    FigureRole role = FigureRole::other;
+    SeriesRole role = SeriesRole::other;
     int dimension = 0;                     ///< of a block of the state
     bool integer = false;
     std::string part;                      ///< block or component of the state, or group of rows, that it is of
-    std::string rows;                      ///< of a nis: the figure that counts its rows; empty where there is none
+    std::string rows;                      ///< of a nis: the series that counts its rows; empty where there is none
     int more_rows = 0;                     ///< of a nis: rows beside those
 };
 
@@ -66,7 +66,7 @@ int detailed_trials(int steps, int state_size);
 inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
 
 /// A contiguous part of the state that is judged by itself.
-struct StateBlock {
+struct ComponentGroup {
     std::string name;
     int first = 0, count = 0;
 };

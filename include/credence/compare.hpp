@@ -65,7 +65,7 @@ struct ComparedPair {
     Conclusion conclusion = Conclusion::not_shown;
 
     bool not_run() const { return a.trials == 0 || b.trials == 0; }
-    std::int64_t pairs() const { return comparison.figures.front().paired.pairs; }
+    std::int64_t pairs() const { return comparison.columns.front().paired.pairs; }
 };
 
 struct CompareReport {

@@ -11,7 +11,7 @@
 namespace credence {
 
 /// One per-trial figure of both arms.
-struct ComparedFigure {
+struct ComparedColumn {
     std::string name, unit;
     PairedComparison paired;
     double holm_p = 0;      ///< Wilcoxon's p, corrected for everything that was compared beside it
@@ -20,7 +20,7 @@ struct ComparedFigure {
 /// Arm a minus arm b, over the trials that both have.
 struct Comparison {
     std::string scenario, a, b;
-    std::vector<ComparedFigure> figures;    ///< the columns that are figures, in their order
+    std::vector<ComparedColumn> columns;    ///< the columns that are figures, in their order
 
     std::string name() const { return a + " - " + b; }
 };

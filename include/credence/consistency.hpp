@@ -31,7 +31,7 @@ bool too_many_failed(std::int64_t failed, std::int64_t trials, double share);
 
 /// One thing that was found: what, where (a block, a component, a group of rows), when.
 struct Finding {
-    std::string what;       ///< optimistic, pessimistic, biased; as a caution: correlated, misshapen
+    std::string what;       ///< optimistic, pessimistic, biased; as a caution: correlated, distribution_wrong
     std::string where, when;
     double value = 0;       ///< NEES/dimension, mean error/sigma, correlation, or distance, where it is farthest off
     Interval interval;      ///< corrected for all that was looked at

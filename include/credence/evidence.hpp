@@ -88,7 +88,7 @@ struct BiasEvidence {
 };
 
 /// Distance of the NEES of the whole state from chi-square(n), step by step.
-struct ShapeEvidence {
+struct DistributionEvidence {
     std::vector<double> distance, p;           ///< Kolmogorov-Smirnov
     bool exact = false;                        ///< else on equiprobable cells: low by at most 1/4096
 };
@@ -110,7 +110,7 @@ struct Evidence {
     std::vector<NisEvidence> nis;              ///< all rows first; groups without rows are left out
     std::vector<Whiteness> whiteness;
     std::vector<BiasEvidence> bias;
-    ShapeEvidence shape;
+    DistributionEvidence shape;
     CredibilityEvidence credibility;
 
     std::int64_t failed_trials() const { return left_out + diverged; }

@@ -1,8 +1,8 @@
 #pragma once
 // Module worlds: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
 
-#include <credence/declaration.hpp>
 #include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <string>
 #include <utility>
@@ -16,20 +16,20 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// The scenario of a text, with overrides, resolved and validated. `origin` names the text in messages (a file, or a
 /// group of a results file); `default_name` is its name where it gives none.
 /// Throws InputError: unknown or repeated key, broken line, value out of range, keys that contradict each other.
-Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+DeformableSettings read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
                             const Overrides& overrides = {});
 
 /// The same from a file of at most 1 MiB; the default name is the file's stem.
-Scenario read_scenario(const std::string& path, const Overrides& overrides = {});
+DeformableSettings read_scenario(const std::string& path, const Overrides& overrides = {});
 
 /// The same for a scenario of any world: `scenario.world` says which, the deformable one where it is not given.
-Declaration read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+Scenario read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
                                   const Overrides& overrides = {});
-Declaration read_declaration(const std::string& path, const Overrides& overrides = {});
+Scenario read_declaration(const std::string& path, const Overrides& overrides = {});
 
 /// The scenarios of a file's grid, in the grid's order: each with overrides, then its values of the axes, and named
 /// after its place [point_name]. Without axes: the file's own scenario. Throws InputError, naming the point.
-std::vector<Declaration> read_grid(const std::string& path, const Overrides& overrides,
+std::vector<Scenario> read_grid(const std::string& path, const Overrides& overrides,
                                    const std::vector<SweepAxis>& axes);
 
 /// The keys and values of a text as they stand there, whatever they mean. Throws InputError for broken lines and

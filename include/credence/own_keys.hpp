@@ -1,7 +1,7 @@
 #pragma once
 // Module worlds: the keys of the scenario file of a world of somebody's own.
 
-#include <credence/declaration.hpp>
+#include <credence/scenario.hpp>
 #include <credence/worlds.hpp>
 
 #include <functional>

@@ -4,7 +4,7 @@
 //
 //   n  components of the state, m  rows of an innovation; K poses, steps k = 1 ... K - 1
 
-#include <credence/declaration.hpp>
+#include <credence/scenario.hpp>
 #include <credence/worlds.hpp>
 
 #include <Eigen/Dense>
@@ -54,15 +54,15 @@ struct OwnReport {
 };
 
 /// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, status, status_pose.
-std::vector<Column> own_columns(const Declaration& scenario, const OwnReport& report);
-std::vector<Figure> own_figures(const Declaration& scenario, const OwnReport& report);
+std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
+std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
 
 /// Makes trials of a function that runs one. It is called from several threads at once.
-std::unique_ptr<const Simulation> own_simulation(const Declaration& scenario, const OwnReport& report,
+std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run);
 
 /// Throws std::invalid_argument where a declaration cannot be: no arm or component, a name with other characters than
 /// letters, digits, _ and -, a block beyond the state. It is the world's bug, not its user's.
-void check_declared(const Declaration& scenario);
+void check_declared(const Scenario& scenario);
 
 }  // namespace credence

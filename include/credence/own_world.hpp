@@ -13,7 +13,7 @@
 //       the keys of the scenario file, see OwnKeys.
 //   static std::vector<Component> W::components(const Settings&)
 //       name and unit of each component of the state, [n], n up to 1000. Names and units have no blanks.
-//   static std::vector<StateBlock> W::blocks(const Settings&)
+//   static std::vector<ComponentGroup> W::blocks(const Settings&)
 //       parts of the state that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway.
 //   static std::vector<std::string> W::arms(const Settings&)
 //       the filters that every trial runs under, with the same draws.
@@ -28,7 +28,7 @@
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
 // draw from anywhere else: a block of trials is a pure function of scenario, root seed and index [docs/design.md]. Its
-// figures are the same bits on one machine for any number of threads; over machines they are so where its own
+// series are the same bits on one machine for any number of threads; over machines they are so where its own
 // arithmetic is.
 
 #include <credence/error.hpp>
@@ -51,7 +51,7 @@ constexpr bool meets_the_world_contract() {
     static_assert(requires(OwnKeys<Settings> keys) { W::keys(keys); }, "a world has static keys(OwnKeys<Settings>&)");
     static_assert(requires(const Settings s) { { W::components(s) } -> std::same_as<std::vector<Component>>; },
                   "a world has static components(const Settings&), a vector of Component");
-    static_assert(requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<StateBlock>>; },
+    static_assert(requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<ComponentGroup>>; },
                   "a world has static blocks(const Settings&), a vector of StateBlock");
     static_assert(requires(const Settings s) { { W::arms(s) } -> std::same_as<std::vector<std::string>>; },
                   "a world has static arms(const Settings&), a vector of names");
@@ -74,13 +74,13 @@ public:
     std::string name() const override { return W::name; }
     std::vector<DescribedKey> keys() const override { return keys_.described(Settings()); }
     std::unique_ptr<Draft> draft() const override { return std::make_unique<OwnDraft>(keys_); }
-    std::vector<Column> columns(const Declaration& scenario) const override {
+    std::vector<Column> columns(const Scenario& scenario) const override {
         return own_columns(scenario, report_of(settings_of(scenario)));
     }
-    std::vector<Figure> figures(const Declaration& scenario) const override {
-        return own_figures(scenario, report_of(settings_of(scenario)));
+    std::vector<Series> all_series(const Scenario& scenario) const override {
+        return own_series(scenario, report_of(settings_of(scenario)));
     }
-    std::unique_ptr<const Simulation> simulation(const Declaration& scenario) const override {
+    std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const override {
         const Settings settings = settings_of(scenario);
         return own_simulation(scenario, report_of(settings), [settings](OwnTrial& trial) { W::run(settings, trial); });
     }
@@ -90,7 +90,7 @@ private:
     public:
         explicit OwnDraft(const OwnKeys<Settings>& keys) : keys_(keys) {}
         void set(const std::string& key, const std::string& value) override { keys_.set(basics_, settings_, key, value); }
-        Declaration declare() const override { return declared(keys_, basics_, settings_); }
+        Scenario declare() const override { return declared(keys_, basics_, settings_); }
         const Settings& settings() const { return settings_; }
 
     private:
@@ -99,13 +99,13 @@ private:
         Settings settings_;
     };
 
-    static Declaration declared(const OwnKeys<Settings>& keys, const OwnBasics& basics, const Settings& settings) {
+    static Scenario declared(const OwnKeys<Settings>& keys, const OwnBasics& basics, const Settings& settings) {
         if constexpr (requires { W::validate(settings); }) W::validate(settings);
-        Declaration scenario{W::name, basics.name, basics.title, basics.length_unit, basics.poses, {}, {}, {}, {}};
+        Scenario scenario{W::name, basics.name, basics.title, basics.length_unit, basics.poses, {}, {}, {}, {}};
         scenario.settings = keys.settings(W::name, basics, settings);
         scenario.components = W::components(settings);
         scenario.blocks = {{"all", 0, static_cast<int>(scenario.components.size())}};
-        for (StateBlock& block : W::blocks(settings)) scenario.blocks.push_back(std::move(block));
+        for (ComponentGroup& block : W::blocks(settings)) scenario.blocks.push_back(std::move(block));
         scenario.arms = W::arms(settings);
         check_declared(scenario);
         return scenario;
@@ -117,7 +117,7 @@ private:
         return report;
     }
 
-    Settings settings_of(const Declaration& scenario) const {
+    Settings settings_of(const Scenario& scenario) const {
         OwnDraft draft(keys_);
         for (const auto& [key, value] : scenario.settings)
             if (key != world_key) draft.set(key, value);

@@ -16,18 +16,18 @@ struct RecordTrouble {
     std::int64_t trial = 0;
     int step = 0;
     std::string what;  ///< such as `covariance is singular`
-    Status status = Status::non_finite;  ///< a diverged trial is in the figures, the others are in none
+    Status status = Status::non_finite;  ///< a diverged trial is in the series, the others are in none
 };
 
 /// A record read. `results` has one arm, `record`; its scenario only carries a name (the file's stem), a title and
 /// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
 /// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and `run_square_sum` of
-///   real figures (but NIS) are of the trial's mean over its own steps times the number of steps in the file;
-/// - NIS and its figures are only there with innovations, and `products` are of all trials;
+///   real series (but NIS) are of the trial's mean over its own steps times the number of steps in the file;
+/// - NIS and its series are only there with innovations, and `products` are of all trials;
 /// - the column `unseen` is unknown (-1), and `pose_error` is of the block `pose`, else of the whole state;
-/// - `shape_distance` is exact up to 2^24 values; beyond it is empty and `cells` tell, but over 4096 steps `cells` are
-///   empty, and `shape_distance` is NaN where the values were too many.
-struct JudgedRecord {
+/// - `distribution_distance` is exact up to 2^24 values; beyond it is empty and `cells` tell, but over 4096 steps `cells` are
+///   empty, and `distribution_distance` is NaN where the values were too many.
+struct Record {
     ScenarioResults results;
     bool has_innovations = false;
     std::vector<RecordTrouble> troubles;  ///< the first 20
@@ -49,13 +49,13 @@ struct JudgedRecord {
 /// A trial with a covariance (of the errors or the observed innovations) that is not positive definite has failed: the
 /// smallest eigenvalue of its correlation matrix is no more than 2 n eps, which rounding alone can make of 0; eps is
 /// 2^-52, or that of the type in the file where it is coarser. So has, as `non_finite`, one with a step of which the
-/// error or the covariance alone is NaN or something is not finite, one whose figures go beyond 1e140, one without
+/// error or the covariance alone is NaN or something is not finite, one whose series go beyond 1e140, one without
 /// steps, and one that ends before its declared steps or, where none are declared, before the longest trial. They are in
-/// no figure. One whose error or covariance goes beyond 1e12 has `diverged`, and stays in the figures. All are among the
+/// no series. One whose error or covariance goes beyond 1e12 has `diverged`, and stays in the series. All are among the
 /// troubles.
 ///
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for everything else that is not as above. `progress` may be empty.
-JudgedRecord read_judgement_record(const std::string& path,
+Record read_record(const std::string& path,
                                    const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

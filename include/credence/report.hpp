@@ -22,7 +22,7 @@ struct PublishedPlace {
 inline constexpr double reported_quantiles[] = {0.05, 0.25, 0.75, 0.95};
 
 /// One per-trial figure of one arm.
-struct FigureReport {
+struct ColumnReport {
     std::string name, unit;
     Summary summary;
     std::vector<double> quantiles;          ///< of type 7, at reported_quantiles; NaN where no trial is kept
@@ -36,7 +36,7 @@ struct ArmReport {
     std::int64_t trials = 0;                ///< all that are there; 0: the arm is not run yet
     std::int64_t failed = 0;                ///< of them, those that are in no figure
     std::int64_t diverged = 0;              ///< of them, those that diverged and are in the figures
-    std::vector<FigureReport> figures;      ///< the real and integer columns, in their order, status columns left out
+    std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
 
@@ -52,7 +52,7 @@ struct Report {
     bool complete = true;
     Keep keep = Keep::trials;
     Limits limits;
-    std::vector<Declaration> scenarios;
+    std::vector<Scenario> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that failed, the first ones
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
@@ -62,7 +62,7 @@ struct Report {
 Report make_report(const Study& study, const Limits& limits);
 
 /// The same of a record: one arm, `record`; `path` names it.
-Report make_record_report(JudgedRecord record, const std::string& path, const Limits& limits);
+Report make_record_report(Record record, const std::string& path, const Limits& limits);
 
 /// One arm's part of a report.
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,

@@ -1,5 +1,5 @@
 #pragma once
-// Module study: the results of a study in memory: what blocks add up to. It knows columns and figures by declaration only.
+// Module study: the results of a study in memory: what blocks add up to. It knows columns and series by declaration only.
 
 #include <credence/detail/aggregates.hpp>
 #include <credence/detail/block.hpp>
@@ -22,10 +22,10 @@ enum class Keep {
 /// `trials`, `aggregates`
 std::string keep_name(Keep keep);
 
-/// Totals over trials of one declared figure.
-struct FigureTotals {
+/// Totals over trials of one declared series.
+struct SeriesTotals {
     std::vector<ExactSum> sum;         ///< [K - 1] over the trials that did not fail
-    std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer figures
+    std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer series
     ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
     std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`
     std::vector<std::int64_t> covered; ///< [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty
@@ -66,24 +66,24 @@ struct ArmResults {
     std::vector<std::vector<double>> columns;
     std::shared_ptr<const KeptColumns> kept;
     ArmAggregates aggregates;                  ///< where no trial is kept; else empty
-    std::vector<FigureTotals> totals;          ///< [figure_count]
+    std::vector<SeriesTotals> totals;          ///< [series_count]
     std::int64_t counted = 0;                  ///< trials in the totals: those that did not fail
-    std::vector<std::int64_t> cells;           ///< [K - 1, shape_cells] trials by cell of the first nees figure
+    std::vector<std::int64_t> cells;           ///< [K - 1, distribution_cells] trials by cell of the first nees series
     ProductTotals products;
     std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
-    std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees figure, NaN likewise
+    std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees series, NaN likewise
 
     // Of a record only: runs may differ in length there, and its values are at hand.
     std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all that are counted
-    std::vector<double> shape_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
+    std::vector<double> distribution_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
 
     std::int64_t counted_at(std::size_t step) const { return present.empty() ? counted : present[step]; }
 };
 
 struct ScenarioResults {
-    Declaration scenario;                      ///< resolved
+    Scenario scenario;                      ///< resolved
     std::vector<Column> columns;
-    std::vector<Figure> figures;
+    std::vector<Series> all_series;
     std::vector<ArmResults> arms;
     std::int64_t trials = 0;                   ///< that are there: rows of the columns, where they are kept
     /// The blocks that are there: row r is trial blocks[r / 256] * 256 + r % 256. Only the last may be partial.
@@ -98,14 +98,14 @@ struct ScenarioResults {
     /// Trials that are there whose errors are kept: the rows of the details.
     std::int64_t detailed() const;
     /// n
-    int state_size() const { return figures.front().dimension; }
+    int state_size() const { return all_series.front().dimension; }
 };
 
 /// An empty result of a resolved scenario. Throws InputError where there is no such world.
-ScenarioResults empty_results(const Declaration& scenario, Keep keep = Keep::trials);
+ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials);
 
 /// The same, its totals not in memory.
-ScenarioResults results_without_totals(const Declaration& scenario, Keep keep = Keep::trials);
+ScenarioResults results_without_totals(const Scenario& scenario, Keep keep = Keep::trials);
 
 /// Totals and details of a study are held in memory up to so many bytes, or those of the scenarios that are computed.
 inline constexpr std::int64_t most_totals_in_memory = std::int64_t{128} << 20;
@@ -148,8 +148,8 @@ private:
     std::optional<ScenarioResults> loaded_;
 };
 
-/// Whether a column is a figure of the trial, not its status.
-bool is_figure(const Column& column);
+/// Whether a column is a series of the trial, not its status.
+bool is_reported(const Column& column);
 
 /// Trials by how they ended.
 std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm);

@@ -1,181 +1,62 @@
 #pragma once
-// Module slam: the scenario, what a study is about. One plain struct per concern; the defaults are the seed's
-// (heading model, straight path, constant noise). Keys, ranges and texts: scenario_keys.hpp.
-//
-// Units: lengths in `length_unit` (dm in the seed), angles in radians; sigma is a standard deviation.
+// Module scenario: a scenario of any world, as everything from the block up knows it: what it is called, what it reports, and its
+// settings as text. What the settings mean, its world knows [worlds.hpp].
 
-#include <credence/detail/estimator_list.hpp>
+#include <credence/columns.hpp>
+#include <credence/sweep.hpp>
 
-#include <limits>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace credence {
 
-/// A point or displacement in the world frame, in length units.
-struct Point {
-    double x = 0;
-    double y = 0;
-    friend bool operator==(const Point&, const Point&) = default;
+/// `section.key` and its value, as they stand in a scenario file.
+struct Setting {
+    std::string key, value;
+    friend bool operator==(const Setting&, const Setting&) = default;
 };
 
-/// A control: turn (rad), and a displacement (length units), in the body frame for the heading model and in the
-/// world frame for the translation model.
-struct Control {
-    double turn = 0;
-    Point move;
-    friend bool operator==(const Control&, const Control&) = default;
-};
+/// The world of a scenario that names none.
+inline const std::string first_world = "deformable";
+/// The key that names another.
+inline const std::string world_key = "scenario.world";
 
-/// A constraint edge between two features, from < to.
-struct Edge {
-    int from = 0;
-    int to = 0;
-    friend bool operator==(const Edge&, const Edge&) = default;
-};
-
-/// State of the process model: heading is [theta, r_x, r_y, f...], translation is [r_x, r_y, f...] with theta = 0.
-enum class Process { heading, translation };
-enum class Path { straight, circle, still };
-enum class FixedPath { as_features, straight, circle };
-enum class RangeNoise { constant, ranged };
-/// jitter: deformation is white about the feature's centre (the document's); walk: it accumulates, as the filter
-/// assumes.
-enum class Deformation { jitter, walk };
-enum class EdgeNoise { none, independent };
-enum class EdgeGraph { all, chain, none, list };
-/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over some steps is.
-enum class Controller { fixed, greedy, horizon };
-/// How the state is estimated, in the order of estimator_list.hpp.
-enum class Estimator {
-#define CREDENCE_ESTIMATOR(name, process, Type) name,
-    CREDENCE_ESTIMATORS(CREDENCE_ESTIMATOR)
-#undef CREDENCE_ESTIMATOR
-};
-
-struct FeatureSettings {
-    std::vector<Point> positions{{0.5, 0.5}, {0.9, 0.8}, {0.3, 0.4}};  ///< f_0, 1 to 64 of them
-    Path path = Path::straight;
-    double step = 2;                              ///< d, length the features and the robot move a step
-    double turn = 0.31415926535897931;            ///< delta, turn per step on the circle (pi/10)
-    double sway_amplitude = 0;                    ///< A of the known local deformation
-    double sway_period = 20;                      ///< T, in poses
-};
-
-struct SensorSettings {
-    double range_min = 0.1;
-    double range_max = 2;                         ///< may be infinite
-    RangeNoise noise = RangeNoise::constant;
-    double sigma = 0.05;                          ///< constant noise
-    double sigma_near = 0.01, sigma_far = 0.09;   ///< ranged noise at range_min and range_max
-    double detection = 1;                         ///< probability that a feature in range is seen
-};
-
-struct NoiseSettings {
-    double heading = 0.001;
-    double odometry = 0.02;
-    double walk = 0.3;
-    double deformation = 0.2;
-    double initial_heading = 0;
-    double initial_position = 0;
-    std::optional<double> truncate;               ///< redraw beyond this multiple of sigma; none: never
-};
-
-struct TruthSettings {
-    Deformation deformation = Deformation::jitter;
-    EdgeNoise edge_noise = EdgeNoise::none;
-};
-
-struct EdgeSettings {
-    EdgeGraph graph = EdgeGraph::all;
-    std::vector<Edge> list;                       ///< only with graph = list
-};
-
-/// What the filter believes, as factors on the true standard deviations; `covariance` scales the reported P only.
-struct FilterSettings {
-    double heading = 1, odometry = 1, features = 1, measurement = 1, edges = 1, covariance = 1;
-};
-
-struct PlannerSettings {
-    std::optional<int> speeds;                    ///< half-width of the grid in steps of d/5; none: the process's own
-    std::optional<std::vector<double>> turns;     ///< rad; none: the path's own
-    std::optional<int> horizon;                   ///< steps; none: 2 where an arm plans by a horizon, else 1
-};
-
-struct ArmSettings {
-    std::vector<Controller> controllers{Controller::fixed, Controller::greedy};
-    std::optional<std::vector<Estimator>> estimators;  ///< none: the process's own
-};
-
-/// A figure that somebody published for one arm, to be shown at its place in our distribution.
-struct PublishedFigure {
-    std::string arm;                              ///< such as greedy.kf
-    double value = 0;
-    friend bool operator==(const PublishedFigure&, const PublishedFigure&) = default;
-};
-
-struct PublishedSettings {
-    std::vector<PublishedFigure> trace_P, unseen, pose_error;
-};
-
+/// A resolved scenario.
 struct Scenario {
+    std::string world = first_world;
     std::string name = "scenario";
     std::string title;
     std::string length_unit = "dm";
-    int poses = 20;                               ///< K, the first included
-    Process process = Process::heading;
-    FeatureSettings features;
-    SensorSettings sensor;
-    NoiseSettings noise;
-    TruthSettings truth;
-    EdgeSettings edges;
-    FilterSettings filter;
-    FixedPath fixed_path = FixedPath::as_features;
-    PlannerSettings planner;
-    ArmSettings arms;
-    PublishedSettings published;
+    int poses = 20;                      ///< K, the first included: K - 1 steps
+    std::vector<Setting> settings;       ///< every key of it, in the order in which they are shown
+    std::vector<Component> components;   ///< of the state, [n]
+    std::vector<ComponentGroup> blocks;      ///< that are judged by themselves, the whole state (`all`) first
+    std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
+    SweepPoint sweep{};                  ///< its place in a grid; empty: in none
 };
 
-/// One column of a study: who steers and who estimates.
-struct Arm {
-    Controller controller = Controller::fixed;
-    Estimator estimator = Estimator::ekf;
-    friend bool operator==(const Arm&, const Arm&) = default;
+/// A scenario as an INI text that names every key, and its place in a grid where it has one. Reading it back gives the
+/// same scenario.
+std::string scenario_text(const Scenario& scenario);
+
+/// Whether a text is a name: letters, digits, _ and -; and whether it is that of an arm: a name, or two with a point
+/// between them.
+bool names_something(const std::string& text);
+bool names_arm(const std::string& text);
+
+/// The controller in an arm's name.
+std::string controller_of(const std::string& arm);
+
+/// The setting of that key, or nullptr.
+const Setting* find_setting(const std::vector<Setting>& settings, const std::string& key);
+
+/// A key's value; empty where the scenario has no such key.
+std::string value_of(const Scenario& scenario, const std::string& key);
+
+/// A key in which two scenarios differ, with both values; empty where one of them has no such key.
+struct KeyDifference {
+    std::string key, a, b;
 };
-
-inline constexpr int largest_feature_count = 64;
-inline constexpr int largest_pose_count = 100000;
-inline constexpr int largest_horizon = 8;
-/// Sequences of candidates that a horizon may have, at most: each step of each trial goes through all of them.
-inline constexpr double largest_sequence_count = 1e7;
-
-/// The scenario with every default that depends on another key filled in: the planner's grid, the estimators, the
-/// edge list. What is shown, hashed and stored is always resolved.
-Scenario resolved(Scenario scenario);
-
-/// Throws InputError naming the key where keys contradict each other or make S or P singular [model.md, Conventions].
-/// Ranges of single keys are checked when they are set.
-void validate(const Scenario& scenario);
-
-/// Arms of a resolved scenario, controllers outer, estimators inner.
-std::vector<Arm> arms_of(const Scenario& scenario);
-
-/// `controller.estimator`, such as `greedy.ekf`.
-std::string arm_name(const Arm& arm);
-
-/// The edge list of a scenario in graph order: for `all`, a outer and b inner, a < b.
-std::vector<Edge> edge_list(const Scenario& scenario);
-
-/// The planners' candidates at each pose, of a resolved scenario [model.md, Controllers].
-int candidate_count(const Scenario& scenario);
-
-/// Path that the robot is steered by: control.path, or the features' own.
-Path robot_path(const Scenario& scenario);
-
-/// Dimension of the robot's pose (3 or 2) and of the state, pose + 2M.
-int pose_size(const Scenario& scenario);
-int state_size(const Scenario& scenario);
+std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b);
 
 }  // namespace credence

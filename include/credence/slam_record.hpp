@@ -1,33 +1,33 @@
 #pragma once
-// Module slam: what the trials of a SLAM scenario report: columns, figures, components and blocks of its state.
+// Module slam: what the trials of a SLAM scenario report: columns, series, components and blocks of its state.
 
 #include <credence/columns.hpp>
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 namespace credence {
 
 /// all, pose, heading and position (heading model), features, feature_0 ...
-std::vector<StateBlock> state_blocks(const Scenario& scenario);
+std::vector<ComponentGroup> state_blocks(const DeformableSettings& scenario);
 
 /// The components of the state: theta, r_x, r_y, f0_x, f0_y ...
-std::vector<Component> state_components(const Scenario& scenario);
+std::vector<Component> state_components(const DeformableSettings& scenario);
 
 /// Unit of trace(P): length^2, and in the heading model + rad^2.
-std::string trace_unit(const Scenario& scenario);
+std::string trace_unit(const DeformableSettings& scenario);
 
 /// In which charts of the error NEES are reported. Where all estimators are the process model's own, in its own alone.
 enum class Charts { euclidean, euclidean_and_invariant };
 
-Charts charts_of(const Scenario& scenario);
+Charts charts_of(const DeformableSettings& scenario);
 
 /// Positions in the list of `trial_columns`.
 enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
                    column_mean_trace_P, column_status, column_status_pose, column_count };
 
 /// The per-trial columns, in the order of ColumnIndex.
-std::vector<Column> trial_columns(const Scenario& scenario);
+std::vector<Column> trial_columns(const DeformableSettings& scenario);
 
-/// The per-step figures, in the order in which trial.hpp writes them.
-std::vector<Figure> step_figures(const Scenario& scenario);
+/// The per-step series, in the order in which trial.hpp writes them.
+std::vector<Series> step_series(const DeformableSettings& scenario);
 
 }  // namespace credence

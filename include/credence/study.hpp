@@ -29,7 +29,7 @@ struct Study {
 /// What makes a study that study: not its trials, threads, shards or stopping.
 struct StudyDefinition {
     std::uint64_t root_seed = 1;
-    std::vector<Declaration> scenarios; ///< resolved
+    std::vector<Scenario> scenarios; ///< resolved
     Keep keep = Keep::trials;
 };
 StudyDefinition definition_of(const Study& study);
@@ -79,7 +79,7 @@ public:
     virtual void finished(const Study& study) = 0;
 };
 
-class Crew;
+class Workers;
 
 struct RunOptions {
     std::int64_t trials = 10000;
@@ -88,14 +88,14 @@ struct RunOptions {
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
     BlockKeeper* keeper = nullptr;      ///< none: columns that are kept stay in memory, and all totals
-    Crew* crew = nullptr;               ///< other processes that compute blocks too; needs a keeper
+    Workers* workers = nullptr;              ///< other processes that compute blocks too; needs a keeper
     /// Beyond so many bytes totals of scenarios that are done are dropped where the keeper gives them back.
     std::int64_t most_totals = most_totals_in_memory;
 };
 
 /// An empty study of resolved, validated scenarios with names that differ. Their totals are not in memory yet
 /// [load_totals].
-Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
+Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials);
 
 /// Runs what is missing of the shard's blocks of the first `options.trials` trials of every scenario; a partial last
 /// block is computed again. The same bits for any number of threads and any history. Returns early where `options.stop`

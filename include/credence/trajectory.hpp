@@ -3,7 +3,7 @@
 // it.
 
 #include <credence/recorded_noise.hpp>
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <Eigen/Dense>
 
@@ -35,7 +35,7 @@ struct TrajectoryStep {
 };
 
 struct Trajectory {
-    Scenario scenario;                      ///< resolved
+    DeformableSettings scenario;                      ///< resolved
     Arm arm;
     std::string source;                     ///< where its noise came from: `root seed 1, trial 17`, `noise record`
     std::vector<double> columns;            ///< [column_count], as in the results file
@@ -50,7 +50,7 @@ struct Trajectory {
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
 
 /// Throws InputError where the record is too short, too narrow or lacks what the scenario draws. `file` names it.
-void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file);
+void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);
 
 /// Runs one arm on recorded noise, which must cover the scenario.
 Trajectory replay_record(const Problem& problem, const Arm& arm, const NoiseRecord& record);

@@ -3,7 +3,7 @@
 // own_world.hpp.
 
 #include <credence/detail/batch.hpp>
-#include <credence/declaration.hpp>
+#include <credence/scenario.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -30,7 +30,7 @@ public:
     /// Throws InputError for an unknown key, or a value out of its range. `value` has no outer blanks.
     virtual void set(const std::string& key, const std::string& value) = 0;
     /// The resolved scenario. Throws InputError where keys contradict each other.
-    virtual Declaration declare() const = 0;
+    virtual Scenario declare() const = 0;
 };
 
 /// A key as `credence show` prints it.
@@ -47,9 +47,9 @@ public:
     virtual std::vector<DescribedKey> keys() const = 0;
     virtual std::unique_ptr<Draft> draft() const = 0;
     /// What the trials and steps of a scenario report; the same for every arm.
-    virtual std::vector<Column> columns(const Declaration& scenario) const = 0;
-    virtual std::vector<Figure> figures(const Declaration& scenario) const = 0;
-    virtual std::unique_ptr<const Simulation> simulation(const Declaration& scenario) const = 0;
+    virtual std::vector<Column> columns(const Scenario& scenario) const = 0;
+    virtual std::vector<Series> all_series(const Scenario& scenario) const = 0;
+    virtual std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const = 0;
 };
 
 /// Adds a world to those that there are. Not thread-safe: before anything else. Throws InputError where there is one of
@@ -63,9 +63,9 @@ std::vector<const World*> all_worlds();
 const World* find_world(const std::string& name);
 
 /// The same; throws InputError where there is none: the program that has it must be used.
-const World& world_of(const Declaration& scenario);
+const World& world_of(const Scenario& scenario);
 
 /// The scenario made ready by its world. Throws like world_of.
-std::unique_ptr<const Simulation> simulation_of(const Declaration& scenario);
+std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario);
 
 }  // namespace credence

@@ -38,7 +38,7 @@ int judge(const Parsed& parsed) {
     const ReportRequest request = read_report_request(parsed);
     check_kind(path, {FileKind::record});
     ProgressLine progress(parsed.has("quiet"));
-    JudgedRecord record = read_judgement_record(path, [&](const Progress& now) { progress(now); });
+    Record record = read_record(path, [&](const Progress& now) { progress(now); });
     progress.finish();
     return give_report(parsed, request, make_record_report(std::move(record), path, request.limits), path, {});
 }

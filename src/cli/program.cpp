@@ -120,7 +120,7 @@ int program(int argc, char** argv) {
     const std::string prefix = known ? "credence " + name + ": " : "credence: ";
     try {
         // Bad surroundings of this process, which another one on another machine need not have, before any work.
-        if (known && name != "help") best_unit(), cli::check_stack();
+        if (known && name != "help") best_target(), cli::check_stack();
     } catch (const InputError& error) {
         return complain(prefix + error.what(), 2);
     }

@@ -44,7 +44,7 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
                              " does not go with --noise (a record is one trial, for all arms). Leave it out.");
     check_kind(parsed.arguments.front(), {FileKind::scenario});
     check_kind(record_path, {FileKind::noise});
-    const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
+    const DeformableSettings scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
     const NoiseRecord record = read_noise_record(record_path);
     check_covers(record, scenario, record_path);
     const Problem problem(scenario);
@@ -102,7 +102,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const ScenarioResults& results = find_scenario(study, scenario_name);
     const std::size_t a = find_arm(results, arm);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
-    const Problem problem(scenario_of(results.scenario));
+    const Problem problem(settings_of(results.scenario));
     Trajectory trajectory = replay_trial(problem, arms_of(problem.scenario())[a], study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
         const double stored = column_values(results.arms[a], c, row, 1).front();

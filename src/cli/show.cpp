@@ -18,7 +18,7 @@ const Command& show_command() {
 namespace {
 
 /// One is a file that can be run; of several, each is one.
-void show_scenarios(const std::vector<Declaration>& scenarios) {
+void show_scenarios(const std::vector<Scenario>& scenarios) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         if (scenarios.size() > 1)
             print((i > 0 ? "\n# " : "# ") + std::to_string(i + 1) + " of " + std::to_string(scenarios.size()) + ": " +
@@ -38,7 +38,7 @@ int show(const Parsed& parsed) {
         return 0;
     }
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
-    const Declaration scenario = read_declaration_text("", "defaults", "scenario", parsed.overrides());
+    const Scenario scenario = read_declaration_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
     for (const Setting& setting : scenario.settings)
         for (const DescribedKey& key : keys)

@@ -1,6 +1,6 @@
 #include "cli/version.hpp"
 
-#include "cluster/mpi/mpi_post.hpp"
+#include "cluster/mpi/mpi_transport.hpp"
 #include "build_info.hpp"  // made by CMake
 
 #include "worlds/simulate.hpp"
@@ -37,7 +37,7 @@ RunFacts build_facts() {
     return {{"credence_version", build_info::version}, {"git_revision", build_info::git_revision},
             {"compiler", build_info::compiler},        {"flags", build_info::flags},
             {"libraries", libraries()},                {"processor", processor()},
-            {"instruction_set", best_unit().name},     {"lane_width", std::to_string(best_unit().lanes)}};
+            {"instruction_set", best_target().name},     {"lane_width", std::to_string(best_target().lanes)}};
 }
 
 std::string made_by() {

@@ -42,8 +42,8 @@ void wait(double seconds) {
 }
 
 /// The last look.
-WatchLook follow(RunWatch& run, double every) {
-    WatchLook look = run.look();
+Snapshot follow(RunWatch& run, double every) {
+    Snapshot look = run.look();
     if (look.ended()) return look;
     Screen screen;
     for (; !look.ended() && !Interrupt::came(); look = run.look()) {
@@ -68,12 +68,12 @@ int watch(const Parsed& parsed) {
     check_kind(parsed.arguments.front(), {FileKind::results, FileKind::journal});
     RunWatch run(results_path(parsed.arguments.front()));
     if (format == "json" || parsed.has("once") || !can_draw()) {
-        const WatchLook look = run.look();
+        const Snapshot look = run.look();
         print(format == "json" ? watch_json(look) : watch_text(look));
         return 0;
     }
     const Interrupt interrupt;
-    const WatchLook look = follow(run, every);
+    const Snapshot look = follow(run, every);
     print(watch_text(look));
     return look.ended() ? 0 : 3;
 }

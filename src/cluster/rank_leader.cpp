@@ -27,8 +27,8 @@ struct RankLeader::Rank {
     Clock::time_point heard = Clock::now();
 };
 
-RankLeader::RankLeader(Post& post, std::chrono::duration<double> patience)
-    : post_(post), patience_(patience), ranks_(static_cast<std::size_t>(post.size())) {
+RankLeader::RankLeader(Transport& transport, std::chrono::duration<double> patience)
+    : transport_(transport), patience_(patience), ranks_(static_cast<std::size_t>(transport.size())) {
     ranks_.front().gone = true;
 }
 
@@ -37,42 +37,42 @@ RankLeader::~RankLeader() {
         if (!lost_) tell_all(Word::end);
         const auto here = [](const Rank& rank) { return !rank.gone; };
         while (!lost_ && std::any_of(ranks_.begin(), ranks_.end(), here)) {
-            while (const std::optional<Message> message = post_.receive()) hear(*message, nullptr);
+            while (const std::optional<Message> message = transport_.receive()) hear(*message, nullptr);
             check_alive();
             std::this_thread::sleep_for(rank_pause);
         }
     } catch (const std::exception&) {
         lost_ = true;  // whatever it was that came first is being told already
     }
-    if (lost_) post_.abandon();
+    if (lost_) transport_.abandon();
 }
 
 void RankLeader::tell_all(Word word, const std::string& bytes) {
-    for (int rank = 1; rank < post_.size(); ++rank) post_.send(rank, word, bytes);
+    for (int rank = 1; rank < transport_.size(); ++rank) transport_.send(rank, word, bytes);
 }
 
 void RankLeader::begin(const StudyDefinition& definition, int threads, Sending sending) {
-    for (const Declaration& scenario : definition.scenarios)
+    for (const Scenario& scenario : definition.scenarios)
         empty_.push_back(without_columns(scenario, definition.keep));
-    const double seconds = sending == Sending::at_once ? 0 : seconds_between_records(post_.size());
+    const double seconds = sending == Sending::at_once ? 0 : seconds_between_records(transport_.size());
     tell_all(Word::study, order_bytes({definition, threads, seconds}));
 }
 
-void RankLeader::serve(BlockDesk& desk) {
+void RankLeader::serve(BlockQueue& queue) {
     const auto busy = [](const Rank& rank) { return rank.out > 0; };
     const auto dropping = [](const Rank& rank) { return rank.dropping; };
     for (Rank& rank : ranks_) rank.heard = Clock::now();  // until now nobody listened
     bool told = false;
     for (;;) {
-        while (const std::optional<Message> message = post_.receive()) hear(*message, &desk);
-        if (!told && desk.stopped()) {
+        while (const std::optional<Message> message = transport_.receive()) hear(*message, &queue);
+        if (!told && queue.stopped()) {
             tell_all(Word::drop);
             for (std::size_t rank = 1; rank < ranks_.size(); ++rank) ranks_[rank].dropping = true;
             told = true;
         }
-        if (!told) hand_out(desk);
+        if (!told) hand_out(queue);
         const bool over = told ? std::none_of(ranks_.begin(), ranks_.end(), dropping)
-                               : desk.left() == 0 && std::none_of(ranks_.begin(), ranks_.end(), busy);
+                               : queue.left() == 0 && std::none_of(ranks_.begin(), ranks_.end(), busy);
         if (over) return;
         check_alive();
         std::this_thread::sleep_for(rank_pause);
@@ -80,21 +80,21 @@ void RankLeader::serve(BlockDesk& desk) {
 }
 
 /// Gives what is asked for, but no more than a share of what is left, so that all ranks end at about the same time.
-void RankLeader::hand_out(BlockDesk& desk) {
-    for (int number = 1; number < post_.size(); ++number) {
+void RankLeader::hand_out(BlockQueue& queue) {
+    for (int number = 1; number < transport_.size(); ++number) {
         Rank& rank = ranks_[static_cast<std::size_t>(number)];
         if (rank.wants == 0) continue;
-        const std::int64_t share = std::max<std::int64_t>(1, desk.left() / (2 * post_.size()));
-        const std::vector<Task> tasks = desk.hand_out(std::min(rank.wants, share));
+        const std::int64_t share = std::max<std::int64_t>(1, queue.left() / (2 * transport_.size()));
+        const std::vector<Task> tasks = queue.hand_out(std::min(rank.wants, share));
         if (tasks.empty()) return;
         rank.wants = 0;
         rank.out += static_cast<std::int64_t>(tasks.size());
-        post_.send(number, Word::tasks, tasks_bytes({desk.trials(), tasks}));
+        transport_.send(number, Word::tasks, tasks_bytes({queue.trials(), tasks}));
     }
 }
 
 /// Without a desk nobody has a use for blocks any more.
-void RankLeader::hear(const Message& message, BlockDesk* desk) {
+void RankLeader::hear(const Message& message, BlockQueue* queue) {
     Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
     rank.heard = Clock::now();
     switch (message.word) {
@@ -104,10 +104,10 @@ void RankLeader::hear(const Message& message, BlockDesk* desk) {
             return;
         }
         case Word::record: {
-            if (desk == nullptr) return;
-            const ComputedBlocks computed = read_rank_record(message.bytes, empty_);
+            if (queue == nullptr) return;
+            const ComputedBlocks computed = read_rank_message(message.bytes, empty_);
             rank.out -= static_cast<std::int64_t>(computed.blocks.size());
-            return desk->take(computed);
+            return queue->take(computed);
         }
         case Word::stop:
             if (stopped_by_.empty()) stopped_by_ = message.bytes + " of rank " + std::to_string(message.rank);

@@ -44,7 +44,7 @@ RankTasks read_tasks(const std::string& bytes) {
     return tasks;
 }
 
-ScenarioResults without_columns(const Declaration& scenario, Keep keep) {
+ScenarioResults without_columns(const Scenario& scenario, Keep keep) {
     ScenarioResults results = results_without_totals(scenario, keep);
     for (ArmResults& arm : results.arms) arm.columns.clear();
     return results;
@@ -53,7 +53,7 @@ ScenarioResults without_columns(const Declaration& scenario, Keep keep) {
 namespace {
 
 /// All of a record's blocks, those that have values in their order.
-std::vector<std::int64_t> blocks_of(const RecordStart& start) {
+std::vector<std::int64_t> blocks_of(const CommitStart& start) {
     std::vector<std::int64_t> blocks;
     for (const JournalBlock& block : start.blocks)
         if (start.ranges.empty()) blocks.push_back(block.index);
@@ -64,9 +64,9 @@ std::vector<std::int64_t> blocks_of(const RecordStart& start) {
 
 }  // namespace
 
-RankRecord::RankRecord(const ScenarioResults& empty) : layout_(empty), types_(kept_types(empty)), results_(empty) {}
+RankMessage::RankMessage(const ScenarioResults& empty) : layout_(empty), types_(kept_types(empty)), results_(empty) {}
 
-void RankRecord::take(const Block& block, const std::vector<ArmAggregates>& aggregates) {
+void RankMessage::take(const Block& block, const std::vector<ArmAggregates>& aggregates) {
     blocks_.push_back(block.index);
     put_block(values_, types_, block);
     if (!has_totals(results_)) {
@@ -76,22 +76,22 @@ void RankRecord::take(const Block& block, const std::vector<ArmAggregates>& aggr
     add_totals(results_, block, aggregates);
 }
 
-std::string RankRecord::bytes(std::size_t scenario, std::int64_t trials) const {
-    RecordStart start = record_of(blocks_, trials, layout_);
+std::string RankMessage::bytes(std::size_t scenario, std::int64_t trials) const {
+    CommitStart start = commit_of(blocks_, trials, layout_);
     for (const std::int64_t block : blocks_) start.counted += trials_in_block(trials, block);
     ByteWriter totals;
     put_totals(totals, results_);
-    return record_bytes(static_cast<std::uint32_t>(scenario), start, layout_.keep(), values_.bytes(), totals.bytes());
+    return commit_bytes(static_cast<std::uint32_t>(scenario), start, layout_.keep(), values_.bytes(), totals.bytes());
 }
 
-ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty) {
+ComputedBlocks read_rank_message(const std::string& bytes, const std::vector<ScenarioResults>& empty) {
     ByteReader from(bytes.data(), bytes.size());
-    const RecordHead head = get_record_head(from);
+    const CommitHead head = get_commit_head(from);
     if (head.scenario >= empty.size()) throw BadBytes("a record of a scenario that the study does not have");
     ComputedBlocks computed{head.scenario, {}, {}, empty[head.scenario]};
     ScenarioResults& results = computed.results;
     const BlockLayout layout(results);
-    const RecordStart start = get_record_start(from, layout);
+    const CommitStart start = get_commit_start(from, layout);
     std::int64_t size = 0;
     for (const JournalBlock& block : start.blocks) size += layout.size(block);
     computed.blocks = blocks_of(start);

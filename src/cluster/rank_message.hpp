@@ -32,9 +32,9 @@ std::string tasks_bytes(const RankTasks& tasks);
 RankTasks read_tasks(const std::string& bytes);
 
 /// Blocks of one scenario that a rank has finished and not sent yet.
-class RankRecord {
+class RankMessage {
 public:
-    explicit RankRecord(const ScenarioResults& empty);
+    explicit RankMessage(const ScenarioResults& empty);
 
     void take(const Block& block, const std::vector<ArmAggregates>& aggregates = {});
     bool empty() const { return blocks_.empty(); }
@@ -52,9 +52,9 @@ private:
 };
 
 /// Reads it back; `empty` are those of the study's scenarios without columns. Throws BadBytes.
-ComputedBlocks read_rank_record(const std::string& bytes, const std::vector<ScenarioResults>& empty);
+ComputedBlocks read_rank_message(const std::string& bytes, const std::vector<ScenarioResults>& empty);
 
 /// Empty results that hold no columns, and no totals yet.
-ScenarioResults without_columns(const Declaration& scenario, Keep keep = Keep::trials);
+ScenarioResults without_columns(const Scenario& scenario, Keep keep = Keep::trials);
 
 }  // namespace credence

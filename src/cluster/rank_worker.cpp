@@ -29,7 +29,7 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 /// One thread talks with rank 0, the others compute.
 class Worker {
 public:
-    Worker(Post& post, const std::function<std::string()>& signal) : post_(post), signal_(signal) {}
+    Worker(Transport& transport, const std::function<std::string()>& signal) : transport_(transport), signal_(signal) {}
 
     void run() {
         if (await_order()) {
@@ -42,7 +42,7 @@ public:
                 guarded([&] { compute(); });
             if (trouble_) std::rethrow_exception(trouble_);
         }
-        post_.send(0, Word::leaves, {});
+        transport_.send(0, Word::leaves, {});
     }
 
 private:
@@ -55,12 +55,12 @@ private:
     bool await_order() {
         for (;; std::this_thread::sleep_for(rank_pause)) {
             tell_of_life();
-            const std::optional<Message> message = post_.receive();
+            const std::optional<Message> message = transport_.receive();
             if (!message) continue;
             if (message->word == Word::end) return false;
             if (message->word != Word::study) continue;
             order_ = read_order(message->bytes);
-            for (const Declaration& scenario : order_.study.scenarios) {
+            for (const Scenario& scenario : order_.study.scenarios) {
                 runners_.emplace_back(scenario);
                 empty_.push_back(without_columns(scenario, order_.study.keep));
                 records_.emplace_back(empty_.back());
@@ -106,7 +106,7 @@ private:
     }
 
     void take(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates, double seconds) {
-        RankRecord& record = records_[task.scenario];
+        RankMessage& record = records_[task.scenario];
         const std::size_t before = record.size();
         record.take(block, aggregates);
         pending_ += record.size() - before;
@@ -119,7 +119,7 @@ private:
     // On the thread that talks.
     void talk() {
         for (;;) {
-            while (const std::optional<Message> message = post_.receive()) hear(*message);
+            while (const std::optional<Message> message = transport_.receive()) hear(*message);
             if (over()) return;
             tell_of_signal();
             ask_for_tasks();
@@ -145,7 +145,7 @@ private:
     }
 
     void add_tasks(const RankTasks& given) {
-        if (given.trials != trials_) send_records();  // a record is of one number of trials; nothing is under way
+        if (given.trials != trials_) send_messages();  // a record is of one number of trials; nothing is under way
         const std::lock_guard lock(mutex_);
         trials_ = given.trials;
         waiting_ = false;
@@ -154,7 +154,7 @@ private:
     }
 
     void send(Word word, std::string bytes = {}) {
-        post_.send(0, word, std::move(bytes));
+        transport_.send(0, word, std::move(bytes));
         spoke_ = Clock::now();
     }
 
@@ -190,21 +190,21 @@ private:
             const std::lock_guard lock(mutex_);
             idle = queue_.empty() && under_way_ == 0;
             const bool early = seconds_since(sent_) < order_.seconds && pending_ < too_much / 2;
-            if (!idle && (early || post_.sending())) return;
+            if (!idle && (early || transport_.sending())) return;
         }
-        send_records();
+        send_messages();
         if (!idle || !dropping_) return;
         send(Word::dropped);
         dropping_ = false;
     }
 
-    void send_records() {
+    void send_messages() {
         for (std::size_t s = 0; s < records_.size(); ++s) {
-            std::optional<RankRecord> record;
+            std::optional<RankMessage> record;
             {
                 const std::lock_guard lock(mutex_);
                 if (records_[s].empty()) continue;
-                record = std::exchange(records_[s], RankRecord(empty_[s]));
+                record = std::exchange(records_[s], RankMessage(empty_[s]));
                 pending_ -= record->size();
                 changed_.notify_all();
             }
@@ -213,7 +213,7 @@ private:
         }
     }
 
-    Post& post_;
+    Transport& transport_;
     const std::function<std::string()>& signal_;
     RankOrder order_;
     int threads_ = 0;
@@ -223,7 +223,7 @@ private:
     std::mutex mutex_;                 ///< of what follows, up to the gap
     std::condition_variable changed_;  ///< tasks, room for what they bring, or the end
     std::deque<Task> queue_;
-    std::vector<RankRecord> records_;  ///< by scenario: what is done
+    std::vector<RankMessage> records_;  ///< by scenario: what is done
     std::size_t pending_ = 0;          ///< bytes that they take
     std::int64_t trials_ = 0;          ///< of the study, at the tasks' time
     std::int64_t wanted_ = 0;          ///< blocks to have
@@ -238,6 +238,6 @@ private:
 
 }  // namespace
 
-void follow(Post& post, const std::function<std::string()>& signal) { Worker(post, signal).run(); }
+void follow(Transport& transport, const std::function<std::string()>& signal) { Worker(transport, signal).run(); }
 
 }  // namespace credence

@@ -3,7 +3,7 @@
 // files, hands blocks out and takes back what the others computed; they need neither the scenario files nor the results
 // file. What goes between them are the journal's own records [journal_record.hpp]. Rank 0 computes blocks as well.
 
-#include "study/crew.hpp"
+#include "study/workers.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -39,9 +39,9 @@ struct Message {
 
 /// How the ranks reach each other. Messages of one rank to another arrive in the order in which they were sent. Of a
 /// process only one thread calls it, the one that made it.
-class Post {
+class Transport {
 public:
-    virtual ~Post() = default;
+    virtual ~Transport() = default;
     virtual int rank() const = 0;
     virtual int size() const = 0;
     /// Returns before the message has arrived.
@@ -54,11 +54,11 @@ public:
     virtual void abandon() = 0;
 };
 
-/// Rank 0: the crew of the other ranks.
-class RankLeader : public Crew {
+/// Rank 0: the other ranks as workers.
+class RankLeader : public Workers {
 public:
     /// `patience`: a rank of which nothing was heard for so long is lost.
-    explicit RankLeader(Post& post, std::chrono::duration<double> patience = std::chrono::seconds(60));
+    explicit RankLeader(Transport& transport, std::chrono::duration<double> patience = std::chrono::seconds(60));
     /// Sends the other ranks home, and waits until they go.
     ~RankLeader() override;
 
@@ -67,7 +67,7 @@ public:
     enum class Sending { now_and_then, at_once };
     void begin(const StudyDefinition& definition, int threads, Sending sending);
 
-    void serve(BlockDesk& desk) override;
+    void serve(BlockQueue& queue) override;
 
     /// The signal that another rank got, such as `SIGTERM of rank 2`; empty where none did.
     const std::string& stopped_by() const { return stopped_by_; }
@@ -76,12 +76,12 @@ public:
 
 private:
     struct Rank;
-    void hear(const Message& message, BlockDesk* desk);
+    void hear(const Message& message, BlockQueue* queue);
     void tell_all(Word word, const std::string& bytes = {});
-    void hand_out(BlockDesk& desk);
+    void hand_out(BlockQueue& queue);
     void check_alive();
 
-    Post& post_;
+    Transport& transport_;
     std::chrono::duration<double> patience_;
     std::vector<Rank> ranks_;                ///< [size], that of rank 0 unused
     std::vector<ScenarioResults> empty_;     ///< by scenario
@@ -92,6 +92,6 @@ private:
 
 /// Any other rank: computes what rank 0 hands out until it is sent home. `signal` names the signal that came to this rank,
 /// empty for none; it is asked now and then. Throws std::bad_alloc and the like; then the whole job has to end.
-void follow(Post& post, const std::function<std::string()>& signal);
+void follow(Transport& transport, const std::function<std::string()>& signal);
 
 }  // namespace credence

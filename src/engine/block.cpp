@@ -68,7 +68,7 @@ struct Octets {
     std::vector<double> errors, product_sums, product_square_sums, product_counts;
 
     void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
-        const auto figures = static_cast<std::size_t>(shape.figure_count);
+        const auto all_series = static_cast<std::size_t>(shape.series_count);
         const auto blocks = static_cast<std::size_t>(shape.block_count);
         trials = count;
         padded = (count + octet - 1) / octet * octet;
@@ -77,9 +77,9 @@ struct Octets {
         detail = detailed;
         columns.resize(padded * static_cast<std::size_t>(shape.column_count));
         nees.resize(steps * padded);
-        sums.assign(figures * steps * octet, 0);
+        sums.assign(all_series * steps * octet, 0);
         square_sums.assign(sums.size(), 0);
-        run_square_sums.assign(figures * octet, 0);
+        run_square_sums.assign(all_series * octet, 0);
         covered.assign(blocks * steps * coverage_level_count, 0);
         if (!detail) {
             errors = std::vector<double>();  // much room, and seldom wanted; {} would keep it
@@ -162,7 +162,7 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
     arm.covered = octets.covered;
     store_columns(columns, octets.columns, octets.trials, arm);
     const std::vector<bool> failed = failed_trials(columns, arm, octets.trials);
-    if (shape_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);
+    if (distribution_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);
     if (detailed(shape, index)) store_details(octets, failed, arm);
     return arm;
 }
@@ -188,7 +188,7 @@ Block run_block(const Simulation& simulation, const std::vector<Column>& columns
     return block;
 }
 
-BlockRunner::BlockRunner(const Declaration& scenario)
+BlockRunner::BlockRunner(const Scenario& scenario)
     : columns_(world_of(scenario).columns(scenario)),
       arms_(scenario.arms.size()),
       simulation_(simulation_of(scenario)) {}

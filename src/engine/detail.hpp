@@ -15,7 +15,7 @@ inline constexpr int largest_whitened = 256;
 /// Whether the edges' rows are among the whitened ones.
 inline bool edges_whitened(int features, int edges) { return features + edges <= largest_whitened; }
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Rows of an edge: f_to - f_from.
 template <class Layout, class Real>
@@ -164,5 +164,5 @@ private:
     WhitenedInnovation<Real> history_[largest_lag + 1];  ///< by pose, modulo its length
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -1,5 +1,5 @@
 #pragma once
-// A batch of trials, pack by pack of lanes, and the folding of their figures into running sums; whatever the
+// A batch of trials, pack by pack of lanes, and the folding of their series into running sums; whatever the
 // world.
 
 #include <credence/detail/batch.hpp>
@@ -7,7 +7,7 @@
 #include "numeric/lane.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The trials of one pack: first, first + 1 ...
 template <class Real>
@@ -21,41 +21,41 @@ Bits<Real> trials_from(std::int64_t first) {
     }
 }
 
-/// Octets whose figures are kept before they are folded, at most: the running sums then come from far away only so
+/// Octets whose series are kept before they are folded, at most: the running sums then come from far away only so
 /// often.
 inline constexpr int fold_octets = 4;
 
 /// As many as stay near, and one for long trials.
 inline int octets_kept(const CommonView& problem) {
     constexpr int near = 1 << 16;  // numbers: half a megabyte
-    const int kept = near / octet / problem.figure_count / (problem.poses - 1);
+    const int kept = near / octet / problem.series_count / (problem.poses - 1);
     return kept < 1 ? 1 : kept > fold_octets ? fold_octets : kept;
 }
 
-/// The figures [packs, figure_count, K - 1] of up to fold_octets octets of trials, and which of them count.
+/// The series [packs, series_count, K - 1] of up to fold_octets octets of trials, and which of them count.
 template <class Real>
 struct Unfolded {
     static constexpr int packs_per_octet = octet / lanes<Real>;
-    Real* figures = nullptr;
+    Real* all_series = nullptr;
     std::int64_t cells = 0;
     int capacity = 0, packs = 0;
     Mask<Real> counts[fold_octets * packs_per_octet] = {};
 
     Unfolded(Real* room, const CommonView& problem)
-        : figures(room),
-          cells(std::int64_t{problem.figure_count} * (problem.poses - 1)),
+        : all_series(room),
+          cells(std::int64_t{problem.series_count} * (problem.poses - 1)),
           capacity(octets_kept(problem) * packs_per_octet) {}
 
-    Real* next() { return figures + packs * cells; }
+    Real* next() { return all_series + packs * cells; }
     void keep(Mask<Real> counted) { counts[packs++] = counted; }
     bool full() const { return packs == capacity; }
     /// Octets of which pack number `start` is there: the last one may end before it.
     int octets(int start) const { return (packs - start + packs_per_octet - 1) / packs_per_octet; }
 };
 
-/// Adds one figure's values, those of the packs start, start + stride ... of `octets` octets, to its running sums.
+/// Adds one series's values, those of the packs start, start + stride ... of `octets` octets, to its running sums.
 template <class Real, class Octets>
-void fold_figure(const Unfolded<Real>& unfolded, int f, int start, Octets octets, int steps, const Batch& batch) {
+void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets, int steps, const Batch& batch) {
     constexpr int stride = Unfolded<Real>::packs_per_octet;
     const int place = start * lanes<Real>;
     Real run_sum[fold_octets];
@@ -65,7 +65,7 @@ void fold_figure(const Unfolded<Real>& unfolded, int f, int start, Octets octets
         Real sum = load<Real>(to), square_sum = load<Real>(to_square);
         each(zero, octets, [&](auto i) CREDENCE_INLINE_LAMBDA {
             const int pack = start + i * stride;
-            const Real value = select(unfolded.counts[pack], unfolded.figures[pack * unfolded.cells + cell], Real(0));
+            const Real value = select(unfolded.counts[pack], unfolded.all_series[pack * unfolded.cells + cell], Real(0));
             sum = sum + value;
             square_sum = fma(value, value, square_sum);
             run_sum[i] = run_sum[i] + value;
@@ -87,7 +87,7 @@ void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const doubl
     for (int cell = b * steps; cell < (b + 1) * steps; ++cell) {
         int count[coverage_level_count] = {};
         for (int pack = 0; pack < unfolded.packs; ++pack) {
-            const Real value = unfolded.figures[pack * unfolded.cells + cell];
+            const Real value = unfolded.all_series[pack * unfolded.cells + cell];
             for (int level = 0; level < coverage_level_count; ++level)
                 count[level] += lane_count(both(unfolded.counts[pack], value < Real(bounds[level])));
         }
@@ -101,11 +101,11 @@ template <class Real>
 void fold(Unfolded<Real>& unfolded, const CommonView& problem, const Batch& batch) {
     const int steps = problem.poses - 1;
     for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start)
-        for (int f = 0; f < problem.figure_count; ++f)
+        for (int f = 0; f < problem.series_count; ++f)
             if (const int octets = unfolded.octets(start); octets == fold_octets)
-                fold_figure(unfolded, f, start, Known<fold_octets>{}, steps, batch);
+                fold_series(unfolded, f, start, Known<fold_octets>{}, steps, batch);
             else
-                fold_figure(unfolded, f, start, octets, steps, batch);
+                fold_series(unfolded, f, start, octets, steps, batch);
     for (int b = 0; b < problem.block_count; ++b)
         fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
     unfolded.packs = 0;
@@ -126,27 +126,27 @@ Mask<Real> first_lanes(int count) {
 /// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that nobody reads.
 ///
 /// `Trial` is a world's: the types View (a CommonView), Layout, Real and Workspace, `truncate(View)`, and
-/// `run(view, draws, observer, workspace, columns, figures)`, one pack of trials of one arm.
+/// `run(view, draws, observer, workspace, columns, series)`, one pack of trials of one arm.
 template <class Trial>
 struct BatchOf {
     using View = typename Trial::View;
     using Layout = typename Trial::Layout;
     using Real = typename Trial::Real;
 
-    /// What a thread needs beside the unfolded figures.
+    /// What a thread needs beside the unfolded series.
     struct Room {
         typename Trial::Workspace trial;
         Detail<Layout, Real> detail;
     };
 
-    /// Numbers behind the Room: the unfolded figures, and the errors of one pack [n, K - 1].
+    /// Numbers behind the Room: the unfolded series, and the errors of one pack [n, K - 1].
     static std::size_t error_cells(const CommonView& problem) {
         return static_cast<std::size_t>(problem.state_size) * static_cast<std::size_t>(problem.poses - 1);
     }
     static std::size_t workspace_size(const CommonView& problem) {
         const Unfolded<Real> unfolded(nullptr, problem);
-        const std::size_t figures = static_cast<std::size_t>(unfolded.cells * unfolded.capacity);
-        return sizeof(Room) + (figures + error_cells(problem)) * sizeof(Real);
+        const std::size_t all_series = static_cast<std::size_t>(unfolded.cells * unfolded.capacity);
+        return sizeof(Room) + (all_series + error_cells(problem)) * sizeof(Real);
     }
 
     static void simulate(const View& problem, const Trial& trial, const Batch& batch) {
@@ -161,13 +161,13 @@ struct BatchOf {
             const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i),
                                          Trial::truncate(problem));
             Real columns[column_count];
-            Real* figures = unfolded.next();
-            trial.run(problem, draws, detail, room.trial, columns, figures);
+            Real* all_series = unfolded.next();
+            trial.run(problem, draws, detail, room.trial, columns, all_series);
             const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
             const Mask<Real> counts = both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i));
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
             for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
-            copy_out(figures, problem.poses - 1, i, batch, batch.nees);
+            copy_out(all_series, problem.poses - 1, i, batch, batch.nees);
             if (detail.on) keep_detail(problem, detail, counts, i, batch);
             unfolded.keep(counts);
             if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
@@ -195,5 +195,5 @@ struct BatchOf {
     }
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -61,7 +61,7 @@ StoredRun::StoredRun(const std::string& path, Study study, Start start, const st
     : output_(check_output(path, start != Start::fresh, "Give another name, --resume or --overwrite")),
       journal_path_(journal_path_of(path)),
       start_(start),
-      release_(release.substr(0, record_release_size)),  // as a journal has it
+      release_(release.substr(0, commit_release_size)),  // as a journal has it
       study_(std::move(study)) {
     if (exists(journal_path_)) open_journal();
     if (start_ == Start::resume) go_on();

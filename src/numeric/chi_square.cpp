@@ -69,8 +69,8 @@ double stable_chi_square_quantile(double p, int degrees) { return quantile_above
 
 EquiprobableCells::EquiprobableCells(int degrees) {
     double bound = 0;
-    for (int i = 1; i < shape_cells; ++i) {
-        bound = quantile_above(bound, static_cast<double>(i) / shape_cells, degrees);
+    for (int i = 1; i < distribution_cells; ++i) {
+        bound = quantile_above(bound, static_cast<double>(i) / distribution_cells, degrees);
         upper_.push_back(bound);
     }
     limit_ = bound;

@@ -11,11 +11,11 @@ namespace credence {
 /// The p-quantile of chi-square with `degrees` = 1 ... 1000 of freedom, 0 < p < 1, to about 1e-12 of itself.
 double stable_chi_square_quantile(double p, int degrees);
 
-/// The line cut into `shape_cells` cells that are equally probable under chi-square(degrees).
-inline constexpr int shape_cells = 4096;
+/// The line cut into `distribution_cells` cells that are equally probable under chi-square(degrees).
+inline constexpr int distribution_cells = 4096;
 
 /// Whether the shape of NEES is counted: not over so many steps that the counts alone would take over 128 MB an arm.
-inline bool shape_counted(int steps) { return steps <= 4096; }
+inline bool distribution_counted(int steps) { return steps <= 4096; }
 
 class EquiprobableCells {
 public:
@@ -27,9 +27,9 @@ public:
         const std::uint16_t* first;
         double limit, scale;
 
-        /// The cell of a value, 0 ... shape_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) / cells)).
+        /// The cell of a value, 0 ... distribution_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) / cells)).
         int cell(double value) const {
-            if (!(value < limit)) return shape_cells - 1;
+            if (!(value < limit)) return distribution_cells - 1;
             int cell = value > 0 ? first[static_cast<int>(value * scale)] : 0;
             cell += value >= upper[cell];  // mostly all, and no branch to guess
             while (value >= upper[cell]) ++cell;

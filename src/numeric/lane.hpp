@@ -10,7 +10,7 @@
 #endif
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <int W>
 struct LaneTypes {
@@ -288,5 +288,5 @@ Lane<W> sqrt(Lane<W> x) {
 template <int W>
 Lane<W> absolute(Lane<W> x) { return from_bits(bits_of(x) & LaneBits<W>(0x7fffffffffffffffu)); }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

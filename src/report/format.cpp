@@ -76,7 +76,7 @@ std::string p_text(double p) {
 
 namespace {
 
-/// Units with blanks between them, on as many lines as they take; the first begins behind `indent` columns.
+/// Targets with blanks between them, on as many lines as they take; the first begins behind `indent` columns.
 std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
     std::string text;
     std::size_t column = indent;

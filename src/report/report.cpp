@@ -17,7 +17,7 @@ namespace credence {
 namespace {
 
 /// What `published.COLUMN` says; nothing where the scenario has no such key.
-std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scenario, const std::string& column) {
+std::optional<std::vector<PublishedNumber>> published_of(const Scenario& scenario, const std::string& column) {
     const std::string key = "published." + column;
     const Setting* published = find_setting(scenario.settings, key);
     if (published == nullptr) return std::nullopt;
@@ -25,11 +25,11 @@ std::optional<std::vector<PublishedFigure>> published_of(const Declaration& scen
 }
 
 /// `values` may be none: then nothing is known of its place.
-std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedFigure>>& published,
+std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedNumber>>& published,
                                        const std::string& arm, const std::vector<double>& values) {
     if (!published) return std::nullopt;
-    for (const PublishedFigure& figure : *published)
-        if (figure.arm == arm) return PublishedPlace{figure.value, percentile_of(values, figure.value)};
+    for (const PublishedNumber& column : *published)
+        if (column.arm == arm) return PublishedPlace{column.value, percentile_of(values, column.value)};
     return std::nullopt;
 }
 
@@ -37,22 +37,22 @@ std::optional<PublishedPlace> place_of(const std::optional<std::vector<Published
 bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
 /// Of totals: mean and spread are known, and nothing of the distribution.
-FigureReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
+ColumnReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
     const Column& column = results.columns[c];
-    FigureReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
+    ColumnReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
                         std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
                         place_of(published_of(results.scenario, column.name), arm.name, {}), std::nullopt};
     if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
     return report;
 }
 
-FigureReport figure_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
+ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
     if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
     std::vector<double> values = figure_values(results, arm, c);
     const auto published = published_of(results.scenario, column.name);
-    FigureReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
+    ColumnReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
                         place_of(published, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
         report.bootstrap95 = bootstrap_mean_interval(
@@ -73,7 +73,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
     report.failed = report.evidence.left_out;
     report.diverged = report.evidence.diverged;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
-        if (is_figure(results.columns[c])) report.figures.push_back(figure_report(results, arm, c, root_seed));
+        if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));
     return report;
 }
 
@@ -95,7 +95,7 @@ Report make_report(const Study& study, const Limits& limits) {
     return report;
 }
 
-Report make_record_report(JudgedRecord record, const std::string& path, const Limits& limits) {
+Report make_record_report(Record record, const std::string& path, const Limits& limits) {
     ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
     std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell

@@ -30,7 +30,7 @@ auto found_in(const Map& map, const typename Map::key_type& key) -> typename Map
 
 SweptReport::SweptReport(const Report& report) : report_(report) {
     std::vector<SweepPoint> places;
-    for (const Declaration& scenario : report.scenarios) places.push_back(scenario.sweep);
+    for (const Scenario& scenario : report.scenarios) places.push_back(scenario.sweep);
     grids_ = grids_of(places);
     for (const ArmReport& arm : report.arms) arms_[{arm.scenario, arm.arm}] = &arm;
     for (const Comparison& pair : report.pairs) pairs_[{pair.scenario, pair.name()}] = &pair;
@@ -58,24 +58,24 @@ std::set<std::string> SweptReport::names_of_points(const Grid& grid) const {
     return names;
 }
 
-std::vector<SweptFigure> swept_figures(const ArmReport& arm) {
-    std::vector<SweptFigure> figures;
+std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
+    std::vector<SweptColumn> columns;
     for (const char* name : {"nees_ratio", "nis_ratio", "trace_P"})
-        for (const FigureReport& figure : arm.figures)
-            if (figure.name == name) figures.push_back({figure.name, figure.unit, figure.summary});
-    return figures;
+        for (const ColumnReport& column : arm.columns)
+            if (column.name == name) columns.push_back({column.name, column.unit, column.summary});
+    return columns;
 }
 
-std::vector<SweptFigure> swept_figures(const Comparison& pair) {
-    std::vector<SweptFigure> figures;
+std::vector<SweptColumn> swept_columns(const Comparison& pair) {
+    std::vector<SweptColumn> columns;
     for (const char* name : {"trace_P", "unseen", "pose_error"})
-        for (const ComparedFigure& figure : pair.figures)
-            if (figure.name == name) figures.push_back({figure.name, figure.unit, figure.paired.difference});
-    return figures;
+        for (const ComparedColumn& column : pair.columns)
+            if (column.name == name) columns.push_back({column.name, column.unit, column.paired.difference});
+    return columns;
 }
 
 SweepColumns::SweepColumns(const Report& report) {
-    for (const Declaration& scenario : report.scenarios) {
+    for (const Scenario& scenario : report.scenarios) {
         if (SweptReport::swept(scenario)) places_[scenario.name] = scenario.sweep;
         for (const SweepCoordinate& one : scenario.sweep.at)
             if (std::find(keys_.begin(), keys_.end(), one.key) == keys_.end()) keys_.push_back(one.key);

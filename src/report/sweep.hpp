@@ -28,7 +28,7 @@ public:
     std::vector<std::string> arm_names(const Grid& grid) const;
     std::vector<std::string> pair_names(const Grid& grid) const;
     /// Whether a scenario is a point of a grid.
-    static bool swept(const Declaration& scenario) { return !scenario.sweep.at.empty(); }
+    static bool swept(const Scenario& scenario) { return !scenario.sweep.at.empty(); }
 
 private:
     using Key = std::pair<std::string, std::string>;
@@ -42,15 +42,15 @@ private:
 };
 
 /// A figure of a point as its tables and curves show it.
-struct SweptFigure {
+struct SweptColumn {
     std::string name, unit;
     Summary summary;
 };
 
 /// The figures that tables and curves show of an arm, in their order: NEES, NIS and trace(P), as far as it has them.
-std::vector<SweptFigure> swept_figures(const ArmReport& arm);
+std::vector<SweptColumn> swept_columns(const ArmReport& arm);
 /// Those of a pair: what planning is for.
-std::vector<SweptFigure> swept_figures(const Comparison& pair);
+std::vector<SweptColumn> swept_columns(const Comparison& pair);
 
 /// Columns that only the CSV of a study with grids has: the swept scenario, and every swept key. Blank where a scenario
 /// has none.

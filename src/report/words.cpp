@@ -178,17 +178,17 @@ std::vector<std::string> warnings_of(const Report& report) {
     return lines;
 }
 
-const FigureReport& figure_named(const std::vector<FigureReport>& figures, const std::string& name) {
-    for (const FigureReport& figure : figures)
-        if (figure.name == name) return figure;
-    return figures.front();
+const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name) {
+    for (const ColumnReport& column : columns)
+        if (column.name == name) return column;
+    return columns.front();
 }
 
-std::string figure_title(const std::string& figure, const std::string& unit) {
-    const std::string name = figure == "trace_P"        ? "trace(P), last step"
-                             : figure == "mean_trace_P" ? "trace(P), mean over the steps"
-                             : figure == "pose_error"   ? "pose error, sum over the poses"
-                                                        : figure;
+std::string figure_title(const std::string& column, const std::string& unit) {
+    const std::string name = column == "trace_P"        ? "trace(P), last step"
+                             : column == "mean_trace_P" ? "trace(P), mean over the steps"
+                             : column == "pose_error"   ? "pose error, sum over the poses"
+                                                        : column;
     return unit == "1" ? name : name + " [" + unit + "]";
 }
 
@@ -214,9 +214,9 @@ double mean_of(const std::vector<double>& values) {
     return sum / known;
 }
 
-WorstShape worst_shape(const ShapeEvidence& shape) {
+WorstDistribution worst_distribution(const DistributionEvidence& shape) {
     std::size_t worst = 0;
-    WorstShape found;
+    WorstDistribution found;
     for (std::size_t k = 0; k < shape.distance.size(); ++k) {
         found.known += !std::isnan(shape.distance[k]);
         if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;

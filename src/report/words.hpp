@@ -54,10 +54,10 @@ std::vector<std::string> failure_lines(const std::string& arm, const FailureCoun
 std::vector<std::string> warnings_of(const Report& report);
 
 /// The figure of that name; the first one where there is none.
-const FigureReport& figure_named(const std::vector<FigureReport>& figures, const std::string& name);
+const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name);
 
 /// A figure's name in words, with its unit.
-std::string figure_title(const std::string& figure, const std::string& unit);
+std::string figure_title(const std::string& column, const std::string& unit);
 
 /// The blocks worth a line: those of several parts, and the features (or whatever comes in numbers) that are farthest
 /// off.
@@ -67,11 +67,11 @@ std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence);
 double mean_of(const std::vector<double>& values);
 
 /// The step whose NEES is farthest from chi-square.
-struct WorstShape {
+struct WorstDistribution {
     int step = 0, known = 0;     ///< known: steps with a distance
     double distance = 0, p = 0;  ///< p corrected for all of them
 };
-WorstShape worst_shape(const ShapeEvidence& shape);
+WorstDistribution worst_distribution(const DistributionEvidence& shape);
 
 /// Lags whose correlation is outside their joint bound.
 int lags_outside(const std::vector<Whiteness>& whiteness);

@@ -16,7 +16,7 @@ InputError invalid_sweep(const std::string& text, const std::string& why, const 
     return invalid_value("--sweep", text, why, remedy);
 }
 
-/// Names, units and what is shown beside the figures make no other study; another world has other keys.
+/// Names, units and what is shown beside the series make no other study; another world has other keys.
 bool can_be_swept(const std::string& key) {
     for (const char* name : {"scenario.name", "scenario.title", "scenario.length_unit", "scenario.world"})
         if (key == name) return false;

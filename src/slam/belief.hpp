@@ -4,7 +4,7 @@
 #include <credence/detail/each.hpp>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// A symmetric matrix of which only the upper triangle is kept: entry[i][j] with i <= j.
 template <class Real, int capacity>
@@ -133,5 +133,5 @@ CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, c
     }
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -13,7 +13,7 @@
 #include "slam/filter.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Where rows of H have entries: at the pose, or not, and at the features' components [first, last).
 template <bool pose, class First, class Last>
@@ -206,5 +206,5 @@ ContrastRows<Layout, Real, Index> contrast_rows(const FilterParameters& filter, 
     return {layout, c, filter.contrasts[c].coefficient};
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

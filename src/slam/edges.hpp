@@ -4,7 +4,7 @@
 #include "slam/condition.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// What the edges measured, about the predicted mean, as the contrasts' innovations; `unexplained` is what no state can
 /// explain of it, the residual of the graph's cycles, which enters the NIS alone [docs/model.md, Contrasts].
@@ -95,5 +95,5 @@ void take_in_edges(Belief<Real, capacity>& belief, const FilterParameters& filte
     update.nis = update.nis + innovations.unexplained;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

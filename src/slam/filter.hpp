@@ -35,7 +35,7 @@ struct FilterParameters {
     const Point& sway_increment_at(int k, int j) const { return sway_increment[k * features + j]; }
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The filter's start: robot at 0 with the initial covariance (zero by default), features where they were first seen.
 template <class Layout, class Real, int capacity>
@@ -122,5 +122,5 @@ void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filte
     predict_robot(belief, filter, layout, command, [](const Vector2<Real>& move) { return move; });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -7,7 +7,7 @@
 #include "slam/condition.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// P[f,:] = P[r,:] + c P[theta,:], and the same once more for P[f,f], plus the sighting's noise.
 template <class Layout, class Real, int capacity>
@@ -47,5 +47,5 @@ void initialise_feature(Belief<Real, capacity>& belief, const FilterParameters& 
                           believed_variance(filter, sighting.sigma));
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

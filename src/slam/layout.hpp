@@ -3,7 +3,7 @@
 // (translation model) [model.md, Two process models].
 
 #include <credence/detail/each.hpp>
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 namespace credence {
 

@@ -6,7 +6,7 @@
 #include "slam/layout.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Where a source stands among others; no constant where it does not.
 template <Source... others>
@@ -59,5 +59,5 @@ private:
     Vector2<Real> draws_[capacity];
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

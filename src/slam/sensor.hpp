@@ -20,7 +20,7 @@ struct SensorParameters {
     double sigma_edge = 0;            ///< of the edge measurement itself; 0 where the truth has none
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <class Real>
 Real squared_range(const Vector2<Real>& from, const Vector2<Real>& to) {
@@ -95,5 +95,5 @@ Vector2<Real> measure_edge(const Truth<Real, capacity>& truth, const SensorParam
     return difference;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

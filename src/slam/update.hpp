@@ -4,7 +4,7 @@
 #include "slam/edges.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Conditions a predicted belief on what was seen and on every edge: P <- P - K S K', the correction K nu in `update`;
 /// the mean stays. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world frame;
@@ -52,5 +52,5 @@ CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterPar
     each(zero, layout.size(), [&](auto i) { belief.mean[i] = belief.mean[i] + update.correction[i]; });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

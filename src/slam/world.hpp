@@ -23,7 +23,7 @@ struct WorldParameters {
     const Point& sway_at(int k, int j) const { return sway[k * features + j]; }
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// What is drawn at a pose of this world.
 template <class Layout, class Real>
@@ -105,5 +105,5 @@ CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameter
     truth.position = add_scaled(truth.position + move, Real(world.sigma_odometry), draws.position());
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -177,7 +177,7 @@ std::vector<ArmAggregates> aggregates_of(const std::vector<Column>& columns, con
         for (std::size_t i = 0; i < trials; ++i)
             ++aggregates[a].statuses[static_cast<std::size_t>(block.arms[a].columns[status * trials + i])];
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (!is_figure(columns[c])) continue;
+        if (!is_reported(columns[c])) continue;
         std::vector<std::vector<double>> values;
         for (const ArmBlock& arm : block.arms) values.push_back(figures_of(arm, c, status, trials));
         for (std::size_t a = 0; a < values.size(); ++a) {

@@ -16,20 +16,20 @@ struct ScenarioFootprint {
 
 ScenarioFootprint footprint_of(const ScenarioResults& results, std::int64_t trials, int threads) {
     const auto arms = static_cast<std::int64_t>(results.arms.size()),
-               figures = static_cast<std::int64_t>(results.figures.size());
+               all_series = static_cast<std::int64_t>(results.all_series.size());
     const bool trials_kept = results.keep == Keep::trials;
     std::int64_t column_bytes = trials_kept ? 8 : 0;
     for (const Column& column : results.columns)
         if (trials_kept) column_bytes += column.type == ColumnType::real ? 8 : column.type == ColumnType::integer ? 4 : 1;
-    const std::int64_t cells = figures * results.steps(), numbers = results.steps() * (results.state_size() + 1);
+    const std::int64_t cells = all_series * results.steps(), numbers = results.steps() * (results.state_size() + 1);
     const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
-    const std::int64_t shape = shape_counted(results.steps()) ? std::int64_t{results.steps()} * shape_cells * 8 : 0;
-    // A thread's running sums of octets, their squares and the figures not yet folded; and details of its block, in the
+    const std::int64_t shape = distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
+    // A thread's running sums of octets, their squares and the series not yet folded; and details of its block, in the
     // engine's order and in that of the results. (By the time they are committed, that is free again.)
     const std::int64_t detailed_blocks = std::min<std::int64_t>(threads, (kept + block_size - 1) / block_size);
     const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * numbers * 16 * detailed_blocks;
     return {totals_size(results, kept), arms * (threads * cells * 150 + of_details),
-            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (figures + 20) * 1500 + kept * numbers * 4 + shape)};
+            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (all_series + 20) * 1500 + kept * numbers * 4 + shape)};
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
     for (const ScenarioResults& results : study.scenarios) {
         const ScenarioFootprint scenario = footprint_of(results, trials, threads);
         total.file += scenario.file;
-        total.cells += static_cast<std::int64_t>(results.arms.size() * results.figures.size()) * results.steps();
+        total.cells += static_cast<std::int64_t>(results.arms.size() * results.all_series.size()) * results.steps();
         totals += scenario.totals;
         largest = std::max(largest, scenario.totals);
         under_way = std::max(under_way, scenario.under_way);

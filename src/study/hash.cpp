@@ -14,7 +14,7 @@ StudyDefinition definition_of(const Study& study) {
 std::string study_hash(const StudyDefinition& definition) {
     std::string text = "schema " + std::to_string(schema_version) + "\nroot_seed " +
                        std::to_string(definition.root_seed) + "\nkeep " + keep_name(definition.keep) + "\n";
-    for (const Declaration& scenario : definition.scenarios) text += "\n" + scenario_text(scenario);
+    for (const Scenario& scenario : definition.scenarios) text += "\n" + scenario_text(scenario);
     const boost::uuids::name_generator_sha1 generate(boost::uuids::ns::oid());
     return boost::uuids::to_string(generate(text));
 }

@@ -9,22 +9,22 @@ namespace credence {
 
 namespace {
 
-void add_figure(FigureTotals& totals, const Figure& figure, const ArmBlock& from, std::size_t f, std::size_t steps,
+void add_figure(SeriesTotals& totals, const Series& series, const ArmBlock& from, std::size_t f, std::size_t steps,
                 double sign) {
     totals.run_square_sum.add(sign * from.run_square_sums[f]);
     for (std::size_t k = 0; k < steps; ++k) {
         totals.sum[k].add(sign * from.sums[f * steps + k]);
-        if (!figure.integer) totals.square_sum[k].add(sign * from.square_sums[f * steps + k]);
+        if (!series.integer) totals.square_sum[k].add(sign * from.square_sums[f * steps + k]);
     }
 }
 
-void add_coverage(FigureTotals& totals, const std::int32_t* covered, std::int64_t sign) {
+void add_coverage(SeriesTotals& totals, const std::int32_t* covered, std::int64_t sign) {
     for (std::size_t i = 0; i < totals.covered.size(); ++i) totals.covered[i] += sign * covered[i];
 }
 
 void add_cells(ArmResults& to, const ArmBlock& from, std::size_t trials, std::int64_t sign) {
-    std::int64_t* counts = to.cells.data();  // of one step, [shape_cells]
-    for (const std::uint16_t *cell = from.cells.data(), *end = cell + from.cells.size(); cell != end; counts += shape_cells)
+    std::int64_t* counts = to.cells.data();  // of one step, [distribution_cells]
+    for (const std::uint16_t *cell = from.cells.data(), *end = cell + from.cells.size(); cell != end; counts += distribution_cells)
         for (std::size_t trial = 0; trial < trials; ++trial, ++cell)
             if (*cell != no_cell) counts[*cell] += sign;
 }
@@ -45,8 +45,8 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
         ArmResults& to = results.arms[a];
         to.counted += sign * from.counted;
         const std::int32_t* covered = from.covered.data();
-        for (std::size_t f = 0; f < results.figures.size(); ++f) {
-            add_figure(to.totals[f], results.figures[f], from, f, steps, sign);
+        for (std::size_t f = 0; f < results.all_series.size(); ++f) {
+            add_figure(to.totals[f], results.all_series[f], from, f, steps, sign);
             add_coverage(to.totals[f], covered, sign);
             covered += to.totals[f].covered.size();
         }
@@ -59,7 +59,7 @@ void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
 
 std::string keep_name(Keep keep) { return keep == Keep::trials ? "trials" : "aggregates"; }
 
-bool is_figure(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
+bool is_reported(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 
 std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name) {
     std::vector<const ArmResults*> meant;

@@ -11,9 +11,9 @@ namespace {
 
 std::size_t lags_of(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
 
-FigureTotals no_totals(const Figure& figure, std::size_t steps) {
-    return {std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {}, {},
-            std::vector<std::int64_t>(figure.role == FigureRole::nees ? steps * coverage_level_count : 0)};
+SeriesTotals no_totals(const Series& series, std::size_t steps) {
+    return {std::vector<ExactSum>(steps), std::vector<ExactSum>(series.integer ? 0 : steps), {}, {},
+            std::vector<std::int64_t>(series.role == SeriesRole::nees ? steps * coverage_level_count : 0)};
 }
 
 void clear_totals(ScenarioResults& results) {
@@ -21,8 +21,8 @@ void clear_totals(ScenarioResults& results) {
     for (ArmResults& arm : results.arms) {
         arm.counted = 0;
         arm.totals.clear();
-        for (const Figure& figure : results.figures) arm.totals.push_back(no_totals(figure, steps));
-        if (shape_counted(results.steps())) arm.cells.assign(steps * shape_cells, 0);
+        for (const Series& series : results.all_series) arm.totals.push_back(no_totals(series, steps));
+        if (distribution_counted(results.steps())) arm.cells.assign(steps * distribution_cells, 0);
         arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     }
 }
@@ -39,7 +39,7 @@ void name_arms(ScenarioResults& results, const std::vector<std::string>& names) 
 
 /// The same scenario without any block, and without room for columns.
 ScenarioResults without_blocks(const ScenarioResults& results) {
-    ScenarioResults empty{results.scenario, results.columns, results.figures, {}, 0, {}, results.keep};
+    ScenarioResults empty{results.scenario, results.columns, results.all_series, {}, 0, {}, results.keep};
     name_arms(empty, results.scenario.arms);
     clear_totals(empty);
     return empty;
@@ -53,16 +53,16 @@ std::int64_t trials_up_to(const ScenarioResults& results) {
 
 }  // namespace
 
-ScenarioResults results_without_totals(const Declaration& scenario, Keep keep) {
+ScenarioResults results_without_totals(const Scenario& scenario, Keep keep) {
     const World& world = world_of(scenario);
-    ScenarioResults results{scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
+    ScenarioResults results{scenario, world.columns(scenario), world.all_series(scenario), {}, 0, {}, keep};
     name_arms(results, scenario.arms);
     for (ArmResults& arm : results.arms)
         if (keep == Keep::trials) arm.columns.resize(results.columns.size());
     return results;
 }
 
-ScenarioResults empty_results(const Declaration& scenario, Keep keep) {
+ScenarioResults empty_results(const Scenario& scenario, Keep keep) {
     ScenarioResults results = results_without_totals(scenario, keep);
     clear_totals(results);
     return results;
@@ -74,10 +74,10 @@ std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) 
     constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the room of a few parts
     const std::int64_t steps = results.steps(), number = sizeof(double);
     std::int64_t size = detailed * steps * (results.state_size() + 1) * number;
-    if (shape_counted(results.steps())) size += steps * shape_cells * number;
-    for (const Figure& figure : results.figures) {
-        size += steps * (figure.integer ? 1 : 2) * sum_size;
-        if (figure.role == FigureRole::nees) size += steps * coverage_level_count * number;
+    if (distribution_counted(results.steps())) size += steps * distribution_cells * number;
+    for (const Series& series : results.all_series) {
+        size += steps * (series.integer ? 1 : 2) * sum_size;
+        if (series.role == SeriesRole::nees) size += steps * coverage_level_count * number;
     }
     return static_cast<std::int64_t>(results.arms.size()) * size;
 }

@@ -1,6 +1,6 @@
-// Running a study's blocks on threads, and on a crew.
+// Running a study's blocks on threads, and on workers in other processes.
 
-#include "study/crew.hpp"
+#include "study/workers.hpp"
 
 #include <credence/error.hpp>
 
@@ -19,7 +19,7 @@ namespace credence {
 namespace {
 
 /// Runs tasks on threads and puts their results into the study. Totals are exact, so the order does not matter.
-class Runner : private BlockDesk {
+class Runner : private BlockQueue {
 public:
     Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
         for (const ScenarioResults& results : study.scenarios) work_.emplace_back(results.scenario);
@@ -39,7 +39,7 @@ public:
 private:
     /// What a run has to do with a scenario.
     struct Work {
-        explicit Work(const Declaration& scenario) : runner(scenario) {}
+        explicit Work(const Scenario& scenario) : runner(scenario) {}
 
         BlockRunner runner;
         BlockRanges done;      ///< blocks that are there
@@ -99,13 +99,13 @@ private:
 
     void run_tasks() {
         const int threads = options_.threads > 0 ? options_.threads : omp_get_max_threads();
-        const int servers = options_.crew != nullptr ? 1 : 0;
+        const int servers = options_.workers != nullptr ? 1 : 0;
         report();
-        // Thread 0 is the one that called run_study. It computes nothing where there is a crew: nobody of it is to
+        // Thread 0 is the one that called run_study. It computes nothing where there are workers: none of them is to
         // wait.
 #pragma omp parallel num_threads(threads + servers)
         if (omp_get_thread_num() < servers)
-            guarded([&] { options_.crew->serve(*this); });
+            guarded([&] { options_.workers->serve(*this); });
         else
             while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
         if (trouble_) std::rethrow_exception(trouble_);
@@ -188,7 +188,7 @@ private:
         options_.keeper->commit();
     }
 
-    // What the crew sees [BlockDesk].
+    // What the workers see [BlockQueue].
     std::int64_t trials() const override { return options_.trials; }
     std::int64_t left() const override {
         return static_cast<std::int64_t>(task_count_ - std::min(task_count_, next_.load()));
@@ -266,7 +266,7 @@ void run_study(Study& study, const RunOptions& options) {
         throw invalid_value("--trials", std::to_string(options.trials),
                             "the study has been asked for " + std::to_string(least) + " already",
                             "Ask for at least as many");
-    if (options.crew != nullptr && options.keeper == nullptr) throw std::logic_error("a crew needs a keeper");
+    if (options.workers != nullptr && options.keeper == nullptr) throw std::logic_error("workers need a keeper");
     if (options.keeper == nullptr)
         for (ScenarioResults& results : study.scenarios) bring_into_memory(results);
     Runner(study, options).run();

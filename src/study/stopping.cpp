@@ -40,7 +40,7 @@ std::string name_of(const StoppingSubject& subject) {
 
 /// t_{1 - alpha_j/2, n - 1} sd / sqrt(n)
 double half_width_of(double standard_deviation, double count, int number) {
-    return t_quantile(look_alpha(number), count - 1) * standard_deviation / std::sqrt(count);
+    return t_quantile(analysis_alpha(number), count - 1) * standard_deviation / std::sqrt(count);
 }
 
 /// How wide a state is for what was asked: 0 for one that does not vary, infinite for one that could not be judged.
@@ -51,13 +51,13 @@ double excess(const GoalState& state) {
 }
 
 /// predicted_trials of one state that is not met.
-std::optional<std::int64_t> predicted_for(const GoalState& state, const Look& look, const StoppingRule& rule) {
+std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimAnalysis& look, const StoppingRule& rule) {
     const double share = static_cast<double>(state.count) / static_cast<double>(look.trials);
     const auto enough = [&](std::int64_t trials, int number) {
         return half_width_of(state.standard_deviation, share * static_cast<double>(trials), number) <= state.allowed;
     };
-    const auto at_the_ceiling = static_cast<int>(look_trials(rule.ceiling, rule.first_look).size());
-    std::int64_t trials = rule.first_look;
+    const auto at_the_ceiling = static_cast<int>(analysis_trials(rule.ceiling, rule.first_analysis).size());
+    std::int64_t trials = rule.first_analysis;
     for (int number = 1;; ++number) {
         if (number == at_the_ceiling && enough(rule.ceiling, number)) return rule.ceiling;
         if (trials > look.trials && enough(trials, number)) return trials;
@@ -68,9 +68,9 @@ std::optional<std::int64_t> predicted_for(const GoalState& state, const Look& lo
 
 }  // namespace
 
-double look_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
+double analysis_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
 
-std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first) {
+std::vector<std::int64_t> analysis_trials(std::int64_t ceiling, std::int64_t first) {
     std::vector<std::int64_t> looks;
     for (std::int64_t trials = first; trials < ceiling; trials = trials > ceiling / 2 ? ceiling : 2 * trials)
         looks.push_back(trials);
@@ -102,11 +102,11 @@ GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, in
     return decide_from(moments, goal, number);
 }
 
-Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
+InterimAnalysis look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
     for (const ScenarioResults& results : study.scenarios)
         if (results.trials < trials || (results.keep == Keep::aggregates && results.trials > trials))
             throw std::logic_error("a look at trials that are not there, or not by themselves");
-    Look look{trials, number, look_alpha(number), {}, true};
+    InterimAnalysis look{trials, number, analysis_alpha(number), {}, true};
     for (const StoppingGoal& goal : goals)
         for (const StoppingSubject& subject : subjects_of(goal, study)) {
             look.states.push_back(subject.results->keep == Keep::trials
@@ -118,7 +118,7 @@ Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::in
     return look;
 }
 
-std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRule& rule) {
+std::optional<std::int64_t> predicted_trials(const InterimAnalysis& look, const StoppingRule& rule) {
     std::int64_t most = look.trials;
     for (const GoalState& state : look.states) {
         if (state.met()) continue;
@@ -129,7 +129,7 @@ std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRul
     return most;
 }
 
-const GoalState& widest(const Look& look) {
+const GoalState& widest(const InterimAnalysis& look) {
     return *std::max_element(look.states.begin(), look.states.end(),
                              [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
 }
@@ -137,36 +137,36 @@ const GoalState& widest(const Look& look) {
 namespace {
 
 /// Nothing is decided by trials that were stopped half way, and no further look is taken.
-Look interrupted_look(std::int64_t trials, int number) {
-    Look look{trials, number, look_alpha(number), {}, false};
+InterimAnalysis interrupted_look(std::int64_t trials, int number) {
+    InterimAnalysis look{trials, number, analysis_alpha(number), {}, false};
     look.interrupted = true;
     return look;
 }
 
 }  // namespace
 
-Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look) {
-    Look last;
-    for (const std::int64_t trials : look_trials(rule.ceiling, rule.first_look)) {
+InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& look) {
+    InterimAnalysis last;
+    for (const std::int64_t trials : analysis_trials(rule.ceiling, rule.first_analysis)) {
         last = look(trials, last.number + 1);
         if (last.met || last.interrupted) break;
     }
     return last;
 }
 
-Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
-               const std::function<void(const Look&)>& after_look) {
+InterimAnalysis run_until(Study& study, const StoppingRule& rule, RunOptions options,
+               const std::function<void(const InterimAnalysis&)>& after_analysis) {
     check_goals(rule.goals, study);
-    return run_looks(rule, [&](std::int64_t trials, int number) {
+    return run_analyses(rule, [&](std::int64_t trials, int number) {
         // All scenarios of a study get as many trials: those of the one that has most, where that is more.
         options.trials = std::max(trials, least_trials(study));
         const bool aggregates = keep_of(study) == Keep::aggregates;
         if (aggregates && options.trials > trials && trials < rule.ceiling)
-            return Look{trials, number, look_alpha(number), {}, false};
+            return InterimAnalysis{trials, number, analysis_alpha(number), {}, false};
         run_study(study, options);
         if (!study.complete) return interrupted_look(trials, number);
-        Look look = look_at(study, rule.goals, aggregates ? options.trials : trials, number);
-        if (after_look) after_look(look);
+        InterimAnalysis look = look_at(study, rule.goals, aggregates ? options.trials : trials, number);
+        if (after_analysis) after_analysis(look);
         return look;
     });
 }

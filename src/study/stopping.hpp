@@ -21,13 +21,13 @@
 
 namespace credence {
 
-inline constexpr std::int64_t first_look_trials = 4096;
+inline constexpr std::int64_t first_analysis_trials = 4096;
 inline constexpr double all_looks_alpha = 0.05;  ///< that all looks together may spend
 
-/// What a half-width is measured in: the figure's own unit, or its |mean|.
+/// What a half-width is measured in: the series's own unit, or its |mean|.
 enum class WidthKind { absolute, relative };
 
-/// A precision that was asked: of a figure's mean under every arm of every scenario, or of its mean difference between
+/// A precision that was asked: of a series's mean under every arm of every scenario, or of its mean difference between
 /// two arms, by trial, in every scenario that has both.
 struct StoppingGoal {
     std::string text;                  ///< as it was given, for messages
@@ -43,7 +43,7 @@ struct StoppingGoal {
 struct StoppingRule {
     std::vector<StoppingGoal> goals;
     std::int64_t ceiling = 10'000'000;             ///< trials at which the study ends in any case
-    std::int64_t first_look = first_look_trials;
+    std::int64_t first_analysis = first_analysis_trials;
 };
 
 /// One asked mean at a look. NaN where there are too few values.
@@ -52,12 +52,12 @@ struct GoalState {
     std::int64_t count = 0;            ///< n
     double mean = 0, standard_deviation = 0;
     double half_width = 0;             ///< h
-    double allowed = 0;                ///< the h that was asked, in the figure's unit
+    double allowed = 0;                ///< the h that was asked, in the series's unit
 
     bool met() const { return half_width <= allowed; }  // never with NaN
 };
 
-struct Look {
+struct InterimAnalysis {
     std::int64_t trials = 0;
     int number = 0;                    ///< j, from 1
     double alpha = 0;                  ///< alpha_j
@@ -74,10 +74,10 @@ StoppingGoal parse_goal(const std::string& text);
 void check_goals(const std::vector<StoppingGoal>& goals, const Study& study);
 
 /// alpha_j = 0.05 * 2^-j.
-double look_alpha(int number);
+double analysis_alpha(int number);
 
 /// first, 2 first, 4 first ... below the ceiling, and the ceiling itself. Both at least 1.
-std::vector<std::int64_t> look_trials(std::int64_t ceiling, std::int64_t first = first_look_trials);
+std::vector<std::int64_t> analysis_trials(std::int64_t ceiling, std::int64_t first = first_analysis_trials);
 
 /// How well look `number` knows the mean of a sample, one value a trial; NaN values are left out. It has no name yet.
 GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number);
@@ -86,26 +86,26 @@ GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int numb
 /// Look `number` at the first `trials` trials of every scenario, however many there are beyond them; where no trial is
 /// kept, there must be none beyond them. Throws as check_goals does; a scenario with fewer trials, or more, is the
 /// caller's mistake (std::logic_error).
-Look look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
+InterimAnalysis look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
 
 /// The count of trials at which every unmet state is expected to be small enough: the next look, the ceiling's or one
 /// beyond it, at which t sd / sqrt(n) <= allowed if mean, sd and the share of NaN values stay what they are; that of
 /// the look itself if it is met. Nothing if no 64-bit number of trials is expected to do.
-std::optional<std::int64_t> predicted_trials(const Look& look, const StoppingRule& rule);
+std::optional<std::int64_t> predicted_trials(const InterimAnalysis& look, const StoppingRule& rule);
 
 /// The state that is widest for what was asked of it; one that could not be judged first of all.
-const GoalState& widest(const Look& look);
+const GoalState& widest(const InterimAnalysis& look);
 
 /// Calls `look` with the trials and the number of each look in turn, until one is met or the ceiling's has been; the
 /// last one.
-Look run_looks(const StoppingRule& rule, const std::function<Look(std::int64_t trials, int number)>& look);
+InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& look);
 
 /// Grows the study from look to look (run_study) until the goals are met or the ceiling is reached; the last look.
 /// Trials that a study has beyond a look are neither judged by it nor given up: the look is the same for any number of
 /// threads and any history. Where no trial is kept, a study cannot be looked at with fewer trials than it has: such looks
-/// are left out, their share of alpha unspent. A run that was interrupted has taken them already. Throws as check_goals does, before any trial. `options.trials` is not used; `after_look`,
+/// are left out, their share of alpha unspent. A run that was interrupted has taken them already. Throws as check_goals does, before any trial. `options.trials` is not used; `after_analysis`,
 /// which may be empty, sees every look.
-Look run_until(Study& study, const StoppingRule& rule, RunOptions options,
-               const std::function<void(const Look&)>& after_look = {});
+InterimAnalysis run_until(Study& study, const StoppingRule& rule, RunOptions options,
+               const std::function<void(const InterimAnalysis&)>& after_analysis = {});
 
 }  // namespace credence

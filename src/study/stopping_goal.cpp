@@ -52,7 +52,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& columns) {
     std::vector<std::string> names;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (!is_figure(columns[c])) continue;
+        if (!is_reported(columns[c])) continue;
         if (columns[c].name == goal.metric) return c;
         names.push_back(columns[c].name);
     }

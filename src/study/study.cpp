@@ -7,10 +7,10 @@
 
 namespace credence {
 
-Study new_study(const std::vector<Declaration>& scenarios, std::uint64_t root_seed, Keep keep) {
+Study new_study(const std::vector<Scenario>& scenarios, std::uint64_t root_seed, Keep keep) {
     Study study{root_seed, {}, 0, false};
     std::set<std::string> names;
-    for (const Declaration& scenario : scenarios) {
+    for (const Scenario& scenario : scenarios) {
         if (!names.insert(scenario.name).second)
             throw invalid_value("scenario.name", scenario.name, "two scenarios of the run have it",
                                 "Give each its own name");

@@ -71,7 +71,7 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
 /// A distance from chi-square that is beyond the margin for sure: Massart's bound on the distance of N values from their
 /// own distribution, sqrt(ln(2/alpha)/(2 N)) [Massart 1990], corrected over the steps. What P's size already explains
 /// is not said twice.
-void caution_about_shape(const Evidence& evidence, Consistency& verdict) {
+void caution_about_distribution(const Evidence& evidence, Consistency& verdict) {
     for (const Finding& finding : verdict.findings)
         if (finding.where == evidence.blocks.front().block) return;
     Found found;

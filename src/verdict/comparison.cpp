@@ -35,8 +35,8 @@ Comparison compare_aggregates(const ComparedArm& a, const ComparedArm& b) {
     if (&a.results != &b.results) throw std::logic_error("totals of different files have no pairs");
     Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
     for (std::size_t c = 0; c < a.results.columns.size(); ++c)
-        if (const Column& column = a.results.columns[c]; is_figure(column))
-            comparison.figures.push_back({column.name, column.unit,
+        if (const Column& column = a.results.columns[c]; is_reported(column))
+            comparison.columns.push_back({column.name, column.unit,
                                           compare_totals(aggregate_differences(a.results, a.arm, b.arm, c),
                                                          a.arm.aggregates.columns[c], b.arm.aggregates.columns[c]),
                                           0});
@@ -51,11 +51,11 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
     const CommonTrials common(a.results, b.results);
     for (std::size_t c = 0; c < a.results.columns.size(); ++c) {
         const Column& column = a.results.columns[c];
-        if (!is_figure(column)) continue;
+        if (!is_reported(column)) continue;
         const std::vector<double> of_a = common.of_a(figure_values(a.results, a.arm, c)),
                                   of_b = common.of_b(figure_values(b.results, b.arm, c));
-        const std::string figure = comparison.scenario + "/" + comparison.name() + "/" + column.name;
-        comparison.figures.push_back({column.name, column.unit, compare_paired(of_a, of_b, root_seed, figure), 0});
+        const std::string key = comparison.scenario + "/" + comparison.name() + "/" + column.name;
+        comparison.columns.push_back({column.name, column.unit, compare_paired(of_a, of_b, root_seed, key), 0});
     }
     return comparison;
 }
@@ -63,11 +63,11 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
 void correct_together(std::vector<Comparison>& comparisons) {
     std::vector<double> p;
     for (const Comparison& comparison : comparisons)
-        for (const ComparedFigure& figure : comparison.figures) p.push_back(figure.paired.wilcoxon_p);
+        for (const ComparedColumn& column : comparison.columns) p.push_back(column.paired.wilcoxon_p);
     const std::vector<double> corrected = holm(p);
     auto next = corrected.begin();
     for (Comparison& comparison : comparisons)
-        for (ComparedFigure& figure : comparison.figures) figure.holm_p = *next++;
+        for (ComparedColumn& column : comparison.columns) column.holm_p = *next++;
 }
 
 std::vector<Comparison> planned_against_partners(const Study& study) {

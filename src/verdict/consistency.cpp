@@ -40,7 +40,7 @@ public:
 
     Consistency run() {
         for (const BlockEvidence& block : evidence_.blocks) look_at_block(block);
-        for (const BiasEvidence& bias : evidence_.bias) look_at_bias(bias);
+        for (const BiasEvidence& bias : evidence_.bias) examine_bias(bias);
         decide();
         return verdict_;
     }
@@ -84,7 +84,7 @@ private:
         return told > fewest ? std::min(told, fewest * evidence_.steps) : fewest;
     }
 
-    void look_at_bias(const BiasEvidence& bias) {
+    void examine_bias(const BiasEvidence& bias) {
         Found found;
         for (std::size_t k = 0; k < bias.step.size(); ++k) {
             const Estimate step = corrected_bias_(bias.step[k]);
@@ -145,7 +145,7 @@ Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.blocks.empty()) return verdict;
     caution_about_whiteness(evidence, verdict);
     caution_about_innovations(evidence, verdict);
-    caution_about_shape(evidence, verdict);
+    caution_about_distribution(evidence, verdict);
     return verdict;
 }
 

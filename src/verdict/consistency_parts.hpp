@@ -54,6 +54,6 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits);
 /// Adds the cautions to a verdict.
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
-void caution_about_shape(const Evidence& evidence, Consistency& verdict);
+void caution_about_distribution(const Evidence& evidence, Consistency& verdict);
 
 }  // namespace credence

@@ -13,26 +13,26 @@ namespace credence {
 
 namespace {
 
-const FigureTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].name == name) return &arm.totals[f];
+const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].name == name) return &arm.totals[f];
     return nullptr;
 }
 
 /// Rows of a NIS at a step, over all trials [docs/statistics.md, NIS]: never trials times rows, they vary.
-double rows_at(const Figure& nis, const FigureTotals* rows, const ArmResults& arm, std::size_t k) {
+double rows_at(const Series& nis, const SeriesTotals* rows, const ArmResults& arm, std::size_t k) {
     const double counted = rows == nullptr ? 0 : rows->sum[k].rounded();
     return counted + static_cast<double>(nis.more_rows) * static_cast<double>(arm.counted_at(k));
 }
 
 NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
-    const Figure& figure = results.figures[f];
-    const FigureTotals* rows = totals_named(results, arm, figure.rows);
-    NisEvidence evidence{figure.part, {}, 0, nan, {nan, nan}, {nan, nan}};
+    const Series& series = results.all_series[f];
+    const SeriesTotals* rows = totals_named(results, arm, series.rows);
+    NisEvidence evidence{series.part, {}, 0, nan, {nan, nan}, {nan, nan}};
     ExactSum total;
     std::vector<double> totals;
     for (std::size_t k = 0; k < arm.totals[f].sum.size(); ++k) {
-        evidence.nis.degrees.push_back(rows_at(figure, rows, arm, k));
+        evidence.nis.degrees.push_back(rows_at(series, rows, arm, k));
         evidence.degrees += evidence.nis.degrees.back();
         totals.push_back(arm.totals[f].sum[k].rounded());
         total.add(arm.totals[f].sum[k]);
@@ -64,19 +64,19 @@ std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double 
     return evidence;
 }
 
-BiasEvidence bias_evidence(const Figure& figure, const ArmResults& arm, const FigureTotals& totals) {
-    BiasEvidence evidence{figure.part, {}};
+BiasEvidence bias_evidence(const Series& series, const ArmResults& arm, const SeriesTotals& totals) {
+    BiasEvidence evidence{series.part, {}};
     for (std::size_t k = 0; k < totals.sum.size(); ++k) evidence.step.push_back(moments_at(arm, totals, k, 1));
     return evidence;
 }
 
-ShapeEvidence shape_evidence(const ScenarioResults& results, const ArmResults& arm) {
-    ShapeEvidence evidence;
-    evidence.exact = !arm.shape_distance.empty();
+DistributionEvidence shape_evidence(const ScenarioResults& results, const ArmResults& arm) {
+    DistributionEvidence evidence;
+    evidence.exact = !arm.distribution_distance.empty();
     for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k) {
-        evidence.distance.push_back(evidence.exact       ? arm.shape_distance[k]
+        evidence.distance.push_back(evidence.exact       ? arm.distribution_distance[k]
                                     : arm.cells.empty() ? nan
-                                                        : cell_distance(arm.cells.data() + k * shape_cells, shape_cells));
+                                                        : cell_distance(arm.cells.data() + k * distribution_cells, distribution_cells));
         const double count = static_cast<double>(arm.counted_at(k));
         evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back()) ? nan : kolmogorov_smirnov_p(evidence.distance.back(), count));
     }
@@ -124,13 +124,13 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
     count_trials(results, arm, evidence);
     evidence.steps = results.steps();
-    for (std::size_t f = 0; f < results.figures.size(); ++f) {
-        const Figure& figure = results.figures[f];
-        if (figure.role == FigureRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));
-        if (figure.role == FigureRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
-        if (figure.role == FigureRole::standardised_error)
-            evidence.bias.push_back(bias_evidence(figure, arm, arm.totals[f]));
-        if (figure.role == FigureRole::nis)
+    for (std::size_t f = 0; f < results.all_series.size(); ++f) {
+        const Series& series = results.all_series[f];
+        if (series.role == SeriesRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));
+        if (series.role == SeriesRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
+        if (series.role == SeriesRole::standardised_error)
+            evidence.bias.push_back(bias_evidence(series, arm, arm.totals[f]));
+        if (series.role == SeriesRole::nis)
             if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0) evidence.nis.push_back(std::move(nis));
     }
     evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio);

@@ -19,7 +19,7 @@ Moments scaled(Moments moments, double scale) {
 }
 
 /// The sum over the steps of one trial, over all trials.
-double run_total(const FigureTotals& totals) {
+double run_total(const SeriesTotals& totals) {
     if (totals.run_sum) return totals.run_sum->rounded();
     ExactSum sum;
     for (const ExactSum& step : totals.sum) sum.add(step);
@@ -27,11 +27,11 @@ double run_total(const FigureTotals& totals) {
 }
 
 /// Of each trial's mean over its steps.
-Moments run_moments(const ArmResults& arm, const FigureTotals& totals, int steps, double scale) {
+Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
     return scaled(moments_from_sums(arm.counted, run_total(totals), totals.run_square_sum.rounded()), scale / steps);
 }
 
-std::vector<Coverage> coverage_of(const ArmResults& arm, const FigureTotals& totals) {
+std::vector<Coverage> coverage_of(const ArmResults& arm, const SeriesTotals& totals) {
     std::vector<Coverage> coverage;
     for (std::size_t level = 0; level < coverage_level_count; ++level) {
         Coverage one{coverage_levels[level], {}, {}, 0};
@@ -51,11 +51,11 @@ std::vector<Coverage> coverage_of(const ArmResults& arm, const FigureTotals& tot
     return coverage;
 }
 
-const FigureTotals* totals_of(const ScenarioResults& results, const ArmResults& arm, FigureRole role,
+const SeriesTotals* totals_of(const ScenarioResults& results, const ArmResults& arm, SeriesRole role,
                               const std::string& part, std::string& unit) {
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].role == role && results.figures[f].part == part) {
-            unit = results.figures[f].unit;
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].role == role && results.all_series[f].part == part) {
+            unit = results.all_series[f].unit;
             return &arm.totals[f];
         }
     return nullptr;
@@ -65,8 +65,8 @@ const FigureTotals* totals_of(const ScenarioResults& results, const ArmResults& 
 /// prediction varies far less from trial to trial.
 Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& block) {
     Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
-    const FigureTotals* error = totals_of(results, arm, FigureRole::squared_error, block, accuracy.unit);
-    const FigureTotals* variance = totals_of(results, arm, FigureRole::variance, block, accuracy.unit);
+    const SeriesTotals* error = totals_of(results, arm, SeriesRole::squared_error, block, accuracy.unit);
+    const SeriesTotals* variance = totals_of(results, arm, SeriesRole::variance, block, accuracy.unit);
     if (error == nullptr || variance == nullptr) return accuracy;
     for (std::size_t k = 0; k < error->sum.size(); ++k) {
         accuracy.rmse.push_back(std::sqrt(moments_at(arm, *error, k, 1).mean));
@@ -84,15 +84,15 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
 /// Ratios of a NEES to its dimension, over the run and step by step: what every chart of the error has.
 template <class Ratios>
 void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
-    const Figure& figure = results.figures[f];
-    const FigureTotals& totals = arm.totals[f];
-    evidence.block = figure.part;
-    evidence.dimension = figure.dimension;
-    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / figure.dimension);
+    const Series& series = results.all_series[f];
+    const SeriesTotals& totals = arm.totals[f];
+    evidence.block = series.part;
+    evidence.dimension = series.dimension;
+    evidence.run = run_moments(arm, totals, results.steps(), 1.0 / series.dimension);
     std::vector<double> sums;
     for (std::size_t k = 0; k < totals.sum.size(); ++k) {
-        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / figure.dimension));
-        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * figure.dimension);
+        evidence.step.push_back(moments_at(arm, totals, k, 1.0 / series.dimension));
+        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * series.dimension);
         sums.push_back(totals.sum[k].rounded());
     }
     fill_bands(sums, evidence.anees);
@@ -102,7 +102,7 @@ bool within(double value, const Interval& interval) { return value >= interval.l
 
 }  // namespace
 
-Moments moments_at(const ArmResults& arm, const FigureTotals& totals, std::size_t k, double scale) {
+Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale) {
     const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
     return scaled(moments_from_sums(arm.counted_at(k), totals.sum[k].rounded(), square), scale);
 }
@@ -141,8 +141,8 @@ BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& a
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     ChartEvidence evidence;
     fill_ratios(results, arm, f, evidence);
-    // The figure is nees_CHART or nees_CHART_BLOCK.
-    const std::string rest = results.figures[f].name.substr(std::string("nees_").size());
+    // The series is nees_CHART or nees_CHART_BLOCK.
+    const std::string rest = results.all_series[f].name.substr(std::string("nees_").size());
     evidence.chart = rest.substr(0, rest.find('_'));
     return evidence;
 }

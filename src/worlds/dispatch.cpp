@@ -4,23 +4,23 @@
 
 #include <cstdlib>
 
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
 #include <cpuid.h>
 #endif
 
 namespace credence {
 
-inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_UNIT by default, hence inline here too
-#ifdef CREDENCE_X86_UNITS
+inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_TARGET by default, hence inline here too
+#ifdef CREDENCE_X86_TARGETS
 CREDENCE_DECLARE_UNIT(v3)
 #endif
-#ifdef CREDENCE_UNIT_V4
+#ifdef CREDENCE_TARGET_V4
 CREDENCE_DECLARE_UNIT(v4)
 #endif
 
 namespace {
 
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
 /// The instructions of x86-64-v3 that a compiler may use and that clang 14 cannot ask for by name.
 bool has_lzcnt_movbe_f16c() {
     constexpr unsigned movbe = 1u << 22, f16c = 1u << 29, lzcnt = 1u << 5;
@@ -34,7 +34,7 @@ bool runs_v3() {
            __builtin_cpu_supports("bmi2") && has_lzcnt_movbe_f16c();
 }
 
-#ifdef CREDENCE_UNIT_V4
+#ifdef CREDENCE_TARGET_V4
 bool runs_v4() {
     return runs_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
@@ -44,49 +44,49 @@ bool runs_v4() {
 #endif
 
 /// A unit of this build, and whether this processor runs it.
-struct BuiltUnit {
-    Unit unit;
+struct BuiltTarget {
+    Target target;
     bool runs = false;
 };
 
 /// The best one first.
-std::vector<BuiltUnit> built_units() {
+std::vector<BuiltTarget> built_targets() {
     return {
-#ifdef CREDENCE_UNIT_V4
+#ifdef CREDENCE_TARGET_V4
         {CREDENCE_LIST_UNIT(v4, 8), runs_v4()},
 #endif
-#ifdef CREDENCE_X86_UNITS
+#ifdef CREDENCE_X86_TARGETS
         {CREDENCE_LIST_UNIT(v3, 4), runs_v3()},
 #endif
         {CREDENCE_LIST_UNIT(portable, 1), true}};
 }
 
 /// The unit of this name; throws InputError where there is none that runs.
-Unit forced_unit(const std::string& name) {
+Target forced_unit(const std::string& name) {
     std::vector<std::string> runnable;
     std::string why = "not a unit of this build";
-    for (const auto& [unit, runs] : built_units()) {
-        if (runs && unit.name == name) return unit;
+    for (const auto& [target, runs] : built_targets()) {
+        if (runs && target.name == name) return target;
         if (runs)
-            runnable.push_back(unit.name);
-        else if (unit.name == name)
+            runnable.push_back(target.name);
+        else if (target.name == name)
             why = "this processor cannot run it";
     }
-    throw invalid_value(force_unit_variable, name, why, "Unset it, or give one of " + joined(runnable));
+    throw invalid_value(force_target_variable, name, why, "Unset it, or give one of " + joined(runnable));
 }
 
 }  // namespace
 
-std::vector<Unit> runnable_units() {
-    std::vector<Unit> units;
-    for (const auto& [unit, runs] : built_units())
-        if (runs) units.push_back(unit);
-    return units;
+std::vector<Target> runnable_targets() {
+    std::vector<Target> targets;
+    for (const auto& [target, runs] : built_targets())
+        if (runs) targets.push_back(target);
+    return targets;
 }
 
-Unit best_unit() {
-    const char* forced = std::getenv(force_unit_variable);
-    return forced ? forced_unit(forced) : runnable_units().front();
+Target best_target() {
+    const char* forced = std::getenv(force_target_variable);
+    return forced ? forced_unit(forced) : runnable_targets().front();
 }
 
 }  // namespace credence

@@ -88,7 +88,7 @@ std::optional<Given> given(const std::string& key, const std::vector<Assignment>
 std::unique_ptr<Draft> draft_of(const std::vector<Assignment>& assignments, const std::string& origin,
                                 const Overrides& overrides) {
     const Given world = given(world_key, assignments, origin, overrides).value_or(Given{first_world, origin + ": "});
-    Declaration named;
+    Scenario named;
     named.world = world.value;
     try {
         return world_of(named).draft();
@@ -148,7 +148,7 @@ std::string text_of_file(const std::string& path) {
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
 /// Throws where a scenario is not at the place of a grid that it says.
-void check_place(const Declaration& scenario) {
+void check_place(const Scenario& scenario) {
     const SweepPoint& sweep = scenario.sweep;
     if (sweep.at.empty() && sweep.of.empty()) return;
     if (sweep.at.empty() || sweep.of.empty() || !names_something(sweep.of))
@@ -168,7 +168,7 @@ void check_place(const Declaration& scenario) {
 }
 
 /// A scenario at a point of its grid, where it goes by another name.
-Declaration declared_at(Draft& draft, const std::string& origin, const SweepPoint& point, const std::string& name) {
+Scenario declared_at(Draft& draft, const std::string& origin, const SweepPoint& point, const std::string& name) {
     for (const SweepCoordinate& one : point.at) {
         try {
             draft.set(one.key, one.value);
@@ -178,7 +178,7 @@ Declaration declared_at(Draft& draft, const std::string& origin, const SweepPoin
     }
     try {
         draft.set("scenario.name", name);
-        Declaration scenario = draft.declare();
+        Scenario scenario = draft.declare();
         scenario.sweep = point;
         return scenario;
     } catch (const InputError& error) {
@@ -194,7 +194,7 @@ std::vector<Setting> read_settings(const std::string& text, const std::string& o
     return settings;
 }
 
-Declaration read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+Scenario read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
                                   const Overrides& overrides) {
     const std::vector<Assignment> assignments = read_lines(text, origin);
     const std::unique_ptr<Draft> draft = draft_of(assignments, origin, overrides);
@@ -203,7 +203,7 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
     try {
         // It is refused only where it is used.
         if (!given("scenario.name", assignments, origin, overrides)) draft->set("scenario.name", default_name);
-        Declaration scenario = draft->declare();
+        Scenario scenario = draft->declare();
         scenario.sweep = std::move(sweep);
         check_place(scenario);
         return scenario;
@@ -214,16 +214,16 @@ Declaration read_declaration_text(const std::string& text, const std::string& or
     }
 }
 
-Declaration read_declaration(const std::string& path, const Overrides& overrides) {
+Scenario read_declaration(const std::string& path, const Overrides& overrides) {
     return read_declaration_text(text_of_file(path), path, stem(path), overrides);
 }
 
-std::vector<Declaration> read_grid(const std::string& path, const Overrides& overrides,
+std::vector<Scenario> read_grid(const std::string& path, const Overrides& overrides,
                                    const std::vector<SweepAxis>& axes) {
     if (axes.empty()) return {read_declaration(path, overrides)};
     const std::vector<Assignment> assignments = read_lines(text_of_file(path), path);
     const std::string name = given("scenario.name", assignments, path, overrides).value_or(Given{stem(path), ""}).value;
-    std::vector<Declaration> scenarios;
+    std::vector<Scenario> scenarios;
     for (const std::vector<SweepCoordinate>& at : grid_points(axes)) {
         const std::unique_ptr<Draft> draft = draft_of(assignments, path, overrides);
         SweepPoint before;
@@ -236,13 +236,13 @@ std::vector<Declaration> read_grid(const std::string& path, const Overrides& ove
     return scenarios;
 }
 
-Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+DeformableSettings read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
                             const Overrides& overrides) {
-    return scenario_of(read_declaration_text(text, origin, default_name, overrides));
+    return settings_of(read_declaration_text(text, origin, default_name, overrides));
 }
 
-Scenario read_scenario(const std::string& path, const Overrides& overrides) {
-    return scenario_of(read_declaration(path, overrides));
+DeformableSettings read_scenario(const std::string& path, const Overrides& overrides) {
+    return settings_of(read_declaration(path, overrides));
 }
 
 }  // namespace credence

@@ -14,7 +14,7 @@ namespace credence {
 using SimulateFunction = void (*)(const ProblemView&, const Arm&, const Batch&);
 
 /// A unit by name: v4 (AVX-512), v3 (AVX2 and FMA) or portable; with the number of trials it runs at once.
-struct Unit {
+struct Target {
     std::string name;
     int lanes = 1;
     SimulateFunction simulate = nullptr;
@@ -23,7 +23,7 @@ struct Unit {
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
 };
 
-/// What a unit compiled from src/worlds/deformable/unit.cpp and src/worlds/landmarks/unit.cpp offers under its name, and its
+/// What a unit compiled from src/worlds/deformable/target.cpp and src/worlds/landmarks/target.cpp offers under its name, and its
 /// entry in a list of units.
 #define CREDENCE_DECLARE_UNIT(name)                    \
     namespace name {                                   \
@@ -33,16 +33,16 @@ struct Unit {
     std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
     }
 #define CREDENCE_LIST_UNIT(name, lanes) \
-    Unit{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
+    Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
 
 /// Environment variable that names the unit to run, for tests.
-inline constexpr const char* force_unit_variable = "CREDENCE_FORCE_UNIT";
+inline constexpr const char* force_target_variable = "CREDENCE_FORCE_UNIT";
 
 /// Every unit that was built and that this processor can run, the best one first.
-std::vector<Unit> runnable_units();
+std::vector<Target> runnable_targets();
 
 /// The unit that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
-/// InputError where that is none of runnable_units; who computes calls this before anything else.
-Unit best_unit();
+/// InputError where that is none of runnable_targets; who computes calls this before anything else.
+Target best_target();
 
 }  // namespace credence

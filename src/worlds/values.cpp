@@ -152,19 +152,19 @@ std::string turns_text(const std::optional<std::vector<double>>& turns) {
     return joined(parts);
 }
 
-std::vector<PublishedFigure> parse_published(const std::string& name, const std::string& value) {
-    std::vector<PublishedFigure> figures;
+std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value) {
+    std::vector<PublishedNumber> all_series;
     for (const std::string& part : split_list(value)) {
         const std::size_t space = part.find_first_of(" \t");
         const std::string number = space == std::string::npos ? "" : trimmed(part.substr(space));
-        figures.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
+        all_series.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
     }
-    return figures;
+    return all_series;
 }
 
-std::string published_text(const std::vector<PublishedFigure>& figures) {
+std::string published_text(const std::vector<PublishedNumber>& all_series) {
     std::vector<std::string> parts;
-    for (const PublishedFigure& figure : figures) parts.push_back(figure.arm + " " + to_text(figure.value));
+    for (const PublishedNumber& series : all_series) parts.push_back(series.arm + " " + to_text(series.value));
     return joined(parts);
 }
 
@@ -214,7 +214,7 @@ std::string is_title(const std::string& value) {
     });
 }
 
-std::string is_unit(const std::string& value) {
+std::string is_target(const std::string& value) {
     if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
     return characters_not_in(value, [](char c) {

@@ -37,8 +37,8 @@ std::string graph_text(const EdgeSettings& edges);
 std::optional<double> parse_truncate(const std::string& value);
 std::optional<std::vector<double>> parse_turns(const std::string& value);
 std::string turns_text(const std::optional<std::vector<double>>& turns);
-std::vector<PublishedFigure> parse_published(const std::string& name, const std::string& value);
-std::string published_text(const std::vector<PublishedFigure>& figures);
+std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value);
+std::string published_text(const std::vector<PublishedNumber>& all_series);
 
 const std::vector<std::string>& controller_names();
 const std::vector<std::string>& estimator_names();
@@ -50,7 +50,7 @@ std::optional<std::vector<Estimator>> parse_estimators(const std::string& value)
 /// Why a text is refused, or empty where it is good.
 std::string is_name(const std::string& value);
 std::string is_title(const std::string& value);
-std::string is_unit(const std::string& value);
+std::string is_target(const std::string& value);
 
 template <class Enum>
 std::string names_text(const std::vector<Enum>& values, const std::vector<std::string>& names) {
@@ -61,13 +61,13 @@ std::string names_text(const std::vector<Enum>& values, const std::vector<std::s
 
 // A key of one field. `field` gives the field of a scenario, constant or not, as a reference.
 
-template <class S = Scenario, class Field>
+template <class S = DeformableSettings, class Field>
 KeyOf<S> real_key(const std::string& name, const std::string& help, const ValueRange& range, Field field) {
     return {name, help, [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
             [=](const S& s) { return to_text(field(s)); }};
 }
 
-template <class S = Scenario, class Field>
+template <class S = DeformableSettings, class Field>
 KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, int high, Field field) {
     return {name, help,
             [=](S& s, const std::string& v) { field(s) = static_cast<int>(parse_integer(name, v, low, high)); },
@@ -75,13 +75,13 @@ KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, 
 }
 
 template <class Enum, class Field>
-ScenarioKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
+DeformableKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
     return {name, joined(choices),
-            [=](Scenario& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
-            [=](const Scenario& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
+            [=](DeformableSettings& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
+            [=](const DeformableSettings& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
 }
 
-template <class S = Scenario, class Field, class Check>
+template <class S = DeformableSettings, class Field, class Check>
 KeyOf<S> text_key(const std::string& name, const std::string& help, Field field, Check refusal) {
     return {name, help,
             [=](S& s, const std::string& v) {
@@ -99,7 +99,7 @@ void add_common_keys(std::vector<KeyOf<S>>& keys) {
                                [](auto& s) -> auto& { return s.name; }, is_name));
     keys.push_back(text_key<S>("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
     keys.push_back(text_key<S>("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
-                               [](auto& s) -> auto& { return s.length_unit; }, is_unit));
+                               [](auto& s) -> auto& { return s.length_unit; }, is_target));
     keys.push_back(integer_key<S>("scenario.poses", "K, the first pose included", 2, largest_pose_count,
                                   [](auto& s) -> auto& { return s.poses; }));
 }

@@ -39,7 +39,7 @@ const World* find_world(const std::string& name) {
     return nullptr;
 }
 
-const World& world_of(const Declaration& scenario) {
+const World& world_of(const Scenario& scenario) {
     if (const World* world = find_world(scenario.world)) return *world;
     std::vector<std::string> names;
     for (const World* world : all_worlds()) names.push_back(world->name());
@@ -47,7 +47,7 @@ const World& world_of(const Declaration& scenario) {
                         "Use the program that has it, or give one of " + joined(names));
 }
 
-std::unique_ptr<const Simulation> simulation_of(const Declaration& scenario) {
+std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario) {
     return world_of(scenario).simulation(scenario);
 }
 

@@ -24,9 +24,9 @@ struct Office {
     bool abandoned = false;
 };
 
-class OfficePost : public Post {
+class ThreadTransport : public Transport {
 public:
-    OfficePost(Office& office, int rank) : office_(office), rank_(rank) {}
+    ThreadTransport(Office& office, int rank) : office_(office), rank_(rank) {}
     int rank() const override { return rank_; }
     int size() const override { return static_cast<int>(office_.letters.size()); }
     void send(int rank, Word word, std::string bytes) override {
@@ -58,8 +58,8 @@ public:
     explicit Followers(Office& office, const Signal& signal = no_signal) {
         for (int rank = 1; rank < static_cast<int>(office.letters.size()); ++rank)
             threads_.emplace_back([&office, rank, signal] {
-                OfficePost post(office, rank);
-                follow(post, signal);
+                ThreadTransport transport(office, rank);
+                follow(transport, signal);
             });
     }
     ~Followers() {
@@ -82,8 +82,8 @@ struct Job {
 void compute_together(StoredRun& run, const Asked& asked, const Job& job) {
     Office office(job.size);
     const Followers followers(office, job.signal);
-    OfficePost post(office, 0);
-    RankLeader leader(post);
+    ThreadTransport transport(office, 0);
+    RankLeader leader(transport);
     leader.begin(definition_of(run.study()), asked.threads, job.sending);
     RunOptions options{asked.trials, asked.threads, {}, asked.shard, {}, &run.begin(asked.trials, 1), &leader};
     options.stop = [&] { return leader.asked_to_stop() || (job.stop && job.stop()); };
@@ -179,7 +179,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
         // The totals are those of the blocks that are there, which another run computes by itself.
         const BlockRanges& blocks = study.scenarios.front().blocks;
         ScenarioResults& results = again.scenarios.front();
-        const Problem problem(scenario_of(results.scenario));
+        const Problem problem(settings_of(results.scenario));
         for (const std::int64_t block : blocks)
             add_totals(results, run_block(problem, asked.root_seed, block, trials_in_block(asked.trials, block)));
         CHECK(results.arms.front().totals.front().sum.front().parts() ==
@@ -190,7 +190,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
 TEST_CASE("ranks: the signal of another rank is told by name and rank") {
     Office office(2);
     const Followers followers(office, [] { return std::string("SIGHUP"); });
-    OfficePost own(office, 0);
+    ThreadTransport own(office, 0);
     const TemporaryFolder folder;
     Asked asked = some();
     asked.trials = 10000000;
@@ -209,7 +209,7 @@ TEST_CASE("ranks: one of which nothing is heard ends the run, and what the other
     const Asked asked = some();
     Office office(2);
     {
-        OfficePost lost(office, 1), own(office, 0);
+        ThreadTransport lost(office, 1), own(office, 0);
         StoredRun run = opened(folder / "x.h5", asked);
         RankLeader leader(own, std::chrono::milliseconds(50));
         ByteWriter one;
@@ -240,8 +240,8 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
     } keeper;
     Office office(3);
     const Followers followers(office);
-    OfficePost post(office, 0);
-    RankLeader leader(post);
+    ThreadTransport transport(office, 0);
+    RankLeader leader(transport);
     Study study = some().study();
     leader.begin(definition_of(study), 1, RankLeader::Sending::at_once);
     CHECK(refusal<Failure>([&] { run_study(study, {5000, 1, {}, {}, {}, &keeper, &leader}); }) == "no space");
@@ -250,22 +250,22 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
 TEST_CASE("ranks: those that are sent home before they had work go") {
     Office office(3);
     const Followers followers(office);
-    OfficePost post(office, 0);
-    const RankLeader leader(post);
+    ThreadTransport transport(office, 0);
+    const RankLeader leader(transport);
     SUCCEED();
 }
 
 TEST_CASE("ranks: a record holds the blocks' columns, details and totals, and none that is torn is believed") {
     const Asked asked = some();
     const Study whole = undisturbed(asked);
-    const std::vector<ScenarioResults> empty{without_columns(declaration_of(asked.scenarios[0])),
-                                             without_columns(declaration_of(asked.scenarios[1]))};
-    RankRecord record(empty[1]);
-    const Problem problem(scenario_of(whole.scenarios[1].scenario));
+    const std::vector<ScenarioResults> empty{without_columns(scenario_of(asked.scenarios[0])),
+                                             without_columns(scenario_of(asked.scenarios[1]))};
+    RankMessage record(empty[1]);
+    const Problem problem(settings_of(whole.scenarios[1].scenario));
     for (const std::int64_t block : {19, 2, 5})
         record.take(run_block(problem, 1, block, trials_in_block(asked.trials, block)));
     const std::string bytes = record.bytes(1, asked.trials);
-    const ComputedBlocks computed = read_rank_record(bytes, empty);
+    const ComputedBlocks computed = read_rank_message(bytes, empty);
     CHECK(computed.scenario == 1);
     CHECK(computed.blocks == std::vector<std::int64_t>{19, 2, 5});
     CHECK(computed.results.blocks == std::vector<std::int64_t>{2, 5, 19});
@@ -273,5 +273,5 @@ TEST_CASE("ranks: a record holds the blocks' columns, details and totals, and no
     const std::size_t width = static_cast<std::size_t>(whole.scenarios[1].steps());
     CHECK(computed.results.arms.front().nees[256 * width] == whole.scenarios[1].arms.front().nees[5 * 256 * width]);
     for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7)
-        CHECK_FALSE(refusal<BadBytes>([&] { read_rank_record(bytes.substr(0, size), empty); }).empty());
+        CHECK_FALSE(refusal<BadBytes>([&] { read_rank_message(bytes.substr(0, size), empty); }).empty());
 }

@@ -56,22 +56,22 @@ private:
     std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-std::vector<Unit> all_units() {
-    std::vector<Unit> units = runnable_units();
+std::vector<Target> all_units() {
+    std::vector<Target> targets = runnable_targets();
 #ifdef CREDENCE_DIGEST_WIDTHS
-    units.push_back(CREDENCE_LIST_UNIT(w2, 2));
-    units.push_back(CREDENCE_LIST_UNIT(w4, 4));
-    units.push_back(CREDENCE_LIST_UNIT(w8, 8));
+    targets.push_back(CREDENCE_LIST_UNIT(w2, 2));
+    targets.push_back(CREDENCE_LIST_UNIT(w4, 4));
+    targets.push_back(CREDENCE_LIST_UNIT(w8, 8));
 #endif
-    return units;
+    return targets;
 }
 
-std::vector<Unit> asked_units(const std::vector<std::string>& names) {
-    const std::vector<Unit> all = all_units();
+std::vector<Target> asked_units(const std::vector<std::string>& names) {
+    const std::vector<Target> all = all_units();
     if (names.empty()) return all;
-    std::vector<Unit> asked;
+    std::vector<Target> asked;
     for (const std::string& name : names) {
-        const auto found = std::find_if(all.begin(), all.end(), [&](const Unit& unit) { return unit.name == name; });
+        const auto found = std::find_if(all.begin(), all.end(), [&](const Target& target) { return target.name == name; });
         if (found == all.end()) throw InputError("no unit " + name + " that this processor runs.");
         asked.push_back(*found);
     }
@@ -85,8 +85,8 @@ std::vector<World> all_worlds() {
     return worlds;
 }
 
-Scenario scenario_of(const World& world) {
-    Scenario scenario;
+DeformableSettings settings_of(const World& world) {
+    DeformableSettings scenario;
     scenario.name = world.name;
     set_key(scenario, "scenario.poses", short_poses);
     for (const auto& [key, value] : world.settings) set_key(scenario, key, value);
@@ -97,12 +97,12 @@ Scenario scenario_of(const World& world) {
 
 /// The lines of one scenario, an arm each. `simulation(unit)` runs it.
 template <class SimulationOn>
-std::vector<std::string> lines(const Declaration& scenario, const SimulationOn& simulation, const Unit& unit) {
-    const auto on_unit = simulation(unit);
+std::vector<std::string> lines(const Scenario& scenario, const SimulationOn& simulation, const Target& target) {
+    const auto on_target = simulation(target);
     const std::vector<Column> columns = world_of(scenario).columns(scenario);
     const std::size_t arms = scenario.arms.size();
-    const Block block = run_block(on_unit, columns, arms, root_seed, block_index, trials);
-    const Block details = run_block(on_unit, columns, arms, root_seed, 0, detailed_count);
+    const Block block = run_block(on_target, columns, arms, root_seed, block_index, trials);
+    const Block details = run_block(on_target, columns, arms, root_seed, 0, detailed_count);
     std::vector<std::string> lines;
     for (std::size_t a = 0; a < arms; ++a) {
         const ArmBlock& arm = block.arms[a];
@@ -126,38 +126,38 @@ std::vector<std::string> lines(const Declaration& scenario, const SimulationOn& 
 /// Prints every line of a scenario as the first unit has it, and on the error stream those that another unit has
 /// otherwise.
 template <class SimulationOn>
-bool agree_on(const std::vector<Unit>& units, const Declaration& scenario, const SimulationOn& simulation) {
+bool agree_on(const std::vector<Target>& targets, const Scenario& scenario, const SimulationOn& simulation) {
     bool agree = true;
-    const std::vector<std::string> first = lines(scenario, simulation, units.front());
+    const std::vector<std::string> first = lines(scenario, simulation, targets.front());
     std::printf("%s\n", joined(first, "\n").c_str());
-    for (std::size_t u = 1; u < units.size(); ++u) {
-        const std::vector<std::string> other = lines(scenario, simulation, units[u]);
+    for (std::size_t u = 1; u < targets.size(); ++u) {
+        const std::vector<std::string> other = lines(scenario, simulation, targets[u]);
         for (std::size_t a = 0; a < first.size(); ++a) {
             if (other[a] == first[a]) continue;
-            std::fprintf(stderr, "%s has %s\n", units[u].name.c_str(), other[a].c_str());
+            std::fprintf(stderr, "%s has %s\n", targets[u].name.c_str(), other[a].c_str());
             agree = false;
         }
     }
     return agree;
 }
 
-bool all_agree(const std::vector<Unit>& units) {
+bool all_agree(const std::vector<Target>& targets) {
     bool agree = true;
     for (const World& world : all_worlds()) {
-        const Problem problem(scenario_of(world));
-        const auto simulation = [&](const Unit& unit) { return DeformableSimulation(problem, unit); };
-        agree = agree_on(units, declaration_of(problem.scenario()), simulation) && agree;
+        const Problem problem(settings_of(world));
+        const auto simulation = [&](const Target& target) { return DeformableSimulation(problem, target); };
+        agree = agree_on(targets, scenario_of(problem.scenario()), simulation) && agree;
     }
-    const LandmarkScenario landmarks = small_loop();
-    const auto simulation = [&](const Unit& unit) { return LandmarkSimulation(landmarks, unit); };
-    return agree_on(units, declaration_of(landmarks), simulation) && agree;
+    const LandmarkSettings landmarks = small_loop();
+    const auto simulation = [&](const Target& target) { return LandmarkSimulation(landmarks, target); };
+    return agree_on(targets, scenario_of(landmarks), simulation) && agree;
 }
 
 int run(const std::vector<std::string>& names) {
-    const std::vector<Unit> units = asked_units(names);
-    const bool agree = all_agree(units);
+    const std::vector<Target> targets = asked_units(names);
+    const bool agree = all_agree(targets);
     std::fprintf(stderr, "units:");
-    for (const Unit& unit : units) std::fprintf(stderr, " %s", unit.name.c_str());
+    for (const Target& target : targets) std::fprintf(stderr, " %s", target.name.c_str());
     std::fprintf(stderr, agree ? "\n" : " (they do not agree)\n");
     return agree ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // The small study of the digest: worlds that together reach every branch of the equations.
 
-#include "worlds/landmarks/scenario.hpp"
+#include "worlds/landmarks/settings.hpp"
 
 #include <string>
 #include <utility>
@@ -122,8 +122,8 @@ inline std::vector<World> fragile_worlds() {
 }
 
 /// Landmarks on a loop, walked a little more than once, with every estimator.
-inline LandmarkScenario small_loop() {
-    LandmarkScenario scenario;
+inline LandmarkSettings small_loop() {
+    LandmarkSettings scenario;
     scenario.name = "landmarks";
     scenario.poses = 10;
     scenario.loop = {7, 1};

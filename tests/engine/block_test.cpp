@@ -44,7 +44,7 @@ double column(const Block& block, std::size_t arm, int index, int trial) {
 }
 
 /// The columns of one trial of a block, by itself.
-std::vector<double> single(const Scenario& scenario, Controller controller, std::uint64_t seed, std::int64_t trial) {
+std::vector<double> single(const DeformableSettings& scenario, Controller controller, std::uint64_t seed, std::int64_t trial) {
     const AnyNoise noise = keyed_noise(scenario, seed, static_cast<std::uint64_t>(trial));
     std::vector<double> columns = run_arm(scenario, controller, noise).columns;
     fill_failed(trial_columns(scenario), columns.data());
@@ -77,25 +77,25 @@ TEST_CASE("block: the same bits every time, others for another seed or index") {
 }
 
 TEST_CASE("block: every unit gives the same bits") {
-    const std::vector<Unit> units = runnable_units();
-    REQUIRE(units.back().name == "portable");
-    CHECK(best_unit().simulate == units.front().simulate);
-    if (units.size() == 1) WARN("this processor runs the portable unit only: there is nothing to compare");
+    const std::vector<Target> targets = runnable_targets();
+    REQUIRE(targets.back().name == "portable");
+    CHECK(best_target().simulate == targets.front().simulate);
+    if (targets.size() == 1) WARN("this processor runs the portable unit only: there is nothing to compare");
     for (const Settings& world : worlds()) {
         CAPTURE(described(world));
         const Problem problem(scenario_with(world));
-        const Block portable = run_block(problem, 3, 1, 40, units.back());
-        for (const Unit& unit : units) {
-            CAPTURE(unit.name);
-            CHECK(same_bits(portable, run_block(problem, 3, 1, 40, unit)));
+        const Block portable = run_block(problem, 3, 1, 40, targets.back());
+        for (const Target& target : targets) {
+            CAPTURE(target.name);
+            CHECK(same_bits(portable, run_block(problem, 3, 1, 40, target)));
         }
     }
 }
 
 TEST_CASE("block: every unit agrees on which trials fail") {
     const Problem problem(scenario_with(fragile));
-    const Block first = run_block(problem, 3, 0, 256, runnable_units().front());
-    CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_units().back())));
+    const Block first = run_block(problem, 3, 0, 256, runnable_targets().front());
+    CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_targets().back())));
 }
 
 TEST_CASE("block: 100 trials are the beginning of 256") {
@@ -112,7 +112,7 @@ TEST_CASE("block: a trial of any block is the single trial, in every world and a
     for (Settings world : worlds()) {
         world.emplace_back("scenario.poses", "12");
         CAPTURE(described(world));
-        const Scenario scenario = scenario_with(world);
+        const DeformableSettings scenario = scenario_with(world);
         const Block block = run_block(Problem(scenario), 5, 3, 30);
         for (const int trial : {0, 1, 17, 29})
             for (std::size_t arm = 0; arm < 2; ++arm) {
@@ -125,7 +125,7 @@ TEST_CASE("block: a trial of any block is the single trial, in every world and a
 }
 
 TEST_CASE("block: long trials, simulated a few at a time, are the single trials too") {
-    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}, {"scenario.poses", "500"}});
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}, {"scenario.poses", "500"}});
     const Block block = run_block(Problem(scenario), 5, 0, 32);
     for (const int trial : {0, 6, 7, 13, 14, 31})
         CHECK(test::same_bits(column(block, 0, column_pose_error, trial), single(scenario, Controller::fixed, 5, trial)[column_pose_error]));
@@ -133,8 +133,8 @@ TEST_CASE("block: long trials, simulated a few at a time, are the single trials 
 
 TEST_CASE("block: arms stand in the scenario's order") {
     const Settings circle{{"features.path", "circle"}};
-    const Scenario usual = scenario_with(circle);
-    const Scenario turned = scenario_with(usual, {{"arms.controllers", "greedy, fixed"}});
+    const DeformableSettings usual = scenario_with(circle);
+    const DeformableSettings turned = scenario_with(usual, {{"arms.controllers", "greedy, fixed"}});
     const Block one = run_block(Problem(usual), 1, 0, 20), other = run_block(Problem(turned), 1, 0, 20);
     CHECK(test::same_bits(one.arms[0].columns, other.arms[1].columns));
     CHECK(test::same_bits(one.arms[1].columns, other.arms[0].columns));
@@ -144,9 +144,9 @@ TEST_CASE("block: arms stand in the scenario's order") {
 
 TEST_CASE("block: sums are folded in eight, in trial order, over the trials that did not fail") {
     for (const auto& [world, trials] : {std::pair{fragile, 256}, {Settings{{"arms.controllers", "fixed"}}, 37}}) {
-        const Scenario scenario = scenario_with(world);
+        const DeformableSettings scenario = scenario_with(world);
         const Problem problem(scenario);
-        const int steps = scenario.poses - 1, figures = problem.view().figure_count;
+        const int steps = scenario.poses - 1, figures = problem.view().series_count;
         const Block block = run_block(problem, 3, 0, trials);
         std::array<Eigen::MatrixXd, 8> sums, squares;  // by column as the block by row
         std::array<Eigen::VectorXd, 8> run_squares;

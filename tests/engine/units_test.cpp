@@ -15,8 +15,8 @@ using Catch::Contains;
 namespace {
 
 /// Runs the program with the variable set to `unit`.
-Outcome forced(const Workplace& here, const std::string& unit, const std::string& arguments) {
-    return here.shell("CREDENCE_FORCE_UNIT='" + unit + "' " CREDENCE_PROGRAM " " + arguments);
+Outcome forced(const Workplace& here, const std::string& target, const std::string& arguments) {
+    return here.shell("CREDENCE_FORCE_UNIT='" + target + "' " CREDENCE_PROGRAM " " + arguments);
 }
 
 std::string source_file(const std::string& name) {
@@ -27,8 +27,8 @@ std::string source_file(const std::string& name) {
 }
 
 bool runs_here(const std::string& name) {
-    for (const Unit& unit : runnable_units())
-        if (unit.name == name) return true;
+    for (const Target& target : runnable_targets())
+        if (target.name == name) return true;
     return false;
 }
 
@@ -37,12 +37,12 @@ bool runs_here(const std::string& name) {
 TEST_CASE("units: --version says which one runs, and the variable chooses it") {
     const Workplace here;
     CHECK_THAT(here.shell("env -u CREDENCE_FORCE_UNIT " CREDENCE_PROGRAM " --version").out,
-               Contains("instruction_set: " + runnable_units().front().name + "\n"));
-    for (const Unit& unit : runnable_units()) {
-        const Outcome version = forced(here, unit.name, "--version");
+               Contains("instruction_set: " + runnable_targets().front().name + "\n"));
+    for (const Target& target : runnable_targets()) {
+        const Outcome version = forced(here, target.name, "--version");
         CHECK(version.exit_code == 0);
-        CHECK_THAT(version.out, Contains("instruction_set: " + unit.name + "\n"));
-        CHECK_THAT(version.out, Contains("lane_width: " + std::to_string(unit.lanes) + "\n"));
+        CHECK_THAT(version.out, Contains("instruction_set: " + target.name + "\n"));
+        CHECK_THAT(version.out, Contains("lane_width: " + std::to_string(target.lanes) + "\n"));
     }
 }
 
@@ -70,14 +70,14 @@ TEST_CASE("units: each writes the same results, and /run says which one did") {
     const Workplace here;
     const std::string study = "run " + seed_scenario("ekf-straight-ranged") + " " +
                               seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 --quiet -o ";
-    for (const Unit& unit : runnable_units()) {
-        CAPTURE(unit.name);
-        REQUIRE(forced(here, unit.name, study + unit.name + ".h5").exit_code == 0);
-        CHECK_THAT(here.shell("h5dump -a /run/instruction_set " + unit.name + ".h5").out,
-                   Contains("\"" + unit.name + "\""));
+    for (const Target& target : runnable_targets()) {
+        CAPTURE(target.name);
+        REQUIRE(forced(here, target.name, study + target.name + ".h5").exit_code == 0);
+        CHECK_THAT(here.shell("h5dump -a /run/instruction_set " + target.name + ".h5").out,
+                   Contains("\"" + target.name + "\""));
     }
-    for (const Unit& unit : runnable_units())
-        CHECK(here.shell("h5diff --exclude-path /run portable.h5 " + unit.name + ".h5").exit_code == 0);
+    for (const Target& target : runnable_targets())
+        CHECK(here.shell("h5diff --exclude-path /run portable.h5 " + target.name + ".h5").exit_code == 0);
 }
 
 TEST_CASE("units: the committed digest is of this schema version, and the changelog has it") {

@@ -99,7 +99,7 @@ TEST_CASE("aggregates: a journal's ranges of blocks that cannot be are refused, 
     const Made made(Keep::aggregates);
     CHECK(made.said({made.record}).empty());
     const std::int64_t most = std::numeric_limits<std::int64_t>::max(), far = most_trials / block_size - 1;
-    const std::vector<std::pair<RecordStart, std::string>> starts{
+    const std::vector<std::pair<CommitStart, std::string>> starts{
         {{3, 3, {}, {}, {{0, 1}}}, "a block that the study does not have"},
         {{3, 3, {}, {}, {{-1, 0}}}, "a block that the study does not have"},
         {{3, 3, {}, {}, {{1, 0}}}, "a block that the study does not have"},

@@ -135,11 +135,11 @@ TEST_CASE("aggregates: the journal lists blocks as ranges") {
         run_study(run.study(), {asked.trials, 1, {}, {}, {}, &run.begin(asked.trials, all_blocks)});
     }
     const std::string bytes = bytes_of(folder / "x.h5.journal");
-    const std::vector<std::size_t> ends = record_ends(bytes);
+    const std::vector<std::size_t> ends = commit_ends(bytes);
     REQUIRE(ends.size() == 2);  // one commit
     ByteReader from(bytes.data() + ends[0], bytes.size() - ends[0]);
-    get_record_head(from);
-    const RecordStart start = get_record_start(from, BlockLayout(asked.study().scenarios.front()));
+    get_commit_head(from);
+    const CommitStart start = get_commit_start(from, BlockLayout(asked.study().scenarios.front()));
     REQUIRE(start.blocks.size() == 16);  // those of detailed trials, one by one
     REQUIRE(start.ranges.size() == 17);
     CHECK(start.ranges.back() == BlockRange{16, 39});
@@ -204,9 +204,9 @@ TEST_CASE("aggregates: arms of one file are compared from totals, arms of severa
                             found = compare_studies({{"x.h5", aggregates}}, choice);
         REQUIRE(found.pairs.size() == expected.pairs.size());
         for (std::size_t p = 0; p < found.pairs.size(); ++p)
-            for (std::size_t f = 0; f < found.pairs[p].comparison.figures.size(); ++f) {
-                const PairedComparison &one = found.pairs[p].comparison.figures[f].paired,
-                                       &other = expected.pairs[p].comparison.figures[f].paired;
+            for (std::size_t f = 0; f < found.pairs[p].comparison.columns.size(); ++f) {
+                const PairedComparison &one = found.pairs[p].comparison.columns[f].paired,
+                                       &other = expected.pairs[p].comparison.columns[f].paired;
                 CAPTURE(p, f);
                 CHECK(one.pairs == other.pairs);
                 CHECK(one.difference.mean == Approx(other.difference.mean).epsilon(1e-12).margin(1e-300));
@@ -230,13 +230,13 @@ TEST_CASE("aggregates: arms of one file are compared from totals, arms of severa
 TEST_CASE("aggregates: a precision is reached at the look at which the trials reach it; looks that are past are left out") {
     StoppingRule rule{{parse_goal("trace_P=2%"), parse_goal("trace_P[greedy-fixed]=0.02")}, 4096, 256};
     const auto until = [&](Study& study, std::vector<std::int64_t>* looks = nullptr) {
-        return run_until(study, rule, {0, 1, {}}, [&](const Look& look) {
+        return run_until(study, rule, {0, 1, {}}, [&](const InterimAnalysis& look) {
             if (looks != nullptr) looks->push_back(look.trials);
         });
     };
     Study trials = small(1, Keep::trials).study(), aggregates = small(1).study();
     std::vector<std::int64_t> looks;
-    const Look expected = until(trials), found = until(aggregates, &looks);
+    const InterimAnalysis expected = until(trials), found = until(aggregates, &looks);
     CHECK(found.trials == expected.trials);
     CHECK(found.met == expected.met);
     REQUIRE(looks.size() > 2);
@@ -247,7 +247,7 @@ TEST_CASE("aggregates: a precision is reached at the look at which the trials re
     // A study that has them already goes to the next look, and spends no more than its share.
     Study begun = run(300, Keep::aggregates);
     looks.clear();
-    const Look later = until(begun, &looks);
+    const InterimAnalysis later = until(begun, &looks);
     CHECK(looks.front() == 512);
     CHECK(later.trials == expected.trials);
     CHECK(later.alpha == expected.alpha);
@@ -259,7 +259,7 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
     const TemporaryFolder folder;
     const std::string path = folder / "x.h5";
     const auto check = [&](const Study& expected) {
-        const WatchLook look = RunWatch(path).look();
+        const Snapshot look = RunWatch(path).look();
         REQUIRE(look.scenarios.size() == expected.scenarios.size());
         for (std::size_t s = 0; s < expected.scenarios.size(); ++s) {
             const ScenarioResults& results = expected.scenarios[s];
@@ -267,12 +267,12 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
             CHECK(look.scenarios[s].blocks == results.blocks.count());
             for (std::size_t a = 0; a < results.arms.size(); ++a) {
                 const WatchedArm& arm = look.scenarios[s].arms[a];
-                for (std::size_t f = 0; f < arm.figures.size(); ++f) {
+                for (std::size_t f = 0; f < arm.columns.size(); ++f) {
                     const Moments moments = moments_of(results.arms[a].aggregates.columns[watched_columns(results.columns)[f]]);
-                    CHECK(arm.figures[f].count == moments.count);
+                    CHECK(arm.columns[f].count == moments.count);
                     if (moments.count == 0) continue;
-                    CHECK(arm.figures[f].mean == moments.mean);
-                    CHECK(arm.figures[f].standard_deviation == Approx(moments.standard_deviation).epsilon(1e-14));
+                    CHECK(arm.columns[f].mean == moments.mean);
+                    CHECK(arm.columns[f].standard_deviation == Approx(moments.standard_deviation).epsilon(1e-14));
                 }
                 if (!arm.other.empty()) CHECK(arm.difference.count == static_cast<double>(results.trials));
             }

@@ -50,7 +50,7 @@ TEST_CASE("journal: a later block may be committed before the partial one that i
         BlockKeeper& keeper = run.begin(one.trials, 1);
         Study& study = run.study();
         ScenarioResults& results = study.scenarios.front();
-        const Problem problem(scenario_of(results.scenario));
+        const Problem problem(settings_of(results.scenario));
         remove_totals(results, run_block(problem, study.root_seed, 2, 88));
         keeper.take_back(0, 2);
         set_blocks(results, {0, 1, 2, 3}, one.trials);

@@ -44,7 +44,7 @@ TEST_CASE("journal: records whose heads cannot be, end it as torn ones do") {
 TEST_CASE("journal: blocks and trials that cannot be are refused") {
     const Made made;
     const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-    const std::vector<std::pair<RecordStart, std::string>> starts{
+    const std::vector<std::pair<CommitStart, std::string>> starts{
         {{-1, 0, {}}, "an impossible number of trials"},
         {{most_trials + 1, 3, {{0, 3}}}, "an impossible number of trials"},
         {{3, 4, {{0, 3}}}, "an impossible number of trials"},

@@ -37,10 +37,10 @@ struct Interrupted {
         run_and_die(path, asked);
         return bytes_of(journal);
     }();
-    std::vector<std::size_t> ends = record_ends(bytes);
+    std::vector<std::size_t> ends = commit_ends(bytes);
 
     /// Records that end within the first `size` bytes.
-    std::int64_t whole_records(std::size_t size) const {
+    std::int64_t whole_commits(std::size_t size) const {
         const auto end = std::upper_bound(ends.begin(), ends.end(), size);
         return std::max<std::int64_t>(0, end - ends.begin() - 1);
     }
@@ -64,8 +64,8 @@ TEST_CASE("journal: cut at any byte, it has every record before the cut, and not
         put_bytes(run.journal, run.bytes.substr(0, size));
         CAPTURE(size, run.bytes.size());
         const StoredRun resumed = opened(run.path, run.asked);
-        REQUIRE(blocks_in(resumed.study()) == run.whole_records(size));
-        const std::int64_t records = run.whole_records(size);
+        REQUIRE(blocks_in(resumed.study()) == run.whole_commits(size));
+        const std::int64_t records = run.whole_commits(size);
         if (size >= run.ends.front())
             REQUIRE(bytes_of(run.journal).size() == run.ends[static_cast<std::size_t>(records)]);
     }
@@ -93,7 +93,7 @@ TEST_CASE("journal: any byte flipped is refused, or costs no record before it", 
         const std::string said = refusal<InputError>([&] {
             const StoredRun resumed = opened(run.path, run.asked);
             // Of the header alone it cannot be told from what was torn while it was written.
-            REQUIRE(blocks_in(resumed.study()) == run.whole_records(at));
+            REQUIRE(blocks_in(resumed.study()) == run.whole_commits(at));
         });
         if (!said.empty()) REQUIRE(said.starts_with(run.journal + ": "));
         if (at >= run.ends.front()) REQUIRE(said.empty());

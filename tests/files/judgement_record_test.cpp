@@ -12,7 +12,7 @@ using namespace credence::test;
 
 namespace {
 
-constexpr std::size_t lowest_cells = shape_cells / 16;
+constexpr std::size_t lowest_cells = distribution_cells / 16;
 
 void check_agree(const std::vector<double>& values, const Json& expected) {
     REQUIRE(values.size() == expected.size());
@@ -25,14 +25,14 @@ std::vector<double> rounded(const std::vector<ExactSum>& sums) {
     return values;
 }
 
-const FigureTotals& totals_of(const ScenarioResults& results, const Json& figure) {
+const SeriesTotals& totals_of(const ScenarioResults& results, const Json& figure) {
     const std::string part = figure["part"], kind = figure["name"];
     std::string name = kind;
     if (kind == "standardised_error" || part != "all") name += "_" + part;
     if (name == "variance") name = "trace_P_step";
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].name == name) {
-            CHECK(results.figures[f].part == part);
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].name == name) {
+            CHECK(results.all_series[f].part == part);
             return results.arms.front().totals[f];
         }
     FAIL("no figure " << name);
@@ -40,10 +40,10 @@ const FigureTotals& totals_of(const ScenarioResults& results, const Json& figure
 }
 
 void check_figures(const ScenarioResults& results, const Json& expected) {
-    CHECK(results.figures.size() == expected.size());
+    CHECK(results.all_series.size() == expected.size());
     for (const Json& figure : expected) {
         CAPTURE(figure["name"], figure["part"]);
-        const FigureTotals& totals = totals_of(results, figure);
+        const SeriesTotals& totals = totals_of(results, figure);
         check_agree(rounded(totals.sum), figure["sum"]);
         check_agree(rounded(totals.square_sum), figure.value("square_sum", Json::array()));
         REQUIRE(totals.run_sum.has_value());
@@ -71,9 +71,9 @@ void check_arm(const ScenarioResults& results, const Json& expected) {
     CHECK(arm.name == "record");
     CHECK(arm.counted == expected["counted"]);
     CHECK(arm.present == expected["present"].get<std::vector<std::int64_t>>());
-    check_agree(arm.shape_distance, expected["shape_distance"]);
+    check_agree(arm.distribution_distance, expected["shape_distance"]);
     for (std::size_t k = 0; k < arm.present.size(); ++k) {
-        const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * shape_cells), last = first + shape_cells;
+        const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells), last = first + distribution_cells;
         CHECK(std::accumulate(first, last, std::int64_t{0}) == arm.present[k]);
         CHECK(std::accumulate(first, first + lowest_cells, std::int64_t{0}) == expected["cells"][k][0]);
         CHECK(std::accumulate(last - lowest_cells, last, std::int64_t{0}) == expected["cells"][k][1]);
@@ -89,7 +89,7 @@ void check_arm(const ScenarioResults& results, const Json& expected) {
     CHECK(i == arm.nees.size());
 }
 
-void check_troubles(const JudgedRecord& record, const Json& expected) {
+void check_troubles(const Record& record, const Json& expected) {
     CHECK(record.trouble_count == static_cast<std::int64_t>(expected.size()));
     CHECK(record.troubles.size() == std::min<std::size_t>(expected.size(), 20));
     for (std::size_t i = 0; i < record.troubles.size(); ++i) {
@@ -99,11 +99,11 @@ void check_troubles(const JudgedRecord& record, const Json& expected) {
 }
 
 std::string reference_path(const std::string& name) {
-    return record_folder + record_figures().at(name)["file"].get<std::string>();
+    return record_folder + record_series().at(name)["file"].get<std::string>();
 }
 
 /// All of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below 1e4.
-void check_record(const JudgedRecord& record, const Json& expected) {
+void check_record(const Record& record, const Json& expected) {
     CHECK(record.results.trials == expected["trials"]);
     CHECK(record.results.steps() == expected["steps"]);
     CHECK(record.results.state_size() == expected["n"]);
@@ -114,21 +114,21 @@ void check_record(const JudgedRecord& record, const Json& expected) {
     check_troubles(record, expected["troubles"]);
 }
 
-JudgedRecord check_reference(const std::string& name) {
-    JudgedRecord record = read_judgement_record(reference_path(name));
-    check_record(record, record_figures().at(name));
+Record check_reference(const std::string& name) {
+    Record record = read_record(reference_path(name));
+    check_record(record, record_series().at(name));
     return record;
 }
 
 }  // namespace
 
 TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes them with gzip") {
-    const JudgedRecord record = check_reference("gaussian");
-    const Declaration& scenario = record.results.scenario;
+    const Record record = check_reference("gaussian");
+    const Scenario& scenario = record.results.scenario;
     CHECK(scenario.name == "record_gaussian");
     CHECK(scenario.title == "record " + printable(record_folder + "record_gaussian.h5"));
     std::string names;
-    for (const Figure& figure : record.results.figures) names += figure.name + " ";
+    for (const Series& figure : record.results.all_series) names += figure.name + " ";
     CHECK(names ==
           "nees nees_pose nees_feature_1 nis nis_rows squared_error squared_error_pose squared_error_feature_1 "
           "trace_P_step variance_pose variance_feature_1 standardised_error_x0 standardised_error_x1 "
@@ -139,41 +139,41 @@ TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes t
 }
 
 TEST_CASE("record: runs of declared lengths, a step missing within a run, rows not observed, fixed-length text") {
-    const JudgedRecord record = check_reference("ragged");
+    const Record record = check_reference("ragged");
     const ArmResults& arm = record.results.arms.front();
     for (std::size_t i = 0; i < arm.nees.size(); ++i) CHECK(std::isnan(arm.nees[i]) == std::isnan(arm.errors[3 * i]));
     CHECK(std::isnan(arm.columns[column_nis_ratio][3]));
 }
 
 TEST_CASE("record: singular and indefinite covariances fail their trial and are named by trial and step") {
-    const JudgedRecord record = check_reference("troubled");
+    const Record record = check_reference("troubled");
     const ArmResults& arm = record.results.arms.front();
-    for (const Json& trouble : record_figures()["troubled"]["troubles"])
+    for (const Json& trouble : record_series()["troubled"]["troubles"])
         for (std::size_t i = 0; i < 4 * 3; ++i)
             CHECK(std::isnan(arm.errors[trouble[0].get<std::size_t>() * 4 * 3 + i]));
     CHECK(record.results.scenario.name == "record_troubled");
 }
 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
-    const JudgedRecord record = check_reference("broken");
+    const Record record = check_reference("broken");
     CHECK(record.trouble_count == 12);
     CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are in the figures
 }
 
 TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {
-    const JudgedRecord record = check_reference("cut");
+    const Record record = check_reference("cut");
     CHECK(record.trouble_count == 10);
     CHECK(record.results.arms.front().present.back() == 0);  // no trial has the last step, and none need have it
 }
 
 TEST_CASE("record: of many troubles the first twenty are named and all are counted") {
-    const JudgedRecord record = check_reference("many troubles");
+    const Record record = check_reference("many troubles");
     CHECK(record.trouble_count == 23);
     CHECK(record.results.scenario.name == "record_many_troubles");
 }
 
 TEST_CASE("record: one trial without a dimension of its own, and without blocks") {
-    const JudgedRecord record = check_reference("single");
+    const Record record = check_reference("single");
     CHECK(record.results.columns[column_pose_error].long_name ==
           "squared error of the whole state, summed over the steps");
 }
@@ -191,7 +191,7 @@ TEST_CASE("record: parts of any size, within a trial and over several, are the s
             const std::string path = reference_path(name);
             check_record(hdf5::read_file(path, "", [&](const Handle& root) {
                              return read_record(RecordFile(root, part_numbers), path);
-                         }), record_figures().at(name));
+                         }), record_series().at(name));
         }
 }
 
@@ -204,11 +204,11 @@ TEST_CASE("record: a run of very many steps has distances, and no cells") {
         remove(root, "innovation");
         remove(root, "innovation_covariance");
     });
-    const JudgedRecord record = read_judgement_record(path);
+    const Record record = read_record(path);
     const ArmResults& arm = record.results.arms.front();
     CHECK(arm.cells.empty());
-    CHECK(arm.shape_distance.size() == 5000);
-    check_agrees(arm.shape_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
+    CHECK(arm.distribution_distance.size() == 5000);
+    check_agrees(arm.distribution_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
     CHECK(arm.columns[column_nees_ratio][0] == 1);
     CHECK_FALSE(record.has_innovations);
     CHECK(arm.products.count == std::vector<std::int64_t>(10, 0));
@@ -222,7 +222,7 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
         set_value(root, "covariance", 2, 0.5 + 2e-10);
     });
     std::int64_t done = 0;
-    const JudgedRecord record = read_judgement_record(path, [&](const Progress& progress) {
+    const Record record = read_record(path, [&](const Progress& progress) {
         CHECK(progress.total == 3);
         done = progress.done;
     });
@@ -234,7 +234,7 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
 
     // What rounding leaves of a 0, between components whose variances are far larger.
     write_plain_record(path, [](const Handle& root) { set_value(root, "covariance", 1, 1e-12); });
-    CHECK(read_judgement_record(path).trouble_count == 0);
+    CHECK(read_record(path).trouble_count == 0);
 }
 
 TEST_CASE("record: parts hold whole chunks where there is room, so that each is uncompressed once") {
@@ -260,7 +260,7 @@ TEST_CASE("record: a covariance is singular where rounding alone could have made
             values[1] = values[2] = static_cast<float>(correlation);
             replace<float>(root, "covariance", {3, 4, 2, 2}, values);
         });
-        return read_judgement_record(path).trouble_count;
+        return read_record(path).trouble_count;
     };
     // The smallest eigenvalue is 1 - correlation; the bound 2 n eps is 8.9e-16 for doubles, 4.8e-7 for singles.
     CHECK(failed_trials(1 - 0x1p-51, false) == 1);

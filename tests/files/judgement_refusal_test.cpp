@@ -180,7 +180,7 @@ void require_refused(const std::vector<Damage>& damages) {
     const std::string path = folder / "record.h5";
     for (const Damage& damage : damages) {
         write_plain_record(path, damage.apply);
-        const std::string said = refusal<InputError>([&] { read_judgement_record(path); });
+        const std::string said = refusal<InputError>([&] { read_record(path); });
         INFO("expected: " << damage.said);
         INFO("said: " << said);
         CHECK(said.starts_with(path + ": " + (damage.said.starts_with('/') ? damage.said : "/")));
@@ -201,10 +201,10 @@ TEST_CASE("record: the plain record itself is judged, and what else a file holds
         hdf5::new_group(root, "notes");
         hdf5::write_dataset(root, "time", hdf5::type_of<double>(), &one, {1}, {"", "s"});
     });
-    const JudgedRecord record = read_judgement_record(folder / "record.h5");
+    const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == 0);
     CHECK(record.results.arms.front().counted == 3);
-    CHECK(record.results.figures[2].part == "rest");
+    CHECK(record.results.all_series[2].part == "rest");
 }
 
 TEST_CASE("record: a covariance that is not symmetric is refused by dataset, trial and step") {
@@ -222,7 +222,7 @@ TEST_CASE("record: blocks that cannot be are refused") { require_refused(block_d
 TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its name") {
     const TemporaryFolder folder;
     const std::string path = folder / "record.h5";
-    const auto said = [&] { return refusal<InputError>([&] { read_judgement_record(path); }); };
+    const auto said = [&] { return refusal<InputError>([&] { read_record(path); }); };
     CHECK(said() == path + ": the file: cannot be found. Check the path.");
     put_bytes(path, "trial,step\n");
     CHECK(said() == path + ": the file: is not an HDF5 file. Give an HDF5 file.");

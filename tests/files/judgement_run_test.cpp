@@ -20,9 +20,9 @@ namespace {
 constexpr std::uint64_t seed = 3;
 
 /// The blocks of the state but for the whole one, as a record names them.
-std::string blocks_text(const Scenario& scenario) {
+std::string blocks_text(const DeformableSettings& scenario) {
     std::string text;
-    for (const StateBlock& block : state_blocks(scenario))
+    for (const ComponentGroup& block : state_blocks(scenario))
         if (block.name != "all")
             text += (text.empty() ? "" : ", ") + block.name + " " + std::to_string(block.first) + ":" +
                     std::to_string(block.first + block.count);
@@ -45,7 +45,7 @@ struct Values {
 };
 
 /// Writes the trajectories of trials 0 ... trials - 1 as anybody would.
-void write_record(const std::string& path, const Scenario& scenario, std::uint64_t trials) {
+void write_record(const std::string& path, const DeformableSettings& scenario, std::uint64_t trials) {
     const Problem problem(scenario);
     Values values;
     for (std::uint64_t trial = 0; trial < trials; ++trial) {
@@ -64,7 +64,7 @@ void write_record(const std::string& path, const Scenario& scenario, std::uint64
     H5Fclose(file);
 }
 
-Evidence evidence_of_run(const Scenario& scenario, std::int64_t trials) {
+Evidence evidence_of_run(const DeformableSettings& scenario, std::int64_t trials) {
     Study study = new_study({scenario}, seed);
     run_study(study, {trials, 1, {}});
     return evidence_of(study.scenarios.front(), study.scenarios.front().arms.front());
@@ -102,10 +102,10 @@ TEST_CASE("judge: a run's trajectories, written as a record, give the run's evid
     for (const Settings& world : {Settings{{"features.path", "circle"}}, Settings{{"model.process", "translation"}, {"edges.graph", "chain"}},
                                   Settings{{"noise.heading", "0.05"}, {"filter.covariance", "0.5"}, {"edges.graph", "none"}}}) {
         CAPTURE(described(world));
-        const Scenario scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
+        const DeformableSettings scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
         constexpr int trials = 40;
         write_record(folder / "record.h5", scenario, trials);
-        const JudgedRecord judged = read_judgement_record(folder / "record.h5");
+        const Record judged = read_record(folder / "record.h5");
         CHECK(judged.trouble_count == 0);
         const Evidence run = evidence_of_run(scenario, trials),
                        record = evidence_of(judged.results, judged.results.arms.front());

@@ -36,14 +36,14 @@ Facts together(Facts facts, const Facts& others) {
 TEST_CASE("results format: the documentation and the files say the same of every variable and attribute") {
     const TemporaryFolder folder;
     write_results(folder / "study.h5", made_up_study(), {});
-    Scenario wide = scenario("wide");
+    DeformableSettings wide = scenario("wide");
     wide.features.positions.assign(23, {0.5, 0.5});
     write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0),
                                              replay_trial(Problem(wide), {Controller::fixed}, 1, 0)}, {});
-    Declaration point = declaration_of(scenario("swept_sigma-0p05_noise-constant"));
+    Scenario point = scenario_of(scenario("swept_sigma-0p05_noise-constant"));
     point.sweep = {"swept", {{"sensor.sigma", "0.05"}, {"sensor.noise", "constant"}}};
     write_results(folder / "swept.h5", new_study(std::vector{point}, 1), {});
-    Scenario charts = scenario("charts");
+    DeformableSettings charts = scenario("charts");
     charts.arms.estimators = {Estimator::ekf, Estimator::riekf};
     write_results(folder / "charts.h5", made_up_study({charts}), {});
     Study aggregates = new_study({scenario("first")}, 1, Keep::aggregates);

@@ -16,14 +16,14 @@ Study unknown_world() {
     const OwnWorld<Tracker> world;
     const std::unique_ptr<Draft> draft = world.draft();
     draft->set("scenario.poses", "5");
-    Declaration scenario = draft->declare();
+    Scenario scenario = draft->declare();
     if (find_world("tracker") == nullptr) add_own_world<Tracker>();
-    Study study = new_study(std::vector<Declaration>{scenario}, 1);
+    Study study = new_study(std::vector<Scenario>{scenario}, 1);
     RunOptions options;
     options.trials = 6;
     options.threads = 1;
     run_study(study, options);
-    Declaration& renamed = study.scenarios.front().scenario;
+    Scenario& renamed = study.scenarios.front().scenario;
     renamed.world = renamed.settings.front().value = "elsewhere";
     renamed.name = renamed.settings[1].value = "mine";
     return study;
@@ -63,12 +63,12 @@ TEST_CASE("store: a file of a world that this program does not have is read by w
     CHECK(study_hash(read) == study_hash(study));
     const ScenarioResults &a = read.scenarios[0], &b = study.scenarios[0];
     CHECK(a.scenario.components == b.scenario.components);
-    REQUIRE(a.figures.size() == b.figures.size());
-    for (std::size_t f = 0; f < a.figures.size(); ++f) {
-        CHECK(a.figures[f].name == b.figures[f].name);
-        CHECK(a.figures[f].unit == b.figures[f].unit);
-        CHECK(a.figures[f].part == b.figures[f].part);
-        CHECK(a.figures[f].dimension == b.figures[f].dimension);
+    REQUIRE(a.all_series.size() == b.all_series.size());
+    for (std::size_t f = 0; f < a.all_series.size(); ++f) {
+        CHECK(a.all_series[f].name == b.all_series[f].name);
+        CHECK(a.all_series[f].unit == b.all_series[f].unit);
+        CHECK(a.all_series[f].part == b.all_series[f].part);
+        CHECK(a.all_series[f].dimension == b.all_series[f].dimension);
     }
     REQUIRE(a.columns.size() == b.columns.size());
     for (std::size_t c = 0; c < a.columns.size(); ++c) {

@@ -54,7 +54,7 @@ void require_same(const Study& found, const Study& expected) {
         CHECK(one.trials == other.trials);
         CHECK(one.blocks == other.blocks);
         CHECK(one.columns.size() == other.columns.size());
-        CHECK(one.figures.size() == other.figures.size());
+        CHECK(one.all_series.size() == other.all_series.size());
         REQUIRE(one.arms.size() == other.arms.size());
         const WithTotals of_one(one), of_other(other);
         for (std::size_t a = 0; a < one.arms.size(); ++a) {
@@ -98,7 +98,7 @@ TEST_CASE("store: a study without trials, as of an empty shard, reads back") {
 
 TEST_CASE("store: a scenario text of more than 64 kB reads back") {
     const TemporaryFolder folder;
-    Scenario long_one = scenario("long");
+    DeformableSettings long_one = scenario("long");
     long_one.published.trace_P.assign(5000, {"greedy.ekf", 1.0 / 3});
     const Study study = new_study({long_one}, 1);
     REQUIRE(scenario_text(study.scenarios[0].scenario).size() > 65536);
@@ -108,7 +108,7 @@ TEST_CASE("store: a scenario text of more than 64 kB reads back") {
 
 TEST_CASE("store: a study that was stored and extended has the bytes of one that ran at once") {
     const TemporaryFolder folder;
-    const std::vector<Scenario> scenarios{scenario("one"), scenario("two", "translation")};
+    const std::vector<DeformableSettings> scenarios{scenario("one"), scenario("two", "translation")};
     Study at_once = new_study(scenarios, 5);
     run_study(at_once, {600, 1, {}});
     write_results(folder / "at_once.h5", at_once, run_facts);

@@ -132,7 +132,7 @@ TEST_CASE("store: a trajectory is in its file as it was") {
 
 TEST_CASE("store: a trajectory has the sigma of a feature's range also where it was not seen, and no measurement there") {
     const TemporaryFolder folder;
-    Scenario ranged = scenario("one");
+    DeformableSettings ranged = scenario("one");
     ranged.sensor.noise = RangeNoise::ranged;
     ranged.sensor.range_max = 0.6;
     write_trajectories(folder / "trace.h5", {replay_trial(Problem(ranged), {Controller::fixed}, 1, 0)}, {});
@@ -173,7 +173,7 @@ TEST_CASE("store: a trajectory has nothing but NaN and -1 where no step led to")
 TEST_CASE("store: trajectories lie in groups by scenario and arm, with the trial's columns") {
     const TemporaryFolder folder;
     std::vector<Trajectory> trajectories;
-    for (const Scenario& one : {scenario("first"), scenario("second", "translation")})
+    for (const DeformableSettings& one : {scenario("first"), scenario("second", "translation")})
         for (const Arm& arm : arms_of(one)) trajectories.push_back(replay_trial(Problem(one), arm, 1, 0));
     trajectories[1].columns[column_status] = 2;
     write_trajectories(folder / "trace.h5", trajectories, run_facts);
@@ -193,7 +193,7 @@ TEST_CASE("store: trajectories lie in groups by scenario and arm, with the trial
 
 TEST_CASE("store: innovations beyond the kept size are left out, and the file says so") {
     const TemporaryFolder folder;
-    Scenario wide = scenario("wide", "translation");
+    DeformableSettings wide = scenario("wide", "translation");
     wide.features.positions.assign(23, {0.5, 0.5});  // 2 (23 + 23 * 22 / 2) = 552 rows
     wide.poses = 2;
     const Trajectory trajectory = replay_trial(Problem(wide), {Controller::fixed, Estimator::kf}, 1, 0);

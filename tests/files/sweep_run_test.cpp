@@ -28,7 +28,7 @@ const std::string world = "[scenario]\nposes = 6\n[planner]\nspeeds = 2\n";
 const std::vector<std::string> square{"noise.heading=0.01,0.1", "sensor.noise=constant,ranged"};
 
 /// The grid of a scenario file `base.ini`.
-std::vector<Declaration> swept(const TemporaryFolder& folder, const std::vector<std::string>& sweeps,
+std::vector<Scenario> swept(const TemporaryFolder& folder, const std::vector<std::string>& sweeps,
                             const std::string& text = world, const Overrides& overrides = {}) {
     put_bytes(folder / "base.ini", text);
     return read_grid(folder / "base.ini", overrides, parse_grid(sweeps));
@@ -40,7 +40,7 @@ std::string refused(const std::vector<std::string>& sweeps, const std::string& t
     return refusal<InputError>([&] { swept(folder, sweeps, text, overrides); });
 }
 
-Study run(const std::vector<Declaration>& scenarios, std::int64_t trials = 300, const Shard& shard = {}) {
+Study run(const std::vector<Scenario>& scenarios, std::int64_t trials = 300, const Shard& shard = {}) {
     Study study = new_study(scenarios, 1);
     RunOptions options{trials, 1, {}};
     options.shard = shard;
@@ -48,9 +48,9 @@ Study run(const std::vector<Declaration>& scenarios, std::int64_t trials = 300, 
     return study;
 }
 
-std::vector<std::string> names_of(const std::vector<Declaration>& scenarios) {
+std::vector<std::string> names_of(const std::vector<Scenario>& scenarios) {
     std::vector<std::string> names;
-    for (const Declaration& scenario : scenarios) names.push_back(scenario.name);
+    for (const Scenario& scenario : scenarios) names.push_back(scenario.name);
     return names;
 }
 
@@ -60,14 +60,14 @@ std::int64_t lines_in(const std::string& text) { return std::count(text.begin(),
 
 TEST_CASE("sweep: a file's grid has a scenario for every point, with --set before it") {
     const TemporaryFolder folder;
-    const std::vector<Declaration> grid = swept(folder, square, world, {{"noise.heading", "0.5"}, {"noise.walk", "0.2"}});
+    const std::vector<Scenario> grid = swept(folder, square, world, {{"noise.heading", "0.5"}, {"noise.walk", "0.2"}});
     CHECK(names_of(grid) == std::vector<std::string>{"base_heading-0p01_noise-constant", "base_heading-0p01_noise-ranged",
                                                      "base_heading-0p1_noise-constant", "base_heading-0p1_noise-ranged"});
     CHECK(value_of(grid[1], "noise.heading") == "0.01");
     CHECK(value_of(grid[1], "noise.walk") == "0.2");
     CHECK(value_of(grid[2], "sensor.noise") == "constant");
     CHECK(grid[3].sweep == SweepPoint{"base", {{"noise.heading", "0.1"}, {"sensor.noise", "ranged"}}});
-    for (const Declaration& scenario : grid)
+    for (const Scenario& scenario : grid)
         CHECK(scenario_text(read_declaration_text(scenario_text(scenario), "x.ini", "x")) == scenario_text(scenario));
     CHECK(swept(folder, {}).front().name == "base");
     CHECK(scenario_text(swept(folder, {}).front()) == scenario_text(read_declaration(folder / "base.ini")));
@@ -75,7 +75,7 @@ TEST_CASE("sweep: a file's grid has a scenario for every point, with --set befor
 
 TEST_CASE("sweep: what depends on a swept key is resolved at each point") {
     const TemporaryFolder folder;
-    const std::vector<Declaration> grid = swept(folder, {"model.process=heading,translation"}, "");
+    const std::vector<Scenario> grid = swept(folder, {"model.process=heading,translation"}, "");
     CHECK(value_of(grid[0], "planner.speeds") == "10");
     CHECK(value_of(grid[1], "planner.speeds") == "5");
     CHECK(grid[1].arms.front() == "fixed.kf");
@@ -101,7 +101,7 @@ TEST_CASE("sweep: a scenario says where it is, and is refused where it is not") 
     const auto placed = [](const std::string& sweep) {
         return read_declaration_text(world + "[sweep]\n" + sweep, "x.ini", "x");
     };
-    const Declaration there = placed("of = base\nat = planner.turns=default, noise.heading=1e-3,planner.speeds=2\n");
+    const Scenario there = placed("of = base\nat = planner.turns=default, noise.heading=1e-3,planner.speeds=2\n");
     CHECK(there.sweep ==
           SweepPoint{"base", {{"planner.turns", "default"}, {"noise.heading", "0.001"}, {"planner.speeds", "2"}}});
     CHECK_THAT(scenario_text(there),
@@ -139,7 +139,7 @@ TEST_CASE("sweep: the points of a grid have the bits of runs of their own") {
 
 TEST_CASE("sweep: a grid survives file and merge, and the file says where each point is") {
     const TemporaryFolder folder;
-    const std::vector<Declaration> scenarios = swept(folder, square);
+    const std::vector<Scenario> scenarios = swept(folder, square);
     const Study whole = run(scenarios, 600);
     write_results(folder / "whole.h5", whole, {});
     for (const int part : {0, 1}) {
@@ -160,7 +160,7 @@ TEST_CASE("sweep: a grid survives file and merge, and the file says where each p
 
 TEST_CASE("sweep: a file whose attributes contradict its scenarios is refused") {
     const TemporaryFolder folder;
-    const std::vector<Declaration> scenarios = swept(folder, square);
+    const std::vector<Scenario> scenarios = swept(folder, square);
     write_results(folder / "good.h5", new_study(scenarios, 1), {});
     CHECK_NOTHROW(read_results(folder / "good.h5"));
     const std::string name = scenarios[0].name;
@@ -185,7 +185,7 @@ TEST_CASE("sweep: a file whose attributes contradict its scenarios is refused") 
 
 TEST_CASE("sweep: a grid that a crash left in its journal goes on to the same results") {
     const TemporaryFolder folder;
-    const std::vector<Declaration> scenarios = swept(folder, square);
+    const std::vector<Scenario> scenarios = swept(folder, square);
     Asked asked;
     asked.trials = 300;
     {
@@ -236,7 +236,7 @@ TEST_CASE("sweep: an axis is logarithmic where the values are spread by ratio") 
 
 TEST_CASE("sweep: of a large grid the page has the table and the curves, and no section for each point") {
     const TemporaryFolder folder;
-    std::vector<Declaration> scenarios = swept(folder, {"noise.heading=0.01:0.13:13"},
+    std::vector<Scenario> scenarios = swept(folder, {"noise.heading=0.01:0.13:13"},
                                                "[scenario]\nposes = 3\n[arms]\ncontrollers = fixed\n");
     const auto page_of = [&] { return report_html(make_report(run(scenarios, 3), 0.05), {"r.h5", {}, "test"}); };
     const std::string large = page_of();
@@ -250,7 +250,7 @@ TEST_CASE("sweep: of a large grid the page has the table and the curves, and no 
 
 TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     const TemporaryFolder folder;
-    std::vector<Declaration> scenarios = swept(folder, square);
+    std::vector<Scenario> scenarios = swept(folder, square);
     scenarios.push_back(read_declaration_text(world, "alone.ini", "alone"));
     const Report report = make_report(run(scenarios, 40), 0.05);
 
@@ -284,8 +284,8 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     std::string line;
     for (int skipped = 0; skipped < 6; ++skipped) std::getline(table, line);  // its name, heads, four points
     CHECK_THAT(line, Contains("0.1") && Contains("ranged") && Contains(verdict_name(last.consistency.verdict)) &&
-                         Contains(with_interval(last.figures[column_trace_P].summary.mean,
-                                                last.figures[column_trace_P].summary.ci95)));
+                         Contains(with_interval(last.columns[column_trace_P].summary.mean,
+                                                last.columns[column_trace_P].summary.ci95)));
 
     const std::string page = report_html(report, {"r.h5", {}, "test"});
     CHECK_THAT(page, Contains("Sweep of base over noise.heading, sensor.noise"));

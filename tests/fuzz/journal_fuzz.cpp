@@ -47,10 +47,10 @@ std::vector<std::size_t> seams(const std::uint8_t* data, std::size_t size) {
     std::size_t end = header_prefix + number_at<std::uint32_t>(data, length_at) + sizeof(std::uint32_t);
     while (end <= size) {
         ends.push_back(end);
-        if (size - end < record_head_size) break;
+        if (size - end < commit_head_size) break;
         const auto payload = number_at<std::uint64_t>(data, end + payload_at);
         if (payload > size - end) break;
-        end += record_head_size + payload + record_tail_size;
+        end += commit_head_size + payload + commit_tail_size;
     }
     return ends;
 }
@@ -99,7 +99,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");
     try {
-        const WatchLook look = RunWatch(results).look();
+        const Snapshot look = RunWatch(results).look();
         require(watch_text(look).starts_with(results) && !watch_json(look).empty(), "a look can be shown");
     } catch (const InputError& error) {
         require_one_line(error.what());

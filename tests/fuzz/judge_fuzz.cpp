@@ -22,7 +22,7 @@ bool is_small(const ScenarioResults& results) {
 }
 
 void judge_file(const std::string& path, bool with_report) {
-    JudgedRecord record = read_judgement_record(path);
+    Record record = read_record(path);
     const ArmResults& arm = record.results.arms.at(0);
     const std::vector<std::int64_t> statuses = status_counts(record.results, arm);
     const std::int64_t completed = statuses[static_cast<std::size_t>(Status::completed)],

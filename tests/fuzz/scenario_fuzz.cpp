@@ -36,7 +36,7 @@ Input split(const std::string& bytes) {
     return input;
 }
 
-std::optional<Declaration> read(const Input& input) {
+std::optional<Scenario> read(const Input& input) {
     try {
         return read_declaration_text(input.text, "x.ini", "x", input.overrides);
     } catch (const InputError& error) {
@@ -45,9 +45,9 @@ std::optional<Declaration> read(const Input& input) {
     }
 }
 
-void require_usable(const Declaration& scenario) {
+void require_usable(const Scenario& scenario) {
     const std::string text = scenario_text(scenario);
-    const Declaration again = read_declaration_text(text, "again.ini", "again");
+    const Scenario again = read_declaration_text(text, "again.ini", "again");
     require(scenario_text(again) == text, "what scenario_text writes reads back to the same text");
     require(key_differences(scenario, again).empty(), "no key differs");
     require(!scenario.arms.empty() && again.arms == scenario.arms, "there is an arm");
@@ -62,7 +62,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::optional<Declaration> scenario = read(split({reinterpret_cast<const char*>(data), size}));
+    const std::optional<Scenario> scenario = read(split({reinterpret_cast<const char*>(data), size}));
     if (scenario) require_usable(*scenario);
     return 0;
 }

@@ -28,7 +28,7 @@ std::string any_number(Random& random) {
 }
 
 /// Words of choices stand in a key's help; lists need more.
-std::string any_value(const ScenarioKey& key, Random& random) {
+std::string any_value(const DeformableKey& key, Random& random) {
     static const std::string values[] = {"default", "none", "chain", "all", "0-1", "0-1, 1-2", "1-0", "0-1, 0-1",
                                          "0-63", "0 0, 1 1", "1 2", "fixed", "greedy, fixed", "fixed, fixed", "ekf",
                                          "kf", "ekf, kf", "fixed.ekf 1", "greedy.kf 2, fixed.kf 3", "a.b 1", "run", "dm",
@@ -49,7 +49,7 @@ std::string any_value(const ScenarioKey& key, Random& random) {
 std::size_t mutate_scenario(std::uint8_t* text, std::size_t size, std::size_t room, unsigned seed) {
     Random random(seed);
     if (random() % 2 == 0) return LLVMFuzzerMutate(text, size, room);
-    const ScenarioKey& key = one_of(scenario_keys(), random);
+    const DeformableKey& key = one_of(scenario_keys(), random);
     const std::string more = override_separator + key.name + "=" + any_value(key, random);
     // In the place of what was overridden before, now and then, so that texts do not only grow.
     const std::uint8_t* end = std::find(text, text + size, static_cast<std::uint8_t>(override_separator));

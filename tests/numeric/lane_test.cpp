@@ -26,8 +26,8 @@ namespace {
 
 #ifdef CREDENCE_LANE_MASKS_V4
 bool runs_v4() {
-    const std::vector<Unit> units = runnable_units();
-    return std::any_of(units.begin(), units.end(), [](const Unit& unit) { return std::string(unit.name) == "v4"; });
+    const std::vector<Target> targets = runnable_targets();
+    return std::any_of(targets.begin(), targets.end(), [](const Target& target) { return std::string(target.name) == "v4"; });
 }
 #endif
 

@@ -22,7 +22,7 @@ struct Measurements {
     std::vector<Edge> edges;
     VectorXd z, variance;
 
-    Measurements(const Scenario& scenario, const RunStep& step) : edges(graph(scenario)) {
+    Measurements(const DeformableSettings& scenario, const RunStep& step) : edges(graph(scenario)) {
         for (std::size_t j = 0; j < step.seen.size(); ++j)
             if (step.seen[j]) seen.push_back(static_cast<int>(j));
         const auto count = static_cast<Eigen::Index>(seen.size() + edges.size());
@@ -88,7 +88,7 @@ VectorXd predicted_mean(const VectorXd& x, const RunStep& step, const VectorXd& 
     return next;
 }
 
-MatrixXd process_noise_of(const Scenario& scenario, Eigen::Index n) {
+MatrixXd process_noise_of(const DeformableSettings& scenario, Eigen::Index n) {
     const auto squared = [](double sigma) { return sigma * sigma; };
     VectorXd q = VectorXd::Constant(n, squared(scenario.noise.walk) + squared(scenario.noise.deformation));
     q[theta] = squared(scenario.noise.heading);
@@ -97,7 +97,7 @@ MatrixXd process_noise_of(const Scenario& scenario, Eigen::Index n) {
 }
 
 /// The right-invariant filter in its own chart: eta = chi chi^^-1, P of its logarithm.
-Estimate right_invariant_step(const Scenario& scenario, const RunStep& step, const Estimate& before,
+Estimate right_invariant_step(const DeformableSettings& scenario, const RunStep& step, const Estimate& before,
                               const VectorXd& feature_motion) {
     const Eigen::Index n = before.mean.size();
     const MatrixXd T_before = chart(before.mean);
@@ -128,7 +128,7 @@ struct First {
     VectorXd points;  ///< first estimates at their places in the state
 };
 
-Estimate euclidean_step(const Scenario& scenario, Estimator estimator, const RunStep& previous, const RunStep& step,
+Estimate euclidean_step(const DeformableSettings& scenario, Estimator estimator, const RunStep& previous, const RunStep& step,
                         const Estimate& before, const VectorXd& feature_motion, First& first) {
     const Eigen::Index n = before.mean.size();
     const VectorXd x = predicted_mean(before.mean, step, before.mean + feature_motion);
@@ -173,7 +173,7 @@ VectorXd moved(const VectorXd& x, const VectorXd& xi) {
     return result;
 }
 
-std::vector<Estimate> estimates(const Scenario& scenario, Estimator estimator, const test::Run& run) {
+std::vector<Estimate> estimates(const DeformableSettings& scenario, Estimator estimator, const test::Run& run) {
     std::vector<Estimate> all{{run.steps.front().mean, run.steps.front().covariance}};
     First first{point(all.front().mean, r), all.front().mean};
     for (std::size_t k = 1; k < run.steps.size(); ++k) {

@@ -13,7 +13,7 @@ struct Estimate {
 
 /// What an estimator of the heading model makes of the trial `run`, at every pose. It starts from the run's first
 /// estimate and takes from each step the control, the sightings, the edges, and for `ideal` the truth.
-std::vector<Estimate> estimates(const Scenario& scenario, Estimator estimator, const test::Run& run);
+std::vector<Estimate> estimates(const DeformableSettings& scenario, Estimator estimator, const test::Run& run);
 
 /// T(x): from the Euclidean error to the right-invariant one, I with the column of theta (1; -J r; -J f_j).
 Eigen::MatrixXd chart(const Eigen::VectorXd& x);

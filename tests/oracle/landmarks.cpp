@@ -21,7 +21,7 @@ Index place(std::size_t i) { return pose_size + 2 * static_cast<Index>(i); }
 /// The true loop, in closed form: the corners of a polygon about its centre.
 class Loop {
 public:
-    explicit Loop(const LandmarkScenario& scenario)
+    explicit Loop(const LandmarkSettings& scenario)
         : s_(scenario),
           turn_(2 * std::numbers::pi / scenario.loop.sides),
           radius_(scenario.loop.step / 2 / std::sin(turn_ / 2)),
@@ -42,7 +42,7 @@ public:
 
 private:
     static Vector2d about(double angle) { return {std::cos(angle), std::sin(angle)}; }
-    const LandmarkScenario& s_;
+    const LandmarkSettings& s_;
     double turn_, radius_;
     Vector2d centre_;
 };
@@ -50,7 +50,7 @@ private:
 /// One estimator on its way: mean and covariance of the Euclidean error, and what it remembers.
 class Filter {
 public:
-    Filter(const LandmarkScenario& scenario, Estimator estimator, const Noise& noise)
+    Filter(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise)
         : s_(scenario), loop_(scenario), estimator_(estimator), noise_(noise) {
         step_.estimate = {VectorXd::Zero(pose_size), MatrixXd::Zero(pose_size, pose_size)};
         see_new(0);
@@ -196,7 +196,7 @@ private:
         first_.push_back(landmark);
     }
 
-    const LandmarkScenario& s_;
+    const LandmarkSettings& s_;
     Loop loop_;
     Estimator estimator_;
     const Noise& noise_;
@@ -207,7 +207,7 @@ private:
 
 }  // namespace
 
-std::vector<LandmarkStep> landmark_trial(const LandmarkScenario& scenario, Estimator estimator, const Noise& noise) {
+std::vector<LandmarkStep> landmark_trial(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise) {
     Filter filter(scenario, estimator, noise);
     std::vector<LandmarkStep> steps{filter.step(0)};
     for (int k = 1; k < scenario.poses; ++k) {

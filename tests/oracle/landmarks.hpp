@@ -4,7 +4,7 @@
 
 #include "estimators.hpp"
 
-#include "worlds/landmarks/scenario.hpp"
+#include "worlds/landmarks/settings.hpp"
 
 namespace credence::oracle {
 
@@ -19,6 +19,6 @@ struct LandmarkStep {
 };
 
 /// One trial, by pose.
-std::vector<LandmarkStep> landmark_trial(const LandmarkScenario& scenario, Estimator estimator, const Noise& noise);
+std::vector<LandmarkStep> landmark_trial(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise);
 
 }  // namespace credence::oracle

@@ -13,7 +13,7 @@ namespace {
 
 /// NEES = e' (filter.covariance P)^-1 e of the whole state, e's heading wrapped to [-pi, pi]
 /// [model.md, Reported per trial].
-double normalized_error(const Scenario& scenario, const Step& step) {
+double normalized_error(const DeformableSettings& scenario, const Step& step) {
     Eigen::VectorXd e = step.mean - step.truth;
     if (scenario.process == Process::heading) e[0] = std::remainder(e[0], 2 * std::numbers::pi);
     const Eigen::MatrixXd reported = scenario.filter.covariance * step.covariance;
@@ -28,7 +28,7 @@ double condition(const Eigen::MatrixXd& symmetric) {
 
 /// Control from pose k-1 to k, with the candidates' costs when planned [model.md, Controllers]. A horizon ends at the
 /// last pose.
-void choose_control(const Scenario& scenario, Controller controller, const Belief& belief, int k, Step& step) {
+void choose_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k, Step& step) {
     if (controller == Controller::fixed) {
         step.control = fixed_control(scenario, k - 1);
         return;
@@ -42,7 +42,7 @@ void choose_control(const Scenario& scenario, Controller controller, const Belie
 }
 
 /// Measurements z (m) at pose k: the seen features, then all edges [model.md, Filter, See and Edges].
-Eigen::VectorXd measurements(const Scenario& scenario, const World& world, int k, const Step& step,
+Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& world, int k, const Step& step,
                              const Noise& noise) {
     const int edge_count = static_cast<int>(graph(scenario).size());
     Eigen::VectorXd z(step.rows);
@@ -61,7 +61,7 @@ Eigen::VectorXd measurements(const Scenario& scenario, const World& world, int k
 
 /// Sees at pose k and updates the prior, gating and taking sigma at the true range; without a row the prior stays
 /// [model.md, Filter, See to Update].
-Belief see_and_update(const Scenario& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
+Belief see_and_update(const DeformableSettings& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
                       Step& step) {
     Eigen::VectorXd sigma(feature_count(scenario));
     for (int j = 0; j < feature_count(scenario); ++j) {
@@ -82,7 +82,7 @@ Belief see_and_update(const Scenario& scenario, const World& world, const Belief
 }
 
 /// Notes truth and belief after the update, and the reported trace.
-void note(const Scenario& scenario, const World& world, const Belief& belief, Step& step) {
+void note(const DeformableSettings& scenario, const World& world, const Belief& belief, Step& step) {
     step.truth = true_state(scenario, world);
     step.mean = belief.x;
     step.covariance = belief.P;
@@ -90,7 +90,7 @@ void note(const Scenario& scenario, const World& world, const Belief& belief, St
 }
 
 /// Figures of the whole trial from its steps [model.md, Reported per trial].
-void sum_up(const Scenario& scenario, Trial& trial) {
+void sum_up(const DeformableSettings& scenario, Trial& trial) {
     double nees = 0, nis = 0, rows = 0;
     for (std::size_t k = 0; k < trial.steps.size(); ++k) {
         const Step& step = trial.steps[k];
@@ -110,7 +110,7 @@ void sum_up(const Scenario& scenario, Trial& trial) {
 
 }  // namespace
 
-Trial run(const Scenario& scenario, Controller controller, const Noise& noise) {
+Trial run(const DeformableSettings& scenario, Controller controller, const Noise& noise) {
     Trial trial;
     World world = first_world(scenario, noise);
     Belief belief = first_belief(scenario, world, noise);

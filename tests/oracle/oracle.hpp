@@ -18,7 +18,7 @@
 // Stacked measurements hold the seen features by rising j, two rows each, and then every edge in graph order.
 
 #include <credence/detail/draws.hpp>
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <Eigen/Dense>
 
@@ -61,16 +61,16 @@ struct Trial {
 
 /// Runs one trial from pose 0 to K-1. Makes no check of the scenario and knows no status: a trial that breaks down
 /// goes on with what arithmetic gives.
-Trial run(const Scenario& scenario, Controller controller, const Noise& noise);
+Trial run(const DeformableSettings& scenario, Controller controller, const Noise& noise);
 
 // Sizes and places in the state ---------------------------------------------------------------------------------------
 
-int feature_count(const Scenario& scenario);                       ///< M
-int pose_dimension(const Scenario& scenario);                      ///< 3 (heading) or 2 (translation)
-int state_dimension(const Scenario& scenario);                     ///< n = pose_dimension + 2 M
-int row_of_position(const Scenario& scenario);                     ///< where r starts in x
-int row_of_feature(const Scenario& scenario, int j);               ///< where f_j starts in x
-std::vector<Edge> graph(const Scenario& scenario);                 ///< edges in graph order
+int feature_count(const DeformableSettings& scenario);                       ///< M
+int pose_dimension(const DeformableSettings& scenario);                      ///< 3 (heading) or 2 (translation)
+int state_dimension(const DeformableSettings& scenario);                     ///< n = pose_dimension + 2 M
+int row_of_position(const DeformableSettings& scenario);                     ///< where r starts in x
+int row_of_feature(const DeformableSettings& scenario, int j);               ///< where f_j starts in x
+std::vector<Edge> graph(const DeformableSettings& scenario);                 ///< edges in graph order
 Eigen::Matrix2d rotation(double theta);                            ///< R(theta)
 Eigen::Matrix2d quarter_turn();                                    ///< J
 
@@ -83,15 +83,15 @@ struct World {
     Eigen::Matrix2Xd c, p;
 };
 
-Eigen::Vector2d translation(const Scenario& scenario, int k);      ///< t_k, of every feature from pose k to k+1
-Eigen::Vector2d local_deformation(const Scenario& scenario, int k, int j);  ///< o_{k,j}
-World first_world(const Scenario& scenario, const Noise& noise);
-World next_world(const Scenario& scenario, const World& world, const Control& control, int k, const Noise& noise);
-Eigen::VectorXd true_state(const Scenario& scenario, const World& world);   ///< n, ordered as the filter's x
-bool in_range(const Scenario& scenario, double q);                 ///< r_min <= q <= r_max
-double measurement_sigma(const Scenario& scenario, double q);      ///< true sigma_feat(q), length
-Eigen::Vector2d measured_feature(const Scenario& scenario, const World& world, int k, int j, const Noise& noise);
-Eigen::Vector2d measured_edge(const Scenario& scenario, const World& world, int k, int e, const Noise& noise);
+Eigen::Vector2d translation(const DeformableSettings& scenario, int k);      ///< t_k, of every feature from pose k to k+1
+Eigen::Vector2d local_deformation(const DeformableSettings& scenario, int k, int j);  ///< o_{k,j}
+World first_world(const DeformableSettings& scenario, const Noise& noise);
+World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise);
+Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& world);   ///< n, ordered as the filter's x
+bool in_range(const DeformableSettings& scenario, double q);                 ///< r_min <= q <= r_max
+double measurement_sigma(const DeformableSettings& scenario, double q);      ///< true sigma_feat(q), length
+Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise);
+Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise);
 
 // Filter [model.md, Filter] -------------------------------------------------------------------------------------------
 
@@ -112,26 +112,26 @@ struct Correction {
     Eigen::MatrixXd K, S, P;
 };
 
-Belief first_belief(const Scenario& scenario, const World& world, const Noise& noise);
-Eigen::VectorXd predicted_mean(const Scenario& scenario, const Eigen::VectorXd& x, const Control& control, int k);
-Eigen::MatrixXd prediction_jacobian(const Scenario& scenario, const Eigen::VectorXd& x, const Control& control);
-Eigen::MatrixXd process_noise(const Scenario& scenario);           ///< Q
-Belief predict(const Scenario& scenario, const Belief& belief, const Control& control, int k);
-Eigen::Vector2d predicted_measurement(const Scenario& scenario, const Eigen::VectorXd& x, int j);
-Eigen::MatrixXd measurement_rows(const Scenario& scenario, const Eigen::VectorXd& x, int j);
-Eigen::Vector2d predicted_edge(const Scenario& scenario, const Eigen::VectorXd& x, const Edge& edge);
-Eigen::MatrixXd edge_rows(const Scenario& scenario, const Edge& edge);
-Prediction predicted_measurements(const Scenario& scenario, const Eigen::VectorXd& x, const std::vector<bool>& seen,
+Belief first_belief(const DeformableSettings& scenario, const World& world, const Noise& noise);
+Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control, int k);
+Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control);
+Eigen::MatrixXd process_noise(const DeformableSettings& scenario);           ///< Q
+Belief predict(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k);
+Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j);
+Eigen::MatrixXd measurement_rows(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j);
+Eigen::Vector2d predicted_edge(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Edge& edge);
+Eigen::MatrixXd edge_rows(const DeformableSettings& scenario, const Edge& edge);
+Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x, const std::vector<bool>& seen,
                                   const Eigen::VectorXd& sigma);
 Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction);
 
 // Controllers [model.md, Controllers] ---------------------------------------------------------------------------------
 
-Path path_of_robot(const Scenario& scenario);                      ///< control.path, or the features' own
-Control fixed_control(const Scenario& scenario, int k);            ///< from pose k to k+1
-std::vector<Control> candidates(const Scenario& scenario);         ///< in the order of model.md
-double candidate_cost(const Scenario& scenario, const Belief& belief, const Control& control, int k);
-double cost_ahead(const Scenario& scenario, const Belief& belief, const Control& control, int k, int steps);
+Path path_of_robot(const DeformableSettings& scenario);                      ///< control.path, or the features' own
+Control fixed_control(const DeformableSettings& scenario, int k);            ///< from pose k to k+1
+std::vector<Control> candidates(const DeformableSettings& scenario);         ///< in the order of model.md
+double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k);
+double cost_ahead(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k, int steps);
 int greedy_choice(const Eigen::VectorXd& cost);                    ///< index of the chosen candidate
 
 }  // namespace credence::oracle

@@ -10,7 +10,7 @@
 namespace credence::oracle {
 
 /// Path that the robot follows: control.path, or the features' own [design.md, The scenario file, control].
-Path path_of_robot(const Scenario& scenario) {
+Path path_of_robot(const DeformableSettings& scenario) {
     switch (scenario.fixed_path) {
         case FixedPath::straight: return Path::straight;
         case FixedPath::circle: return Path::circle;
@@ -22,7 +22,7 @@ Path path_of_robot(const Scenario& scenario) {
 /// Control of the fixed path from pose k to k+1. Straight: v = (d, 0). Circle, heading: omega = delta,
 /// v = d (cos delta, sin delta) in the body frame. Circle, translation: v = d (cos(phi_k + delta), sin(phi_k + delta))
 /// in the world frame. Still: nothing [model.md, Controllers].
-Control fixed_control(const Scenario& scenario, int k) {
+Control fixed_control(const DeformableSettings& scenario, int k) {
     const double d = scenario.features.step, delta = scenario.features.turn;
     const double phi = delta / 2 + k * delta;
     switch (path_of_robot(scenario)) {
@@ -39,7 +39,7 @@ Control fixed_control(const Scenario& scenario, int k) {
 namespace {
 
 /// Translation model: v = (s, 0) on the straight path, v = (a, b), a outer, on the circle and still.
-std::vector<Control> candidates_of_translation(const Scenario& scenario) {
+std::vector<Control> candidates_of_translation(const DeformableSettings& scenario) {
     const int speeds = scenario.planner.speeds.value_or(5);
     const double d = scenario.features.step;
     std::vector<Control> list;
@@ -58,7 +58,7 @@ std::vector<Control> candidates_of_translation(const Scenario& scenario) {
 }
 
 /// Heading model: v = s (cos omega, sin omega) in the body frame, turns omega outer, speeds s inner.
-std::vector<Control> candidates_of_heading(const Scenario& scenario) {
+std::vector<Control> candidates_of_heading(const DeformableSettings& scenario) {
     const int speeds = scenario.planner.speeds.value_or(10);
     const double d = scenario.features.step, pi = std::numbers::pi;
     std::vector<double> turns;
@@ -82,14 +82,14 @@ std::vector<Control> candidates_of_heading(const Scenario& scenario) {
 }  // namespace
 
 /// Candidates of the greedy planner, in the order of the table of [model.md, Controllers], for the robot's path.
-std::vector<Control> candidates(const Scenario& scenario) {
+std::vector<Control> candidates(const DeformableSettings& scenario) {
     return scenario.process == Process::heading ? candidates_of_heading(scenario) : candidates_of_translation(scenario);
 }
 
 /// The belief that a control is expected to lead to from pose k-1 to pose k: predict, gate and take sigma at the predicted
 /// mean, update the covariance; the mean stays the predicted one. What is in range is assumed to be detected;
 /// filter.covariance has no part in it [model.md, Controllers, greedy].
-Belief expected(const Scenario& scenario, const Belief& belief, const Control& control, int k) {
+Belief expected(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     const Belief prior = predict(scenario, belief, control, k);
     std::vector<bool> seen;
     Eigen::VectorXd sigma(feature_count(scenario));
@@ -106,13 +106,13 @@ Belief expected(const Scenario& scenario, const Belief& belief, const Control& c
 }
 
 /// Cost of a control from the belief at pose k-1 to pose k: trace(P) there [model.md, Controllers, greedy].
-double candidate_cost(const Scenario& scenario, const Belief& belief, const Control& control, int k) {
+double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     return expected(scenario, belief, control, k).P.trace();
 }
 
 /// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any sequence
 /// of them has.
-double cost_ahead(const Scenario& scenario, const Belief& belief, const Control& control, int k, int steps) {
+double cost_ahead(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k, int steps) {
     const Belief next = expected(scenario, belief, control, k);
     if (steps == 1) return next.P.trace();
     double least = std::numeric_limits<double>::infinity();

@@ -8,18 +8,18 @@
 
 namespace credence::oracle {
 
-int feature_count(const Scenario& scenario) { return static_cast<int>(scenario.features.positions.size()); }
+int feature_count(const DeformableSettings& scenario) { return static_cast<int>(scenario.features.positions.size()); }
 
-int pose_dimension(const Scenario& scenario) { return scenario.process == Process::heading ? 3 : 2; }
+int pose_dimension(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 3 : 2; }
 
-int state_dimension(const Scenario& scenario) { return pose_dimension(scenario) + 2 * feature_count(scenario); }
+int state_dimension(const DeformableSettings& scenario) { return pose_dimension(scenario) + 2 * feature_count(scenario); }
 
-int row_of_position(const Scenario& scenario) { return scenario.process == Process::heading ? 1 : 0; }
+int row_of_position(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 1 : 0; }
 
-int row_of_feature(const Scenario& scenario, int j) { return pose_dimension(scenario) + 2 * j; }
+int row_of_feature(const DeformableSettings& scenario, int j) { return pose_dimension(scenario) + 2 * j; }
 
 /// Edges in graph order: `all` takes every pair a < b, a outer; `chain` takes (j, j+1) [model.md, Filter, Edges].
-std::vector<Edge> graph(const Scenario& scenario) {
+std::vector<Edge> graph(const DeformableSettings& scenario) {
     const int M = feature_count(scenario);
     std::vector<Edge> edges;
     switch (scenario.edges.graph) {
@@ -54,7 +54,7 @@ Eigen::Matrix2d quarter_turn() {
 
 /// Translation t_k (2, world, length) of every feature from pose k to k+1: straight (d, 0); circle
 /// d (cos phi_k, sin phi_k), phi_k = delta/2 + k delta; still 0 [model.md, Truth].
-Eigen::Vector2d translation(const Scenario& scenario, int k) {
+Eigen::Vector2d translation(const DeformableSettings& scenario, int k) {
     const double d = scenario.features.step, delta = scenario.features.turn;
     const double phi = delta / 2 + k * delta;
     switch (scenario.features.path) {
@@ -67,7 +67,7 @@ Eigen::Vector2d translation(const Scenario& scenario, int k) {
 
 /// Known local deformation o_{k,j} (2, world, length) = A (sin psi, cos psi) - A (sin psi_0, cos psi_0),
 /// psi = 2 pi k/T + 2 pi j/M [model.md, Truth].
-Eigen::Vector2d local_deformation(const Scenario& scenario, int k, int j) {
+Eigen::Vector2d local_deformation(const DeformableSettings& scenario, int k, int j) {
     const double A = scenario.features.sway_amplitude, T = scenario.features.sway_period;
     const double psi_0 = 2 * std::numbers::pi * j / feature_count(scenario);
     const double psi = 2 * std::numbers::pi * k / T + psi_0;
@@ -78,7 +78,7 @@ namespace {
 
 /// Deformed features p (2 x M, world) at pose k: c + o + sigma_def eps^def for jitter; c + o for walk, whose
 /// deformation is already in the centres [model.md, Truth; Truth against filter].
-Eigen::Matrix2Xd deformed(const Scenario& scenario, const Eigen::Matrix2Xd& c, int k, const Noise& noise) {
+Eigen::Matrix2Xd deformed(const DeformableSettings& scenario, const Eigen::Matrix2Xd& c, int k, const Noise& noise) {
     Eigen::Matrix2Xd p = c;
     for (int j = 0; j < feature_count(scenario); ++j) {
         p.col(j) += local_deformation(scenario, k, j);
@@ -92,7 +92,7 @@ Eigen::Matrix2Xd deformed(const Scenario& scenario, const Eigen::Matrix2Xd& c, i
 
 /// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [model.md, Truth; design.md,
 /// The scenario file, noise].
-World first_world(const Scenario& scenario, const Noise& noise) {
+World first_world(const DeformableSettings& scenario, const Noise& noise) {
     World world;
     if (scenario.process == Process::heading)
         world.theta = scenario.noise.initial_heading * noise.normal(Source::odometry_heading, 0, 0)[0];
@@ -109,7 +109,7 @@ World first_world(const Scenario& scenario, const Noise& noise) {
 /// World at pose k from that at pose k-1 and the control between them: the robot turns and moves by its heading of
 /// before; centres translate and walk, and with deformation = walk gain the deformation too [model.md, Truth; Truth
 /// against filter].
-World next_world(const Scenario& scenario, const World& world, const Control& control, int k, const Noise& noise) {
+World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
     World next;
     next.theta = 0;
@@ -130,7 +130,7 @@ World next_world(const Scenario& scenario, const World& world, const Control& co
 }
 
 /// True state (n) in the order of the filter's x, with the deformed features [model.md, Two process models].
-Eigen::VectorXd true_state(const Scenario& scenario, const World& world) {
+Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& world) {
     Eigen::VectorXd x(state_dimension(scenario));
     if (scenario.process == Process::heading) x[0] = world.theta;
     x.segment<2>(row_of_position(scenario)) = world.r;
@@ -139,13 +139,13 @@ Eigen::VectorXd true_state(const Scenario& scenario, const World& world) {
 }
 
 /// Whether a feature at range q is in the sensor's range, both ends included [model.md, Filter, See].
-bool in_range(const Scenario& scenario, double q) {
+bool in_range(const DeformableSettings& scenario, double q) {
     return scenario.sensor.range_min <= q && q <= scenario.sensor.range_max;
 }
 
 /// True sigma_feat(q) (length): constant, or sigma_near + (sigma_far - sigma_near) max(0, q - r_min)/(r_max - r_min),
-/// not clamped above [model.md, Units].
-double measurement_sigma(const Scenario& scenario, double q) {
+/// not clamped above [model.md, Targets].
+double measurement_sigma(const DeformableSettings& scenario, double q) {
     const SensorSettings& sensor = scenario.sensor;
     if (sensor.noise == RangeNoise::constant) return sensor.sigma;
     return sensor.sigma_near + (sensor.sigma_far - sensor.sigma_near) * std::max(0.0, q - sensor.range_min) /
@@ -153,7 +153,7 @@ double measurement_sigma(const Scenario& scenario, double q) {
 }
 
 /// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [model.md, Filter, See].
-Eigen::Vector2d measured_feature(const Scenario& scenario, const World& world, int k, int j, const Noise& noise) {
+Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise) {
     const Eigen::Vector2d offset = world.p.col(j) - world.r;
     return rotation(world.theta).transpose() * offset +
            measurement_sigma(scenario, offset.norm()) * noise.normal(Source::measurement, k, j);
@@ -161,7 +161,7 @@ Eigen::Vector2d measured_feature(const Scenario& scenario, const World& world, i
 
 /// Construction measurement z (2, world frame) = p_b - p_a of edge e in graph order at pose k, plus sigma_def eps^edge
 /// with independent edge noise [model.md, Filter, Edges; Truth against filter].
-Eigen::Vector2d measured_edge(const Scenario& scenario, const World& world, int k, int e, const Noise& noise) {
+Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise) {
     const Edge edge = graph(scenario)[static_cast<std::size_t>(e)];
     Eigen::Vector2d z = world.p.col(edge.to) - world.p.col(edge.from);
     if (scenario.truth.edge_noise == EdgeNoise::independent)

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 namespace {
 
 /// A study that has run no trial.
-StudyFile unrun(const std::string& path, const std::vector<Scenario>& scenarios, std::uint64_t seed = 1) {
+StudyFile unrun(const std::string& path, const std::vector<DeformableSettings>& scenarios, std::uint64_t seed = 1) {
     return {path, new_study(scenarios, seed)};
 }
 
@@ -37,7 +37,7 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("compare: without --arms, a horizon stands against greedy, or without that against fixed") {
     const auto arms_of = [](std::vector<Controller> controllers) {
-        Scenario planned = scenario("h");
+        DeformableSettings planned = scenario("h");
         planned.arms.controllers = std::move(controllers);
         planned.planner.horizon.reset();
         return unrun("one.h5", {resolved(planned)});
@@ -49,7 +49,7 @@ TEST_CASE("compare: without --arms, a horizon stands against greedy, or without 
 }
 
 TEST_CASE("compare: without --arms, planned against fixed; later files against the first") {
-    const Scenario heading = scenario("h"), translation = scenario("t", "translation");
+    const DeformableSettings heading = scenario("h"), translation = scenario("t", "translation");
     const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("d/two.h5", {translation}),
                     three = unrun("three.h5", {heading});
     CHECK(names({one}) == Names{"h: greedy.ekf - fixed.ekf", "t: greedy.kf - fixed.kf"});
@@ -63,7 +63,7 @@ TEST_CASE("compare: without --arms, planned against fixed; later files against t
 }
 
 TEST_CASE("compare: --arms names arms, controllers, and files") {
-    const Scenario heading = scenario("h"), translation = scenario("t", "translation");
+    const DeformableSettings heading = scenario("h"), translation = scenario("t", "translation");
     const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("d/two.h5", {translation});
     CHECK(names({one}, "fixed.ekf,greedy.ekf") == Names{"h: fixed.ekf - greedy.ekf"});
     CHECK(names({one}, " greedy , fixed ") == Names{"h: greedy.ekf - fixed.ekf", "t: greedy.kf - fixed.kf"});
@@ -76,7 +76,7 @@ TEST_CASE("compare: --arms names arms, controllers, and files") {
 }
 
 TEST_CASE("compare: --arms that cannot be read, or that nothing has, are refused in words that help") {
-    const Scenario heading = scenario("h"), translation = scenario("t", "translation");
+    const DeformableSettings heading = scenario("h"), translation = scenario("t", "translation");
     const StudyFile one = unrun("one.h5", {heading, translation}), two = unrun("two.h5", {translation}),
                     three = unrun("three.h5", {heading});
     for (const char* text : {"greedy.ekf", "a,b,c", ",", "a,", "one:,fixed", ":greedy,fixed"})
@@ -101,7 +101,7 @@ TEST_CASE("compare: --arms that cannot be read, or that nothing has, are refused
 }
 
 TEST_CASE("compare: where there is nothing to compare, what there is is named") {
-    const Scenario fixed_only = changed(scenario("h"), "arms.controllers", "fixed"),
+    const DeformableSettings fixed_only = changed(scenario("h"), "arms.controllers", "fixed"),
                    greedy_only = changed(scenario("h"), "arms.controllers", "greedy");
     CHECK_THAT(refused({unrun("one.h5", {fixed_only})}),
                Contains("nothing to compare in one.h5 (no greedy arm") && Contains("one.h5 has fixed.ekf in h."));
@@ -116,7 +116,7 @@ TEST_CASE("compare: where there is nothing to compare, what there is is named") 
 }
 
 TEST_CASE("compare: files of other seeds or other worlds do not share their draws") {
-    const Scenario h = scenario("h");
+    const DeformableSettings h = scenario("h");
     const StudyFile one = unrun("one.h5", {h});
     CHECK_THAT(
         refused({one, unrun("two.h5", {h}, 2)}),
@@ -139,7 +139,7 @@ TEST_CASE("compare: files of other seeds or other worlds do not share their draw
                                                                   {"edges.graph", "chain"},
                                                                   {"model.process", "translation"}};
     for (const auto& [key, value] : worlds) {
-        Scenario other = h;
+        DeformableSettings other = h;
         if (key == "model.process")
             other = scenario("h", "translation");
         else if (key == "features.positions")
@@ -160,7 +160,7 @@ TEST_CASE("compare: files of other seeds or other worlds do not share their draw
 }
 
 TEST_CASE("compare: scenarios that are left out are named") {
-    const Scenario h = scenario("h"), t = scenario("t", "translation");
+    const DeformableSettings h = scenario("h"), t = scenario("t", "translation");
     const CompareReport report =
         compare_studies({unrun("one.h5", {h, t})}, read_arms("greedy.kf,fixed.kf", {"one.h5"}));
     CHECK(report.left_out == Names{"h (no arm greedy.kf)"});

@@ -37,13 +37,13 @@ TEST_CASE("compare: every figure is that of the columns") {
         const std::vector<ArmResults>& arms = study.scenarios[s].arms;
         CHECK(pair.comparison.name() == arms[1].name + " - " + arms[0].name);
         CHECK(pair.pairs() == 300);
-        REQUIRE(pair.comparison.figures.size() == 6);
+        REQUIRE(pair.comparison.columns.size() == 6);
         for (std::size_t c = 0; c < 6; ++c) {
             const std::vector<double>&a = arms[1].columns[c], &b = arms[0].columns[c];
             std::vector<double> difference(300);
             double below = 0, above = 0;
             for (std::size_t i = 0; i < 300; ++i) difference[i] = a[i] - b[i], below += a[i]<b[i], above += a[i]> b[i];
-            const PairedComparison& paired = pair.comparison.figures[c].paired;
+            const PairedComparison& paired = pair.comparison.columns[c].paired;
             const double variance = variance_of(difference);
             // Sums of 300 numbers of one size lose some 1e-14 of it; differences are up to 1e-3 of what they are of.
             CHECK(paired.difference.mean == Approx(mean_of(difference)).epsilon(1e-10).margin(1e-15));
@@ -60,9 +60,9 @@ TEST_CASE("compare: every figure is that of the columns") {
     const std::vector<Comparison> reported = planned_against_partners(study);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < 6; ++c) {
-            CHECK(reported[s].figures[c].paired.bootstrap95.low ==
-                  report.pairs[s].comparison.figures[c].paired.bootstrap95.low);
-            CHECK(reported[s].figures[c].holm_p == report.pairs[s].comparison.figures[c].holm_p);
+            CHECK(reported[s].columns[c].paired.bootstrap95.low ==
+                  report.pairs[s].comparison.columns[c].paired.bootstrap95.low);
+            CHECK(reported[s].columns[c].holm_p == report.pairs[s].comparison.columns[c].holm_p);
         }
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("compare: in the matched translation world both arms see and are the s
         CHECK(paired.ties == 1);
         CHECK(paired.difference.mean == 0);
         CHECK(paired.wilcoxon_p == 1);
-        CHECK(report.pairs[0].comparison.figures[static_cast<std::size_t>(c)].holm_p == 1);
+        CHECK(report.pairs[0].comparison.columns[static_cast<std::size_t>(c)].holm_p == 1);
     }
     const std::string text = compare_text(report);
     CHECK_THAT(text, Contains("trace_P: greedy.kf and fixed.kf are equal in every trial") &&

@@ -38,14 +38,14 @@ TEST_CASE("html: whatever somebody wrote is text") {
 }
 
 TEST_CASE("html: a figure shows rounded and carries its exact value") {
-    CHECK(figure(0.1, 2).text() == "<data value=\"0.1\">0.10</data>");
-    CHECK(figure(none, 2).text() == "-");
-    CHECK_THAT(figure(1.0 / 3, 4).text(), Contains("\"0.3333333333333333\">0.3333<"));
-    CHECK(figure_interval({none, 1}, 2).text() == "-");
+    CHECK(number_html(0.1, 2).text() == "<data value=\"0.1\">0.10</data>");
+    CHECK(number_html(none, 2).text() == "-");
+    CHECK_THAT(number_html(1.0 / 3, 4).text(), Contains("\"0.3333333333333333\">0.3333<"));
+    CHECK(interval_html({none, 1}, 2).text() == "-");
     CHECK(short_number(0.123456) == "0.12346");
     CHECK(short_number(276634) == "276634");
     CHECK(short_number(3) == "3");
-    CHECK(figure_count(12345678).text() == "<data value=\"12345678\">12345678</data>");
+    CHECK(count_html(12345678).text() == "<data value=\"12345678\">12345678</data>");
     CHECK(short_number(2e-7) == "2e-07");
     CHECK(short_number(none) == "-");
     CHECK(with_powers("dm^2 + rad^2") == "dm² + rad²");

@@ -15,7 +15,7 @@ namespace {
 
 /// Both charts of two estimators; much heading noise, so that they differ.
 Study two_charts() {
-    Scenario scenario = small_scenarios().front();
+    DeformableSettings scenario = small_scenarios().front();
     scenario.noise.heading = 0.1;
     scenario.arms.controllers = {Controller::fixed};
     scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
@@ -24,9 +24,9 @@ Study two_charts() {
     return study;
 }
 
-std::size_t figure_named(const ScenarioResults& results, const std::string& name) {
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].name == name) return f;
+std::size_t column_named(const ScenarioResults& results, const std::string& name) {
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].name == name) return f;
     FAIL("no figure " + name);
     return 0;
 }
@@ -45,7 +45,7 @@ TEST_CASE("charts: the evidence is the figures' totals over their dimension") {
             CHECK(chart.chart == "invariant");
             CHECK(chart.block == block);
             CHECK(chart.dimension == dimension);
-            const FigureTotals& totals = arm.totals[figure_named(results, name)];
+            const SeriesTotals& totals = arm.totals[column_named(results, name)];
             double sum = 0;
             for (std::size_t k = 0; k < totals.sum.size(); ++k) {
                 const double mean = totals.sum[k].rounded() / 300 / dimension;

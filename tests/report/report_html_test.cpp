@@ -21,7 +21,7 @@ namespace {
 
 /// A small study of one scenario under both arms, with a published figure.
 Report titled_report(const std::string& title) {
-    Scenario scenario = small_scenarios().back();
+    DeformableSettings scenario = small_scenarios().back();
     scenario.title = title;
     scenario.published.trace_P = {{"greedy.kf", 0.1234}};
     Study study = new_study({scenario}, 1);
@@ -36,7 +36,7 @@ const Report& small_report() {
 
 /// Two estimators, so that there is a second chart of the error.
 Report charts_report() {
-    Scenario scenario = small_scenarios().front();
+    DeformableSettings scenario = small_scenarios().front();
     scenario.arms.controllers = {Controller::fixed};
     scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
     Study study = new_study({scenario}, 1);

@@ -42,8 +42,8 @@ TEST_CASE("report: its means are the means of the columns") {
     const auto& fixed = study.scenarios[1].arms[0].columns[column_trace_P];
     double mean = 0, difference = 0;
     for (std::size_t i = 0; i < 300; ++i) mean += planned[i] / 300, difference += (planned[i] - fixed[i]) / 300;
-    CHECK(report.arms[3].figures[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
-    CHECK(report.pairs[1].figures[column_trace_P].paired.difference.mean == Approx(difference).epsilon(1e-12));
+    CHECK(report.arms[3].columns[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
+    CHECK(report.pairs[1].columns[column_trace_P].paired.difference.mean == Approx(difference).epsilon(1e-12));
     CHECK(report.pairs[1].name() == std::string("greedy.kf - fixed.kf"));
 }
 
@@ -52,9 +52,9 @@ TEST_CASE("report: failed trials are counted and shown, and figures are given wi
     const Report report = make_report(study, 0.05);
     CHECK(report.arms.front().trials == 300);
     CHECK(report.arms.front().failed == 30);
-    CHECK(report.arms.front().figures[column_unseen].summary.count == 270);
-    CHECK(report.arms.front().figures[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
-    CHECK(report.pairs.front().figures[column_trace_P].paired.pairs == 270);
+    CHECK(report.arms.front().columns[column_unseen].summary.count == 270);
+    CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
+    CHECK(report.pairs.front().columns[column_trace_P].paired.pairs == 270);
     CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
     CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
 }
@@ -65,12 +65,12 @@ TEST_CASE("report: diverged trials stay in the figures and are named") {
     const Report report = make_report(study, 0.05);
     CHECK(report.arms.front().diverged == 1);
     CHECK(report.arms.front().failed == 0);
-    CHECK(report.arms.front().figures.front().summary.count == 300);
+    CHECK(report.arms.front().columns.front().summary.count == 300);
     CHECK_THAT(report_text(report), Contains("1 trials of heading-straight/fixed.ekf diverged"));
 }
 
 TEST_CASE("report: a published figure is shown at its percentile") {
-    std::vector<Scenario> scenarios = small_scenarios();
+    std::vector<DeformableSettings> scenarios = small_scenarios();
     scenarios.front().published.unseen = {{"greedy.ekf", 2}};
     Study study = new_study(scenarios, 1);
     run_study(study, {300, 1, {}});
@@ -78,10 +78,10 @@ TEST_CASE("report: a published figure is shown at its percentile") {
     const auto& unseen = study.scenarios.front().arms[1].columns[column_unseen];
     double below = 0, equal = 0;
     for (const double value : unseen) below += value < 2, equal += value == 2;
-    const FigureReport& figure = report.arms[1].figures[column_unseen];
+    const ColumnReport& figure = report.arms[1].columns[column_unseen];
     REQUIRE(figure.published);
     CHECK(figure.published->percentile == Approx(100 * (below + equal / 2) / 300).epsilon(1e-13));
-    CHECK_FALSE(report.arms[0].figures[column_unseen].published);
+    CHECK_FALSE(report.arms[0].columns[column_unseen].published);
 }
 
 TEST_CASE("report: JSON has every figure with NaN as null, CSV a row for each") {
@@ -92,7 +92,7 @@ TEST_CASE("report: JSON has every figure with NaN as null, CSV a row for each") 
     REQUIRE(arms.size() == 4);
     CHECK(arms[0]["failed"] == 300);
     CHECK(arms[0]["trace_P"]["mean"].is_null());
-    CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].figures[column_trace_P].summary.mean);
+    CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].columns[column_trace_P].summary.mean);
     CHECK(arms[1]["blocks"].size() == 8);  // all, pose, heading, position, features, 3 features
     const std::string csv = report_csv(report);
     std::int64_t evidence_rows = 0;

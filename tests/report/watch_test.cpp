@@ -28,7 +28,7 @@ TEST_CASE("watch: after every commit a look says what the trials so far say, and
         run_and_die(path, asked, 1);
         const std::string bytes = bytes_of(journal);
         const std::int64_t before = bytes_read();
-        const WatchLook look = watch.look();
+        const Snapshot look = watch.look();
         const std::int64_t appended = static_cast<std::int64_t>(bytes.size()) - size, read = bytes_read() - before;
         size += appended;
         CAPTURE(commit, size, appended, read);
@@ -42,7 +42,7 @@ TEST_CASE("watch: after every commit a look says what the trials so far say, and
     }
     CHECK(size > 1000000);
     run_to_end(path, asked);
-    const WatchLook last = watch.look();
+    const Snapshot last = watch.look();
     CHECK(last.state == RunState::complete);
     CHECK(last.trials_done() == 2200);
     check_says(last, read_results(path).study);
@@ -55,7 +55,7 @@ TEST_CASE("watch: a journal cut anywhere is followed up to its last whole record
     const std::string path = folder / "x.h5", journal = path + ".journal";
     run_and_die(path, asked);
     const std::string bytes = bytes_of(journal);
-    const std::vector<std::size_t> ends = record_ends(bytes);
+    const std::vector<std::size_t> ends = commit_ends(bytes);
     REQUIRE(ends.size() == 4);
     RunWatch growing(path);
     for (std::size_t size = 0; size < bytes.size(); size += 997) {
@@ -63,7 +63,7 @@ TEST_CASE("watch: a journal cut anywhere is followed up to its last whole record
         const auto whole = std::upper_bound(ends.begin(), ends.end(), size) - ends.begin();
         const std::int64_t trials[] = {0, 0, 256, 512, 600};
         CAPTURE(size);
-        for (const WatchLook& look : {growing.look(), RunWatch(path).look()}) {
+        for (const Snapshot& look : {growing.look(), RunWatch(path).look()}) {
             CHECK(look.state == (whole == 0 ? RunState::begun : RunState::running));
             CHECK(look.trials_done() == trials[whole]);
         }
@@ -80,7 +80,7 @@ TEST_CASE("watch: a shard is shown with the trials that it will have") {
     RunWatch watch(path);
     const auto check = [&](std::int64_t trials, std::int64_t trials_asked, std::int64_t blocks,
                            std::int64_t blocks_asked, const Shard& shard) {
-        const WatchLook look = watch.look();
+        const Snapshot look = watch.look();
         const WatchedScenario& scenario = look.scenarios.front();
         CAPTURE(watch_text(look));
         CHECK(scenario.trials == trials);
@@ -111,7 +111,7 @@ TEST_CASE("watch: a study that is grown is shown with what its file has, whose p
         const Asked asked = small(trials);
         for (const std::int64_t blocks : {0, 1, 2}) {
             run_and_die(path, asked, blocks);
-            const WatchLook look = watch.look();
+            const Snapshot look = watch.look();
             CAPTURE(trials, blocks);
             CHECK(look.state == RunState::running);
             CHECK(look.trials == trials);
@@ -122,7 +122,7 @@ TEST_CASE("watch: a study that is grown is shown with what its file has, whose p
         check_says(watch.look(), undisturbed(asked));
         // Killed between naming the file and removing the journal: all is in the file, the journal's blocks too.
         put_bytes(journal, bytes);
-        const WatchLook late = RunWatch(path).look();
+        const Snapshot late = RunWatch(path).look();
         CHECK(late.state == RunState::running);
         CHECK(late.trials_done() >= opened(path, asked).study().scenarios.front().trials);
         std::filesystem::remove(journal);

@@ -29,7 +29,7 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
         check_says(watch.look(), opened(path, other).study());
     }
     run_and_die(path, small(1000), 5, Start::overwrite);
-    const WatchLook look = watch.look();
+    const Snapshot look = watch.look();
     CHECK(look.trials_done() == 1000 + block_size);  // all of the first scenario, whose last block is a partial one
     check_says(look, opened(path, small(1000)).study());
 }
@@ -46,7 +46,7 @@ TEST_CASE("watch: a journal that begins like the last one but has other records 
         StoredRun run = opened(path, asked);
         run_study(run.study(), {asked.trials, 1, {}, {}, after(4), &run.begin(asked.trials, 2)});  // two
     }
-    const WatchLook look = watch.look();
+    const Snapshot look = watch.look();
     CHECK(look.trials_done() == 4 * block_size);
     check_says(look, opened(path, asked).study());
 }
@@ -73,13 +73,13 @@ TEST_CASE("watch: failed trials are counted and in no figure") {
     const TemporaryFolder folder;
     const Study study = made_up_study();
     write_results(folder / "x.h5", study, run_facts);
-    const WatchLook look = RunWatch(folder / "x.h5").look();
+    const Snapshot look = RunWatch(folder / "x.h5").look();
     CHECK(look.state == RunState::complete);
     for (std::size_t s = 0; s < study.scenarios.size(); ++s)
         for (const WatchedArm& arm : look.scenarios[s].arms) {
             CHECK(arm.failed == 1);
             CHECK(arm.diverged == 1);
-            CHECK(arm.figures.front().count == 4);
+            CHECK(arm.columns.front().count == 4);
         }
 }
 

@@ -44,7 +44,7 @@ int chosen(const std::vector<double>& costs) {
 TEST_CASE("controller: the planner's candidates are the oracle's, in its order") {
     for (const Settings& settings : steerings()) {
         CAPTURE(described(settings));
-        const Scenario scenario = scenario_with(settings);
+        const DeformableSettings scenario = scenario_with(settings);
         const std::vector<Control> ours = planner_candidates(scenario), theirs = oracle::candidates(scenario);
         REQUIRE(ours.size() == theirs.size());
         // Two sines and cosines of lengths of at most 4.
@@ -75,7 +75,7 @@ TEST_CASE("controller: the seed's candidates are those of the table") {
 TEST_CASE("controller: fixed controls are the oracle's") {
     for (const Settings& settings : steerings()) {
         CAPTURE(described(settings));
-        const Scenario scenario = scenario_with(settings);
+        const DeformableSettings scenario = scenario_with(settings);
         const std::vector<Control> ours = fixed_controls(scenario);
         REQUIRE(ours.size() == 19);
         for (int k = 0; k < 19; ++k) CHECK(apart(ours[static_cast<std::size_t>(k)], oracle::fixed_control(scenario, k)) < 4e-15);
@@ -85,8 +85,8 @@ TEST_CASE("controller: fixed controls are the oracle's") {
 TEST_CASE("controller: both processes lead the robot of the circle along the same path") {
     // The heading model turns by delta after each step of d (cos delta, sin delta) in its body: one turn ahead of the
     // features in each step but by half a turn's phase; without noise, in the world frame.
-    const Scenario heading = scenario_with({{"features.path", "circle"}});
-    const Scenario translation = scenario_with({{"features.path", "circle"}, {"model.process", "translation"}});
+    const DeformableSettings heading = scenario_with({{"features.path", "circle"}});
+    const DeformableSettings translation = scenario_with({{"features.path", "circle"}, {"model.process", "translation"}});
     const Run turning = run_arm(heading, Controller::fixed, silent_noise());
     const Run sliding = run_arm(translation, Controller::fixed, silent_noise());
     const double delta = heading.features.turn;
@@ -124,7 +124,7 @@ TEST_CASE("controller: the cost of a candidate is the oracle's brute force") {
 }
 
 TEST_CASE("controller: the planner believes that what is in range will be detected") {
-    const Scenario all = scenario_with({}), some = scenario_with({{"sensor.detection", "0.2"}});
+    const DeformableSettings all = scenario_with({}), some = scenario_with({{"sensor.detection", "0.2"}});
     const Run sure = run_arm(all, Controller::greedy, keyed_noise(all, 1, 1));
     const Run unsure = run_arm(some, Controller::greedy, keyed_noise(some, 1, 1));
     CHECK(sure.steps[1].candidate_cost == unsure.steps[1].candidate_cost);
@@ -132,7 +132,7 @@ TEST_CASE("controller: the planner believes that what is in range will be detect
 }
 
 TEST_CASE("controller: every candidate's cost is told, in order, and the choice is made from them") {
-    const Scenario scenario = scenario_with({{"features.path", "circle"}});
+    const DeformableSettings scenario = scenario_with({{"features.path", "circle"}});
     const Run run = run_arm(scenario, Controller::greedy, keyed_noise(scenario, 4, 1));
     const std::vector<Control> candidates = planner_candidates(scenario);
     for (std::size_t k = 1; k < run.steps.size(); ++k) {
@@ -144,7 +144,7 @@ TEST_CASE("controller: every candidate's cost is told, in order, and the choice 
 TEST_CASE("controller: chosen controls are the oracle's in all cells") {
     for (const Settings& cell : seed_cells())
         for (std::uint64_t trial = 100; trial < 115; ++trial) {
-            const Scenario scenario = scenario_with(cell);
+            const DeformableSettings scenario = scenario_with(cell);
             const AnyNoise noise = keyed_noise(scenario, 5, trial);
             const Run ours = run_arm(scenario, Controller::greedy, noise);
             const Difference worst = difference(ours, oracle::run(scenario, Controller::greedy, for_oracle(noise)));
@@ -179,7 +179,7 @@ TEST_CASE("controller: a cost that is no number is never chosen") {
 
 TEST_CASE("controller: standing still ties on all rays, and the last ray wins") {
     // Features that surround a robot at rest; every s = 0 is the same move, and the turn has no cost.
-    const Scenario scenario = scenario_with({{"features.path", "static"}, {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
+    const DeformableSettings scenario = scenario_with({{"features.path", "static"}, {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
                                              {"sensor.noise", "ranged"}, {"features.step", "1"}});
     const Run run = run_arm(scenario, Controller::greedy, silent_noise());
     CHECK(run.steps[1].control == Control{*scenario.planner.turns->rbegin(), {0, 0}});

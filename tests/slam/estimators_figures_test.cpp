@@ -72,7 +72,7 @@ TEST_CASE("estimators: NEES in the matched world is what an independent implemen
         here.insert(here.end(), {{"features.path", row.path}, {"scenario.poses", row.poses}, {"noise.heading", row.sigma}});
         const Problem problem(scenario_with(here));
         const std::vector<Ratio> all = ratios(problem, row.blocks, 0, 9), pose = ratios(problem, row.blocks, 1, 3),
-                                 invariant = ratios(problem, row.blocks, problem.view().figure_count - 1, 3);
+                                 invariant = ratios(problem, row.blocks, problem.view().series_count - 1, 3);
         for (std::size_t arm = 0; arm < 5; ++arm) {
             CAPTURE(row.path, row.sigma, arm);
             // Four standard errors of the difference: of 40 comparisons one in 400 runs fails by chance; seeds are fixed.
@@ -90,11 +90,11 @@ TEST_CASE("estimators: in lanes, planned and fixed, on few and many features, th
                                              {"noise.heading", "0.05"}, {"scenario.poses", "8"},
                                              {"arms.estimators", "ekf, ideal, fej, riekf, iekf"}}));
         const std::vector<Arm> arms = arms_of(problem.scenario());
-        for (const Unit& unit : runnable_units()) {
-            const Block block = run_block(problem, 3, 20, 13, unit);
+        for (const Target& target : runnable_targets()) {
+            const Block block = run_block(problem, 3, 20, 13, target);
             for (std::size_t a = 0; a < arms.size(); ++a)
                 for (const std::size_t trial : {0u, 6u, 12u}) {
-                    CAPTURE(positions, unit.name, arm_name(arms[a]), trial);
+                    CAPTURE(positions, target.name, arm_name(arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 20 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
                         CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.columns[c]));

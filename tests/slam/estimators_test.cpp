@@ -52,7 +52,7 @@ TEST_CASE("estimators: each is its paper's filter, with dense matrices and the j
               Settings{{"noise.walk", "0"}, {"noise.deformation", "0"}, {"edges.graph", "none"}, {"noise.heading", "0.05"}}})
             for (const std::uint64_t trial : {0u, 1u, 2u}) {
                 CAPTURE(estimator, trial, described(settings));
-                const Scenario scenario = scenario_with(settings);
+                const DeformableSettings scenario = scenario_with(settings);
                 const Run run = run_arm(scenario, {Controller::fixed, estimator}, keyed_noise(scenario, 3, trial));
                 const auto expected = oracle::estimates(scenario, estimator, run);
                 // Two routes to one update: rounding of 1e-16, times the condition of S (1e4), over 19 poses.
@@ -62,7 +62,7 @@ TEST_CASE("estimators: each is its paper's filter, with dense matrices and the j
 }
 
 TEST_CASE("estimators: with a heading that is known they are all the same filter") {
-    Scenario scenario = scenario_with(loud("circle", "0.01"));
+    DeformableSettings scenario = scenario_with(loud("circle", "0.01"));
     scenario.noise.heading = 0;  // refused in a scenario: P is singular, which means and covariances do not mind
     const Run ekf = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 5), Form::any_number);
     for (const Estimator estimator : others) {
@@ -75,7 +75,7 @@ TEST_CASE("estimators: with a heading that is known they are all the same filter
 }
 
 TEST_CASE("estimators: they differ where the heading is not known") {
-    const Scenario scenario = scenario_with(loud("straight", "0.05"));
+    const DeformableSettings scenario = scenario_with(loud("straight", "0.05"));
     const Run ekf = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 5), Form::any_number);
     for (const Estimator estimator : others) {
         CAPTURE(estimator);
@@ -154,7 +154,7 @@ namespace {
 /// Static features on a loop; estimates wander about the truth as a filter's would.
 template <template <class, class> class Type>
 double learned_of_the_turn(unsigned seed) {
-    Scenario scenario = scenario_with({{"features.path", "static"}, {"control.path", "circle"}, {"scenario.poses", "121"},
+    DeformableSettings scenario = scenario_with({{"features.path", "static"}, {"control.path", "circle"}, {"scenario.poses", "121"},
                                        {"edges.graph", "none"}, {"features.turn", "0.1"}, {"features.step", "1"}});
     const Problem problem(scenario);
     FilterParameters filter = problem.view().filter;

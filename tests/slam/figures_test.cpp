@@ -14,15 +14,15 @@ using namespace credence;
 
 namespace {
 
-Scenario cell(Process process, Path path, RangeNoise noise) {
-    Scenario s;
+DeformableSettings cell(Process process, Path path, RangeNoise noise) {
+    DeformableSettings s;
     s.process = process;
     s.features.path = path;
     s.sensor.noise = noise;
     return s;
 }
 
-ScenarioResults run(const Scenario& scenario, std::int64_t trials) {
+ScenarioResults run(const DeformableSettings& scenario, std::int64_t trials) {
     Study study = new_study({resolved(scenario)}, 1);
     run_study(study, {trials, 0, {}});
     return study.scenarios.front();
@@ -45,8 +45,8 @@ double block_ratio(const ScenarioResults& results, std::size_t arm, const std::s
 }
 
 /// The truth that the filter assumes, every feature always in range.
-Scenario matched(Process process, double sigma_heading) {
-    Scenario s = test::matched_linear();
+DeformableSettings matched(Process process, double sigma_heading) {
+    DeformableSettings s = test::matched_linear();
     s.process = process;
     s.noise.heading = sigma_heading;
     return s;
@@ -108,7 +108,7 @@ TEST_CASE("figures: the matched heading filter shows its linearisation error", "
 }
 
 TEST_CASE("figures: gating on the true range biases even the linear filter a little", "[long]") {
-    Scenario s = matched(Process::translation, 0.001);
+    DeformableSettings s = matched(Process::translation, 0.001);
     s.sensor.range_min = 0.1;
     s.sensor.range_max = 2;
     const Summary gated = column(run(s, 40000), 0, column_nees_ratio);
@@ -117,7 +117,7 @@ TEST_CASE("figures: gating on the true range biases even the linear filter a lit
 }
 
 TEST_CASE("figures: misinformed filters are off where they were misinformed", "[long]") {
-    Scenario s = matched(Process::translation, 0.001);
+    DeformableSettings s = matched(Process::translation, 0.001);
     s.filter.measurement = 0.8;
     ScenarioResults r = run(s, 10000);
     check_mean(column(r, 0, column_nees_ratio), 1.382, 0.006);

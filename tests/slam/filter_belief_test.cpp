@@ -36,7 +36,7 @@ MatrixXd random_covariance(int n, unsigned seed) {
 
 TEST_CASE("filter: update keeps the covariance symmetric and positive definite, and never adds to it") {
     for (const Settings& cell : seed_cells()) {
-        const Scenario scenario = scenario_with(cell);
+        const DeformableSettings scenario = scenario_with(cell);
         for (std::uint64_t trial = 0; trial < 5; ++trial) {
             const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, trial));
             CAPTURE(described(cell), trial);
@@ -52,7 +52,7 @@ TEST_CASE("filter: update keeps the covariance symmetric and positive definite, 
 }
 
 TEST_CASE("filter: starts at 0 with features where they were first seen, of the factors only that of the measurement counts") {
-    const Scenario scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"}, {"filter.heading", "3"},
+    const DeformableSettings scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"}, {"filter.heading", "3"},
                                              {"filter.odometry", "3"}, {"filter.features", "3"}, {"filter.edges", "3"},
                                              {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
     const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 4));
@@ -72,7 +72,7 @@ TEST_CASE("filter: starts at 0 with features where they were first seen, of the 
 }
 
 TEST_CASE("filter: without noise the translation model's estimate is the truth") {
-    const Scenario scenario = scenario_with({{"model.process", "translation"}, {"features.path", "circle"},
+    const DeformableSettings scenario = scenario_with({{"model.process", "translation"}, {"features.path", "circle"},
                                              {"features.sway_amplitude", "0.4"}});
     const Run run = run_arm(scenario, Controller::fixed, silent_noise());
     for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // rounding of positions below 40
@@ -80,7 +80,7 @@ TEST_CASE("filter: without noise the translation model's estimate is the truth")
 }
 
 TEST_CASE("filter: without noise the heading model's estimate is the truth") {
-    const Scenario scenario = scenario_with({{"features.path", "circle"}, {"features.sway_amplitude", "0.4"}});
+    const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.sway_amplitude", "0.4"}});
     const Run run = run_arm(scenario, Controller::fixed, silent_noise());
     for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // as above
     CHECK(run.steps.back().truth[0] == Approx(19 * 0.31415926535897931).epsilon(1e-14));
@@ -143,7 +143,7 @@ TEST_CASE("filter: an innovation covariance that is not positive definite is not
 TEST_CASE("filter: three features known to the compiler give the same bits as any number") {
     for (const Settings& cell : seed_cells())
         for (const Controller controller : {Controller::fixed, Controller::greedy}) {
-            const Scenario scenario = scenario_with(cell);
+            const DeformableSettings scenario = scenario_with(cell);
                 CAPTURE(described(cell), static_cast<int>(controller));
             for (std::uint64_t trial = 0; trial < 3; ++trial) {
                 const AnyNoise noise = keyed_noise(scenario, 2, trial);
@@ -158,7 +158,7 @@ TEST_CASE("filter: three features known to the compiler give the same bits as an
 TEST_CASE("filter: the covariance factor scales what is reported and touches nothing else") {
     for (const Controller controller : {Controller::fixed, Controller::greedy}) {
         const Settings cell{{"features.path", "circle"}, {"sensor.noise", "ranged"}};
-        const Scenario plain = scenario_with(cell), scaled = scenario_with(plain, {{"filter.covariance", "4"}});
+        const DeformableSettings plain = scenario_with(cell), scaled = scenario_with(plain, {{"filter.covariance", "4"}});
         const Run one = run_arm(plain, controller, keyed_noise(plain, 2, 1));
         const Run four = run_arm(scaled, controller, keyed_noise(plain, 2, 1));
         // Powers of two, so to the bit.

@@ -62,7 +62,7 @@ void check_step(const Run& ours, const oracle::Step& theirs, int k, const Budget
 }
 
 void check_trial(const Settings& settings, Controller controller, std::uint64_t trial) {
-    const Scenario scenario = scenario_with(settings);
+    const DeformableSettings scenario = scenario_with(settings);
     const AnyNoise noise = keyed_noise(scenario, 30, trial);
     const Run ours = run_arm(scenario, controller, noise);
     const oracle::Trial theirs = oracle::run(scenario, controller, for_oracle(noise));
@@ -123,7 +123,7 @@ TEST_CASE("filter: 64 features with all 2016 edges agree with the update in info
     // 4160 rows are too many for the joint update; P^-1 + H' N^-1 H has 131 [Bar-Shalom 2001, 7.2.2].
     Settings settings = with_features("heading", 64);
     settings.emplace_back("scenario.poses", "2");
-    const Scenario scenario = scenario_with(settings);
+    const DeformableSettings scenario = scenario_with(settings);
     const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 30, 1));
     const RunStep& step = run.steps.back();
     MatrixXd information = step.prior_covariance.inverse();

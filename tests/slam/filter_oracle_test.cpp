@@ -12,7 +12,7 @@ namespace {
 /// in these cells: one update may err by 12 rows * 200 * 2^-53 = 3e-13 of P^- (filter_long_test.cpp says why), and what
 /// is seen is 3e-14 of P. NEES and NIS divide by eigenvalues up to 100 times smaller than the norms.
 void check_trial(const Settings& settings, Controller controller, std::uint64_t trial) {
-    const Scenario scenario = scenario_with(settings);
+    const DeformableSettings scenario = scenario_with(settings);
     const AnyNoise noise = keyed_noise(scenario, 20, trial);
     const Run ours = run_arm(scenario, controller, noise);
     const Difference worst = difference(ours, oracle::run(scenario, controller, for_oracle(noise)));

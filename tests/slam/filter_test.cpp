@@ -53,13 +53,13 @@ constexpr double difference_quotient = 1e-8;
 
 /// Some of three features seen, and every edge, with measurements out of the air. The signs of the sample's state
 /// decide what is seen, so that every combination occurs.
-struct Look {
+struct InterimAnalysis {
     Sighting<double> sightings[3];
     VectorXd sigma{3}, z;  ///< z: features that are seen, body frame, then edges
     std::vector<bool> seen;
     Eigen::Index sighting_rows = 0;
 
-    Look(int edges, const Sample& sample) {
+    InterimAnalysis(int edges, const Sample& sample) {
         std::mt19937 random(7);
         std::normal_distribution<double> normal;
         z.resize(6 + 2 * edges);
@@ -151,7 +151,7 @@ TEST_CASE("filter: updating with two rows after two is the joint update") {
     for (const char* graph : {"all", "chain", "none", "0-2"})
         with_both({{"edges.graph", graph}, {"filter.measurement", "0.9"}}, [](const Problem& problem, const Sample& sample, auto layout) {
             const FilterParameters& filter = problem.view().filter;
-            const Look look(filter.edge_count, sample);
+            const InterimAnalysis look(filter.edge_count, sample);
             auto belief = belief_of<decltype(layout)>(sample.x, sample.P);
             Update<double, decltype(layout)::capacity> result;
             update_belief(belief, filter, layout, look.sightings, [&](int e) { return look.edge(e); },

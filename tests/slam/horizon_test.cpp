@@ -21,7 +21,7 @@ Settings with(Settings settings, const Settings& more) {
 }
 
 /// A scenario whose arms plan ahead.
-Scenario planning(const Settings& settings) { return scenario_with(with(settings, {{"arms.controllers", "greedy, horizon"}})); }
+DeformableSettings planning(const Settings& settings) { return scenario_with(with(settings, {{"arms.controllers", "greedy, horizon"}})); }
 
 /// Both processes, paths and noises, with few candidates.
 std::vector<Settings> small_kinds() {
@@ -87,7 +87,7 @@ template <class Layout>
 void run_compared(const ProblemView& view, int trials, Comparison& comparison) {
     const auto work = std::make_unique<Workspace<Layout, double>>();
     std::vector<double> columns(column_count);
-    std::vector<double> figures(static_cast<std::size_t>(view.figure_count * (view.poses - 1)));
+    std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
     for (int trial = 0; trial < trials; ++trial) {
         const KeyedDraws<double> draws(9, static_cast<std::uint64_t>(trial), view.world.truncate);
         run_trial(view, Controller::horizon, draws, comparison, *work, columns.data(), figures.data());
@@ -122,7 +122,7 @@ TEST_CASE("horizon: controls and their costs are the oracle's brute force, two a
     for (const Settings& kind : small_kinds())
         for (const char* steps : {"2", "3"})
             for (std::uint64_t trial = 0; trial < 2; ++trial) {
-                const Scenario scenario = planning(with(kind, {{"planner.horizon", steps}}));
+                const DeformableSettings scenario = planning(with(kind, {{"planner.horizon", steps}}));
                 const AnyNoise noise = keyed_noise(scenario, 6, trial);
                 const Run ours = run_arm(scenario, Controller::horizon, noise);
                 const Difference worst = difference(ours, oracle::run(scenario, Controller::horizon, for_oracle(noise)));
@@ -136,7 +136,7 @@ TEST_CASE("horizon: controls and their costs are the oracle's brute force, two a
 
 TEST_CASE("horizon: a horizon of one step is the greedy planner, bit for bit") {
     for (const Settings& cell : seed_cells()) {
-        const Scenario scenario = planning(with(cell, {{"planner.horizon", "1"}}));
+        const DeformableSettings scenario = planning(with(cell, {{"planner.horizon", "1"}}));
         const AnyNoise noise = keyed_noise(scenario, 7, 1);
         CAPTURE(described(cell));
         const auto greedy = all_figures(run_arm(scenario, Controller::greedy, noise));
@@ -189,12 +189,12 @@ TEST_CASE("horizon: ties are decided as in the plain rule, the later candidate o
 TEST_CASE("horizon: it ends at the last pose") {
     const Settings short_run{{"scenario.poses", "4"}, {"planner.speeds", "1"}};
     const auto costs = [&](const char* steps, std::size_t k) {
-        const Scenario scenario = planning(with(short_run, {{"planner.horizon", steps}}));
+        const DeformableSettings scenario = planning(with(short_run, {{"planner.horizon", steps}}));
         return run_arm(scenario, Controller::horizon, keyed_noise(scenario, 3, 2)).steps[k].candidate_cost;
     };
     CHECK(costs("3", 1) == costs("8", 1));  // three steps are left, then two, then one
     CHECK(costs("3", 1) != costs("2", 1));
-    const Scenario scenario = planning(with(short_run, {{"planner.horizon", "8"}}));
+    const DeformableSettings scenario = planning(with(short_run, {{"planner.horizon", "8"}}));
     const Run run = run_arm(scenario, Controller::horizon, keyed_noise(scenario, 3, 2));
     CHECK(relative(run.steps[3].candidate_cost[0], oracle::candidate_cost(scenario, {run.steps[2].mean, run.steps[2].covariance},
                                                                           planner_candidates(scenario)[0], 3)) < 1e-10);
@@ -202,7 +202,7 @@ TEST_CASE("horizon: it ends at the last pose") {
 
 TEST_CASE("horizon: the sum counts, not the next step alone") {
     // At each step the greedy choice has the least next trace, the horizon's the least sum, and somewhere they differ.
-    const Scenario scenario = planning({{"model.process", "translation"}, {"features.path", "circle"}});
+    const DeformableSettings scenario = planning({{"model.process", "translation"}, {"features.path", "circle"}});
     const Trajectory trajectory = replay_trial(Problem(scenario), {Controller::horizon, Estimator::kf}, 1, 0);
     int differ = 0;
     for (int k = 1; k + 1 < scenario.poses; ++k) {
@@ -257,11 +257,11 @@ TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any unit")
     for (const Settings& kind : small_kinds()) {
         const Problem problem(planning(with(kind, {{"planner.horizon", kind[1].second == "circle" ? "2" : "3"}})));
         const std::vector<Arm> arms = arms_of(problem.scenario());
-        for (const Unit& unit : runnable_units()) {
-            const Block block = run_block(problem, 3, 21, 13, unit);
+        for (const Target& target : runnable_targets()) {
+            const Block block = run_block(problem, 3, 21, 13, target);
             for (std::size_t a = 0; a < arms.size(); ++a)
                 for (const std::size_t trial : {0u, 6u, 12u}) {
-                    CAPTURE(described(kind), unit.name, arm_name(arms[a]), trial);
+                    CAPTURE(described(kind), target.name, arm_name(arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 21 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
                         CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.columns[c]));

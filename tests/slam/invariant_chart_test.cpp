@@ -39,7 +39,7 @@ double nees_in_group(const VectorXd& truth, const VectorXd& estimate, const Matr
     return xi.dot(own.ldlt().solve(xi));
 }
 
-Scenario with_estimators(const std::string& sigma) {
+DeformableSettings with_estimators(const std::string& sigma) {
     Settings settings = matched_world();
     settings.insert(settings.end(), {{"noise.heading", sigma}, {"arms.estimators", "ekf, riekf"}});
     return scenario_with(settings);
@@ -80,7 +80,7 @@ TEST_CASE("invariant chart: without an error of the heading it is the Euclidean 
 }
 
 TEST_CASE("invariant chart: a trial reports it where other estimators run beside the process model's own") {
-    const Scenario scenario = with_estimators("0.1");
+    const DeformableSettings scenario = with_estimators("0.1");
     const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 2, 1), Form::any_number);
     double most = 0;
     for (int k = 1; k < 20; ++k) {
@@ -94,17 +94,17 @@ TEST_CASE("invariant chart: a trial reports it where other estimators run beside
     const Run written = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 2, 1));
     CHECK(same_bits(MatrixXd(written.figures), MatrixXd(run.figures)));
     // The reported P scales it.
-    Scenario scaled = scenario;
+    DeformableSettings scaled = scenario;
     scaled.filter.covariance = 4;
     const Run quarter = run_arm(scaled, Controller::fixed, keyed_noise(scaled, 2, 1));
     CHECK(relative(quarter.figure("nees_invariant", 5), run.figure("nees_invariant", 5) / 4) < 1e-14);
 }
 
 TEST_CASE("invariant chart: scenarios of the process model's own estimator have the figures that they had") {
-    const auto count = [](const Settings& settings) { return step_figures(scenario_with(settings)).size(); };
+    const auto count = [](const Settings& settings) { return step_series(scenario_with(settings)).size(); };
     CHECK(count({{"arms.estimators", "ekf, riekf"}}) == count({}) + 2);
     CHECK(count({{"arms.estimators", "iekf"}}) == count({}) + 2);
     CHECK(count({{"arms.estimators", "ekf"}}) == count({}));
-    for (const Figure& figure : step_figures(scenario_with({{"model.process", "translation"}})))
-        CHECK(figure.role != FigureRole::nees_in_chart);
+    for (const Series& figure : step_series(scenario_with({{"model.process", "translation"}})))
+        CHECK(figure.role != SeriesRole::nees_in_chart);
 }

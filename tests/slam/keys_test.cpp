@@ -90,7 +90,7 @@ const std::set<std::string> silent_keys{"scenario.name",      "scenario.title", 
 
 constexpr std::uint64_t trials = 20;
 
-std::vector<std::vector<double>> columns_of(const Scenario& scenario, Controller controller) {
+std::vector<std::vector<double>> columns_of(const DeformableSettings& scenario, Controller controller) {
     std::vector<std::vector<double>> columns;
     for (std::uint64_t trial = 0; trial < trials; ++trial)
         columns.push_back(run_arm(scenario, controller, keyed_noise(scenario, 77, trial)).columns);
@@ -114,7 +114,7 @@ Settings with_change(const Influence& influence) {
 TEST_CASE("keys: every key is known to change a figure, or known to change none") {
     std::set<std::string> covered = silent_keys, present;
     for (const Influence& influence : influences()) covered.insert(influence.key);
-    for (const ScenarioKey& key : scenario_keys()) present.insert(key.name);
+    for (const DeformableKey& key : scenario_keys()) present.insert(key.name);
     CHECK(covered == present);
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
     for (const Influence& influence : influences())
         for (const Controller controller : {fixed, greedy})
             for (std::uint64_t trial = 0; trial < 2; ++trial) {
-                const Scenario scenario = scenario_with(with_change(influence));
+                const DeformableSettings scenario = scenario_with(with_change(influence));
                 const AnyNoise noise = keyed_noise(scenario, 78, trial);
                 const Run ours = run_arm(scenario, controller, noise);
                 const Difference worst = difference(ours, oracle::run(scenario, controller, for_oracle(noise)));
@@ -157,8 +157,8 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
 }
 
 TEST_CASE("keys: names, titles, units and published figures change no bit") {
-    const Scenario plain = scenario_with({});
-    const Scenario named = scenario_with({{"scenario.name", "other"}, {"scenario.title", "Other"}, {"scenario.length_unit", "m"},
+    const DeformableSettings plain = scenario_with({});
+    const DeformableSettings named = scenario_with({{"scenario.name", "other"}, {"scenario.title", "Other"}, {"scenario.length_unit", "m"},
                                           {"arms.controllers", "greedy"}, {"planner.horizon", "1"},
                                           {"published.trace_P", "fixed.ekf 0.1"}, {"published.unseen", "fixed.ekf 3"},
                                           {"published.pose_error", "fixed.ekf 0.2"}});

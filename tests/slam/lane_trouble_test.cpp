@@ -52,7 +52,7 @@ struct Saboteur {
 std::vector<std::vector<double>> columns_of(const Problem& problem, Controller controller, const Draws& draws,
                                             Saboteur saboteur) {
     const auto work = std::make_unique<Workspace<ThreeFeatures, Pack4>>();
-    std::vector<Pack4> figures(static_cast<std::size_t>(problem.view().figure_count * (problem.view().poses - 1)));
+    std::vector<Pack4> figures(static_cast<std::size_t>(problem.view().series_count * (problem.view().poses - 1)));
     Pack4 columns[column_count];
     run_trial(problem.view(), controller, draws, saboteur, *work, columns, figures.data());
     std::vector<std::vector<double>> lanes(width);
@@ -75,7 +75,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 
 /// Trouble in each lane in turn: `make` puts it into draws or covariance.
 void check(Status expected, const std::function<void(int lane, Draws&, Saboteur&)>& make) {
-    const Scenario scenario = scenario_with({{"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
+    const DeformableSettings scenario = scenario_with({{"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
     const Problem problem(scenario);
     for (const Controller controller : {Controller::fixed, Controller::greedy}) {
         const auto undisturbed = columns_of(problem, controller, keyed(), {});
@@ -128,7 +128,7 @@ TEST_CASE("lanes: a covariance that is not finite or not positive definite fails
 TEST_CASE("lanes: a singular innovation covariance fails its own trial only") {
     // S = H P H' + N I of the first sighting is 0 where P is -N I for that feature and 0 elsewhere; what its inverse gives
     // is not finite, which is the graver of the two things that are wrong.
-    const double sigma = Scenario{}.sensor.sigma;
+    const double sigma = DeformableSettings{}.sensor.sigma;
     check_covariance(Status::non_finite, [=](Covariance& P, int lane) {
         for (int i = 0; i < ThreeFeatures::capacity; ++i)
             for (int j = i; j < ThreeFeatures::capacity; ++j) P.entry[i][j].v[lane] = 0;

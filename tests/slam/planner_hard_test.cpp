@@ -142,7 +142,7 @@ template <class Layout, class Real>
 void run_pack(const Problem& problem, Tally& tally) {
     const ProblemView& view = problem.view();
     const auto work = std::make_unique<Workspace<Layout, Real>>();
-    std::vector<Real> figures(static_cast<std::size_t>(view.figure_count * (view.poses - 1)));
+    std::vector<Real> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
     Real columns[column_count];
     Comparison<Real> comparison(view, tally);
     const KeyedDraws<Real> draws(1, trials_from<Real>(0), view.world.truncate);

@@ -59,7 +59,7 @@ void run_trials(const Problem& problem, int trials, Tally& tally) {
     const ProblemView& view = problem.view();
     const auto work = std::make_unique<Workspace<Layout, double>>();
     std::vector<double> columns(column_count);
-    std::vector<double> figures(static_cast<std::size_t>(view.figure_count * (view.poses - 1)));
+    std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
     for (int trial = 0; trial < trials; ++trial) {
         Comparison comparison(view, tally);
         const KeyedDraws<double> draws(7, static_cast<std::uint64_t>(trial), view.world.truncate);

@@ -24,7 +24,7 @@ std::optional<NoiseRecord> shared_record(const std::string& name) {
 }
 
 Run replay(const Settings& settings, Controller controller, const NoiseRecord& record) {
-    const Scenario scenario = scenario_with(settings);
+    const DeformableSettings scenario = scenario_with(settings);
     check_covers(record, scenario, "the record");
     const RecordedDraws draws(record);
     return run_arm(scenario, controller,

@@ -72,14 +72,14 @@ const std::vector<KeyCase>& key_cases() {
     return cases;
 }
 
-const ScenarioKey& key_named(const std::string& name) {
+const DeformableKey& key_named(const std::string& name) {
     const auto& keys = scenario_keys();
-    return *std::find_if(keys.begin(), keys.end(), [&](const ScenarioKey& key) { return key.name == name; });
+    return *std::find_if(keys.begin(), keys.end(), [&](const DeformableKey& key) { return key.name == name; });
 }
 
 /// Reads back what scenario_text writes: sections, `key = value`, blank lines.
-Scenario read_text(const std::string& text) {
-    Scenario scenario;
+DeformableSettings read_text(const std::string& text) {
+    DeformableSettings scenario;
     std::istringstream lines(text);
     std::string section;
     for (std::string line; std::getline(lines, line);) {
@@ -97,7 +97,7 @@ Scenario read_text(const std::string& text) {
 /// Checks that a value is refused in the one grammar, naming the key, on one line.
 void check_refused(const std::string& name, const std::string& value) {
     CAPTURE(name, value);
-    Scenario scenario;
+    DeformableSettings scenario;
     try {
         set_key(scenario, name, value);
         FAIL("it was taken");
@@ -115,7 +115,7 @@ void check_refused(const std::string& name, const std::string& value) {
 TEST_CASE("scenario: the keys are those of the design, each with a line of help") {
     std::set<std::string> designed, present;
     for (const KeyCase& one : key_cases()) designed.insert(one.name);
-    for (const ScenarioKey& key : scenario_keys()) {
+    for (const DeformableKey& key : scenario_keys()) {
         present.insert(key.name);
         CHECK_FALSE(key.help.empty());
         CHECK(key.help.find('\n') == std::string::npos);
@@ -127,7 +127,7 @@ TEST_CASE("scenario: the keys are those of the design, each with a line of help"
 TEST_CASE("scenario: every key has the seed's default") {
     for (const KeyCase& one : key_cases()) {
         CAPTURE(one.name);
-        CHECK(key_named(one.name).get(Scenario{}) == one.default_text);
+        CHECK(key_named(one.name).get(DeformableSettings{}) == one.default_text);
     }
 }
 
@@ -137,14 +137,14 @@ TEST_CASE("scenario: every key takes its values, shows them again and survives t
         values.push_back(one.default_text);
         for (const std::string& value : values) {
             CAPTURE(one.name, value);
-            Scenario scenario;
+            DeformableSettings scenario;
             set_key(scenario, one.name, value);
             CHECK(key_named(one.name).get(scenario) == value);
             const std::string text = scenario_text(scenario);
             CHECK(scenario_text(read_text(text)) == text);
             // Nothing else has changed: setting the default again gives the text of the default.
             set_key(scenario, one.name, one.default_text);
-            CHECK(scenario_text(scenario) == scenario_text(Scenario{}));
+            CHECK(scenario_text(scenario) == scenario_text(DeformableSettings{}));
         }
     }
 }
@@ -163,7 +163,7 @@ TEST_CASE("scenario: every key that is no text refuses garbage") {
 }
 
 TEST_CASE("scenario: a number may be written in many ways and is kept to the bit") {
-    Scenario scenario;
+    DeformableSettings scenario;
     set_key(scenario, "scenario.poses", "1e3");
     CHECK(scenario.poses == 1000);
     set_key(scenario, "noise.walk", "+3e-1");
@@ -182,7 +182,7 @@ TEST_CASE("scenario: up to 64 features and 100 turns are taken") {
         for (int i = 1; i < count; ++i) text += std::string(", ") + one;
         return text;
     };
-    Scenario scenario;
+    DeformableSettings scenario;
     set_key(scenario, "features.positions", repeated("1 2", 64));
     CHECK(scenario.features.positions.size() == 64);
     check_refused("features.positions", repeated("1 2", 65));

@@ -170,7 +170,7 @@ TEST_CASE("sensor: a feature in range is seen with the probability of detection,
 
 TEST_CASE("sensor: a share of the features in range is detected") {
     // 38000 looks: the share errs by 5 of its standard deviations with 6e-7.
-    const Scenario scenario = scenario_with({{"sensor.detection", "0.3"}, {"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
+    const DeformableSettings scenario = scenario_with({{"sensor.detection", "0.3"}, {"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
     double seen = 0, looks = 0;
     for (std::uint64_t trial = 0; trial < 667; ++trial) {
         const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 8, trial));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double completed = 0, diverged = 1, not_positive_definite = 2, non_finite = 3;
 
-Run run_with(const Scenario& scenario, const AnyNoise& noise) { return run_arm(scenario, Controller::fixed, noise); }
+Run run_with(const DeformableSettings& scenario, const AnyNoise& noise) { return run_arm(scenario, Controller::fixed, noise); }
 
 void check_status(const Run& run, double status, double pose) {
     CHECK(run.columns[column_status] == status);
@@ -43,7 +43,7 @@ TEST_CASE("status: numbers and names of the statuses") {
 }
 
 TEST_CASE("status: a draw that is no number is noticed at its pose, for good") {
-    const Scenario scenario = scenario_with({{"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
+    const DeformableSettings scenario = scenario_with({{"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
     const AnyNoise noise = keyed_noise(scenario, 60, 0);
     check_status(run_with(scenario, noise), completed, -1);
     for (const double bad : {not_a_number, infinity, -infinity}) {
@@ -58,7 +58,7 @@ TEST_CASE("status: a draw that is no number is noticed at its pose, for good") {
 }
 
 TEST_CASE("status: a feature whose truth is no number is not seen, and the trial fails all the same") {
-    const Scenario scenario = scenario_with({{"edges.graph", "none"}});
+    const DeformableSettings scenario = scenario_with({{"edges.graph", "none"}});
     const Run run = run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::deformation, 5, 1, {not_a_number, 0}));
     check_status(run, non_finite, 5);
     CHECK_FALSE(run.steps[5].seen[1]);
@@ -66,7 +66,7 @@ TEST_CASE("status: a feature whose truth is no number is not seen, and the trial
 }
 
 TEST_CASE("status: a trial that diverges goes on and keeps its figures") {
-    const Scenario scenario = scenario_with(lost);
+    const DeformableSettings scenario = scenario_with(lost);
     const Run run = run_with(scenario, keyed_noise(scenario, 61, 1));
     check_status(run, diverged, 1);
     CHECK(run.figures.allFinite());
@@ -77,7 +77,7 @@ TEST_CASE("status: a trial that diverges goes on and keeps its figures") {
 }
 
 TEST_CASE("status: a trial that diverged may still fail, and a trial that failed stays so") {
-    const Scenario scenario = scenario_with(lost);
+    const DeformableSettings scenario = scenario_with(lost);
     const AnyNoise noise = keyed_noise(scenario, 61, 1);
     check_status(run_with(scenario, with_draw(noise, Source::walk, 7, 0, {not_a_number, 0})), non_finite, 8);
     Outcome<double> outcome;
@@ -154,7 +154,7 @@ TEST_CASE("status: the short look finds trouble wherever the long one does") {
 
 TEST_CASE("status: an innovation covariance that is not positive definite is noticed") {
     // With P at 1e16 and N at 1e-6, S of a sighting after the first is all rounding; P itself recovers.
-    const Scenario scenario = scenario_with({{"model.process", "translation"}, {"noise.odometry", "1e8"}, {"sensor.sigma", "1e-3"},
+    const DeformableSettings scenario = scenario_with({{"model.process", "translation"}, {"noise.odometry", "1e8"}, {"sensor.sigma", "1e-3"},
                                              {"sensor.range_max", "inf"}});
     const Run run = run_with(scenario, keyed_noise(scenario, 30, 0));
     CHECK(smallest_eigenvalue(run.steps[1].covariance) > 0);
@@ -163,7 +163,7 @@ TEST_CASE("status: an innovation covariance that is not positive definite is not
 
 TEST_CASE("status: a covariance that is not positive definite has its own status") {
     // x and P are finite here; the NEES is not, and must not be taken for the trouble.
-    const Scenario scenario = scenario_with({{"noise.odometry", "1e6"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
+    const DeformableSettings scenario = scenario_with({{"noise.odometry", "1e6"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
                                              {"model.process", "translation"}});
     const Run run = run_with(scenario, keyed_noise(scenario, 30, 0));
     REQUIRE(run.steps[1].covariance.allFinite());
@@ -172,7 +172,7 @@ TEST_CASE("status: a covariance that is not positive definite has its own status
 }
 
 TEST_CASE("status: a failed trial keeps its status and pose; its other columns are filled") {
-    const Scenario scenario = scenario_with({{"sensor.range_max", "inf"}});
+    const DeformableSettings scenario = scenario_with({{"sensor.range_max", "inf"}});
     const Run run = run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::measurement, 5, 1, {not_a_number, 0}));
     std::vector<double> columns = run.columns;
     CHECK(fill_failed(trial_columns(scenario), columns.data()));
@@ -194,6 +194,6 @@ TEST_CASE("status: a failed trial keeps its status and pose; its other columns a
 TEST_CASE("status: columns of a completed trial are left alone") {
     std::vector<double> columns{0.1, 3, 0.2, 1.1, 0.9, completed, -1};
     const std::vector<double> before = columns;
-    CHECK_FALSE(fill_failed(trial_columns(Scenario{}), columns.data()));
+    CHECK_FALSE(fill_failed(trial_columns(DeformableSettings{}), columns.data()));
     CHECK(columns == before);
 }

@@ -30,14 +30,14 @@ AnyNoise listened(const AnyNoise& noise, Asked& asked) {
             }};
 }
 
-Asked asked_by(const Scenario& scenario, Controller controller, std::uint64_t trial) {
+Asked asked_by(const DeformableSettings& scenario, Controller controller, std::uint64_t trial) {
     Asked asked;
     run_arm(scenario, controller, listened(keyed_noise(scenario, 50, trial), asked));
     return asked;
 }
 
 /// Every key that a trial of the scenario must ask for, whatever is seen.
-std::set<Key> expected_keys(const Scenario& scenario) {
+std::set<Key> expected_keys(const DeformableSettings& scenario) {
     const int features = static_cast<int>(scenario.features.positions.size());
     const int edges = static_cast<int>(edge_list(scenario).size());
     std::set<Key> keys;
@@ -76,7 +76,7 @@ TEST_CASE("trial: every draw is asked for, of features out of sight too, and non
     for (const Settings& settings : worlds())
         for (const Controller controller : {Controller::fixed, Controller::greedy}) {
             CAPTURE(described(settings), static_cast<int>(controller));
-            const Scenario scenario = scenario_with(settings);
+            const DeformableSettings scenario = scenario_with(settings);
             std::set<Key> keys;
             for (const auto& [key, draw] : asked_by(scenario, controller, 1)) keys.insert(key);
             CHECK(keys == expected_keys(scenario));
@@ -86,7 +86,7 @@ TEST_CASE("trial: every draw is asked for, of features out of sight too, and non
 TEST_CASE("trial: the two arms of a trial are given the same draws, though they see different features") {
     for (const Settings& settings : worlds()) {
         CAPTURE(described(settings));
-        const Scenario scenario = scenario_with(settings);
+        const DeformableSettings scenario = scenario_with(settings);
         bool different_sight = false;
         for (std::uint64_t trial = 0; trial < 5; ++trial) {
             CHECK(asked_by(scenario, Controller::fixed, trial) == asked_by(scenario, Controller::greedy, trial));
@@ -108,7 +108,7 @@ TEST_CASE("trial: columns are what the page of the model says, from the steps") 
     for (const Settings& settings : worlds()) {
         Settings drawn = settings;
         drawn.emplace_back("noise.initial_position", "0.3");  // so that pose 0 has an error
-        const Scenario scenario = scenario_with(drawn);
+        const DeformableSettings scenario = scenario_with(drawn);
         const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 51, 2));
         double pose_error = 0, unseen = 0, nees = 0, nis = 0, rows = 0;
         for (std::size_t k = 0; k < run.steps.size(); ++k) {
@@ -133,7 +133,7 @@ TEST_CASE("trial: columns are what the page of the model says, from the steps") 
 
 TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     // Features 100 away are not seen at any pose; the robot starts 0.3 off, and its belief with it.
-    const Scenario scenario = scenario_with({{"features.positions", "100 0, 0 100"}, {"noise.initial_position", "0.3"},
+    const DeformableSettings scenario = scenario_with({{"features.positions", "100 0, 0 100"}, {"noise.initial_position", "0.3"},
                                              {"edges.graph", "none"}, {"scenario.poses", "2"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_position, 0, 0, {1, 2});
     const Run run = run_arm(scenario, Controller::fixed, noise);
@@ -146,13 +146,13 @@ TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
 
 TEST_CASE("trial: figures of a step are what their names say") {
     for (const char* process : {"heading", "translation"}) {
-        const Scenario scenario = scenario_with({{"model.process", process}, {"features.path", "circle"},
+        const DeformableSettings scenario = scenario_with({{"model.process", process}, {"features.path", "circle"},
                                                  {"filter.covariance", "2.25"}, {"noise.heading", "0.01"}});
         const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 52, 3));
         for (int k = 1; k < scenario.poses; ++k) {
             const RunStep& step = run.steps[static_cast<std::size_t>(k)];
             // Tolerances: a few roundings, and for the squared errors another factorisation, cond(P) below 1e4.
-            for (const StateBlock& block : state_blocks(scenario)) {
+            for (const ComponentGroup& block : state_blocks(scenario)) {
                 const std::string name = block.name == "all" ? "nees" : "nees_" + block.name;
                 CHECK(run.figure(name, k) == Approx(squared_error(step, block.first, block.count, 2.25)).epsilon(1e-11));
             }
@@ -173,7 +173,7 @@ TEST_CASE("trial: figures of a step are what their names say") {
 
 TEST_CASE("trial: a heading error is judged the short way round") {
     // The robot turns by 3.1 a step: after two steps truth and belief have passed pi, with different windings.
-    const Scenario scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
+    const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
                                              {"sensor.range_max", "0.11"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_heading, 1, 0, {2 * M_PI + 0.5, 0});
     const Run run = run_arm(scenario, Controller::fixed, noise);

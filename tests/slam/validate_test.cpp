@@ -87,11 +87,11 @@ TEST_CASE("scenario: what only looks like a contradiction is taken") {
 }
 
 TEST_CASE("scenario: what depends on the process and the path is filled in") {
-    const Scenario straight = scenario_with({});
+    const DeformableSettings straight = scenario_with({});
     CHECK(straight.planner.speeds == 10);
     CHECK(straight.planner.turns == std::vector<double>{0});
     CHECK(straight.arms.estimators == std::vector{Estimator::ekf});
-    const Scenario circle = scenario_with({{"features.path", "circle"}});
+    const DeformableSettings circle = scenario_with({{"features.path", "circle"}});
     REQUIRE(circle.planner.turns->size() == 6);
     for (std::size_t m = 0; m < 6; ++m)  // -pi/4 + m pi/10, by other roundings
         CHECK(std::abs((*circle.planner.turns)[m] - M_PI * (-0.25 + 0.1 * static_cast<double>(m))) < 1e-15);
@@ -99,7 +99,7 @@ TEST_CASE("scenario: what depends on the process and the path is filled in") {
     CHECK(scenario_with({{"features.path", "circle"}, {"control.path", "straight"}}).planner.turns->size() == 1);
     CHECK(scenario_with({{"control.path", "circle"}}).planner.turns->size() == 6);
     CHECK(scenario_with({{"features.path", "circle"}, {"features.turn", "0.1"}}).planner.turns == circle.planner.turns);
-    const Scenario translation = scenario_with({{"model.process", "translation"}, {"features.path", "circle"}});
+    const DeformableSettings translation = scenario_with({{"model.process", "translation"}, {"features.path", "circle"}});
     CHECK(translation.planner.speeds == 5);
     CHECK(translation.planner.turns->empty());
     CHECK(translation.arms.estimators == std::vector{Estimator::kf});
@@ -107,7 +107,7 @@ TEST_CASE("scenario: what depends on the process and the path is filled in") {
 
 TEST_CASE("scenario: what was given stays when the rest is filled in, and filling in twice changes nothing") {
     const Settings given{{"planner.speeds", "3"}, {"planner.turns", "0.5"}, {"features.path", "circle"}};
-    const Scenario once = scenario_with(given);
+    const DeformableSettings once = scenario_with(given);
     CHECK(once.planner.speeds == 3);
     CHECK(once.planner.turns == std::vector{0.5});
     CHECK(scenario_text(resolved(once)) == scenario_text(once));
@@ -141,14 +141,14 @@ TEST_CASE("scenario: graphs have their edges in order") {
 TEST_CASE("scenario: the state has the pose's and the features' components") {
     CHECK(state_size(scenario_with({})) == 9);
     CHECK(pose_size(scenario_with({})) == 3);
-    const Scenario translation = scenario_with({{"model.process", "translation"}, {"features.positions", "1 1"}});
+    const DeformableSettings translation = scenario_with({{"model.process", "translation"}, {"features.positions", "1 1"}});
     CHECK(state_size(translation) == 4);
     CHECK(pose_size(translation) == 2);
 }
 
 TEST_CASE("scenario: an unknown key is refused with the closest known one") {
     const auto message = [](const std::string& key) {
-        Scenario scenario;
+        DeformableSettings scenario;
         return refusal([&] { set_key(scenario, key, "1"); });
     };
     CHECK(message("noise.heding") == "unknown key noise.heding. Did you mean noise.heading?");
@@ -159,8 +159,8 @@ TEST_CASE("scenario: an unknown key is refused with the closest known one") {
 
 TEST_CASE("scenario: a refusal is one line, whatever was given") {
     std::vector<std::string> torn;
-    for (const ScenarioKey& key : scenario_keys()) {
-        Scenario scenario;
+    for (const DeformableKey& key : scenario_keys()) {
+        DeformableSettings scenario;
         if (refusal([&] { set_key(scenario, key.name, "1\n2"); }).find('\n') != std::string::npos) torn.push_back(key.name);
     }
     CHECK(torn == std::vector<std::string>{});

@@ -158,7 +158,7 @@ TEST_CASE("world: sway is A (sin psi, cos psi) less its value at pose 0, and the
 TEST_CASE("world: moments of the truth at the last pose") {
     // 4000 trials, 3 features, 2 axes: per case six scores beyond 5 with 4e-6 (features of a trial are independent).
     for (const char* deformation : {"jitter", "walk"}) {
-        const Scenario scenario = scenario_with({{"truth.deformation", deformation}, {"noise.heading", "0.05"},
+        const DeformableSettings scenario = scenario_with({{"truth.deformation", deformation}, {"noise.heading", "0.05"},
                                                  {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
         const Problem problem(scenario);
         Moments feature, heading, position;

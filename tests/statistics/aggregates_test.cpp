@@ -18,7 +18,7 @@ using namespace credence::test;
 namespace {
 
 /// Some trials fail in it under either arm, and some measure nothing.
-Scenario mixed_world() {
+DeformableSettings mixed_world() {
     return scenario_with({{"noise.odometry", "1e5"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "1e5"},
                           {"scenario.poses", "6"}, {"planner.speeds", "1"}});
 }
@@ -72,7 +72,7 @@ void check_totals_of(const ScenarioResults& aggregates, const ScenarioResults& t
         CHECK(arm.counted() == trials.arms[a].counted);
         REQUIRE(arm.differences.size() == a);
         for (std::size_t c = 0; c < trials.columns.size(); ++c) {
-            if (!is_figure(trials.columns[c])) continue;
+            if (!is_reported(trials.columns[c])) continue;
             CAPTURE(trials.arms[a].name, trials.columns[c].name);
             const std::vector<double> own = figure_values(trials, trials.arms[a], c);
             check_moments(arm.columns[c], own);

@@ -77,9 +77,9 @@ TEST_CASE("credibility: NaN where the mean square error has no inverse") {
 
 TEST_CASE("credibility: units do not matter") {
     const Errors data(61, 50, 1);
-    std::vector<double> other_units = data.errors;
-    for (std::size_t i = 0; i < other_units.size(); ++i) other_units[i] *= i % 3 == 0 ? 1e9 : i % 3 == 1 ? 1 : 1e-9;
-    const Credibility a = credibility(data.nees, data.errors, 3), b = credibility(data.nees, other_units, 3);
+    std::vector<double> other_targets = data.errors;
+    for (std::size_t i = 0; i < other_targets.size(); ++i) other_targets[i] *= i % 3 == 0 ? 1e9 : i % 3 == 1 ? 1 : 1e-9;
+    const Credibility a = credibility(data.nees, data.errors, 3), b = credibility(data.nees, other_targets, 3);
     check_agrees(b.nci, a.nci);
     check_agrees(b.inclination, a.inclination);
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t seed = 9;
 
 /// Some trials fail in it, so that the totals are not those of all.
-Scenario mixed_world() {
+DeformableSettings mixed_world() {
     return scenario_with({{"noise.odometry", "1e5"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
                           {"arms.controllers", "fixed"}, {"scenario.poses", "6"}});
 }
@@ -28,7 +28,7 @@ void add_block(ScenarioResults& results, const Problem& problem, std::int64_t in
 }
 
 /// The results of a study's first trials, its blocks added in a given order.
-ScenarioResults results_of(const Scenario& scenario, std::int64_t trials, bool backwards = false) {
+ScenarioResults results_of(const DeformableSettings& scenario, std::int64_t trials, bool backwards = false) {
     const Problem problem(scenario);
     ScenarioResults results = empty_results(scenario);
     extend(results, trials);
@@ -47,7 +47,7 @@ std::vector<double> parts_of(const ScenarioResults& results) {
         all.push_back(-1);
     };
     for (const ArmResults& arm : results.arms) {
-        for (const FigureTotals& totals : arm.totals) {
+        for (const SeriesTotals& totals : arm.totals) {
             for (const ExactSum& sum : totals.sum) append(sum);
             for (const ExactSum& sum : totals.square_sum) append(sum);
             append(totals.run_square_sum);
@@ -68,7 +68,7 @@ bool same(const ScenarioResults& a, const ScenarioResults& b) {
 }  // namespace
 
 TEST_CASE("results: empty results have room for what the scenario declares, and nothing in it") {
-    const Scenario scenario = scenario_with({});
+    const DeformableSettings scenario = scenario_with({});
     const ScenarioResults results = empty_results(scenario);
     REQUIRE(results.arms.size() == 2);
     CHECK(results.arms[0].name == "fixed.ekf");
@@ -76,17 +76,17 @@ TEST_CASE("results: empty results have room for what the scenario declares, and 
     CHECK(results.trials == 0);
     CHECK(results.steps() == 19);
     CHECK(results.columns.size() == column_count);
-    CHECK(results.figures.size() == static_cast<std::size_t>(Problem(scenario).view().figure_count));
-    for (std::size_t f = 0; f < results.figures.size(); ++f) {
-        const FigureTotals& totals = results.arms[0].totals[f];
+    CHECK(results.all_series.size() == static_cast<std::size_t>(Problem(scenario).view().series_count));
+    for (std::size_t f = 0; f < results.all_series.size(); ++f) {
+        const SeriesTotals& totals = results.arms[0].totals[f];
         CHECK(totals.sum.size() == 19);
-        CHECK(totals.square_sum.size() == (results.figures[f].integer ? 0u : 19u));
+        CHECK(totals.square_sum.size() == (results.all_series[f].integer ? 0u : 19u));
         CHECK(totals.run_square_sum.rounded() == 0);
     }
 }
 
 TEST_CASE("results: the order of the blocks does not matter") {
-    const Scenario scenario = mixed_world();
+    const DeformableSettings scenario = mixed_world();
     const ScenarioResults forwards = results_of(scenario, 700), backwards = results_of(scenario, 700, true);
     CHECK(same(forwards, backwards));
     CHECK(forwards.arms[0].counted > 0);
@@ -94,13 +94,13 @@ TEST_CASE("results: the order of the blocks does not matter") {
 }
 
 TEST_CASE("results: totals are those of the trials that did not fail") {
-    const Scenario scenario = mixed_world();
+    const DeformableSettings scenario = mixed_world();
     const ScenarioResults results = results_of(scenario, 300);
     double sum = 0;
     std::int64_t counted = 0;
     const std::size_t trace = static_cast<std::size_t>(
-        std::find_if(results.figures.begin(), results.figures.end(), [](const Figure& f) { return f.name == "trace_P_step"; }) -
-        results.figures.begin());
+        std::find_if(results.all_series.begin(), results.all_series.end(), [](const Series& f) { return f.name == "trace_P_step"; }) -
+        results.all_series.begin());
     for (const double value : results.arms[0].columns[column_trace_P]) {
         if (value != value) continue;
         sum += value;
@@ -112,7 +112,7 @@ TEST_CASE("results: totals are those of the trials that did not fail") {
 }
 
 TEST_CASE("results: a partial block that is taken back and computed again gives the same bits as a fresh run") {
-    const Scenario scenario = mixed_world();
+    const DeformableSettings scenario = mixed_world();
     const Problem problem(scenario);
     ScenarioResults grown = results_of(scenario, 300);
     remove_totals(grown, run_block(problem, seed, 1, 44));
@@ -123,7 +123,7 @@ TEST_CASE("results: a partial block that is taken back and computed again gives 
 }
 
 TEST_CASE("results: taking everything back leaves nothing") {
-    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}});
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}});
     const Problem problem(scenario);
     ScenarioResults results = results_of(scenario, 300);
     for (const std::int64_t index : {0, 1}) remove_totals(results, run_block(problem, seed, index, trials_in_block(300, index)));
@@ -131,7 +131,7 @@ TEST_CASE("results: taking everything back leaves nothing") {
 }
 
 TEST_CASE("results: columns are stored at their trials") {
-    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}});
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}});
     const ScenarioResults results = results_of(scenario, 300);
     const Block second = run_block(Problem(scenario), seed, 1, 44);
     for (std::size_t c = 0; c < column_count; ++c)

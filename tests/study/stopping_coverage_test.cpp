@@ -19,7 +19,7 @@ namespace {
 struct Replicated {
     int missed = 0;                 ///< last intervals that do not cover the truth
     std::vector<int> stops;         ///< by look
-    int looks_used() const {
+    int analyses_used() const {
         int used = 0;
         for (const int count : stops) used += count > 20;
         return used;
@@ -30,14 +30,14 @@ struct Replicated {
 template <class Draw, class Decide>
 Replicated replicate(int replications, const StoppingRule& rule, double truth, Draw draw, Decide decision) {
     Replicated result;
-    result.stops.resize(look_trials(rule.ceiling, rule.first_look).size());
+    result.stops.resize(analysis_trials(rule.ceiling, rule.first_analysis).size());
     for (int r = 0; r < replications; ++r) {
         Normals normals(static_cast<std::uint64_t>(r) + 1);
         std::vector<double> values;
-        const Look last = run_looks(rule, [&](std::int64_t trials, int number) {
+        const InterimAnalysis last = run_analyses(rule, [&](std::int64_t trials, int number) {
             while (values.size() < static_cast<std::size_t>(trials)) values.push_back(draw(normals));
             const GoalState state = decision(values, rule.goals.front(), number);
-            return Look{trials, number, look_alpha(number), {state}, state.met()};
+            return InterimAnalysis{trials, number, analysis_alpha(number), {state}, state.met()};
         });
         result.missed += std::abs(last.states.front().mean - truth) > last.states.front().half_width;
         ++result.stops[static_cast<std::size_t>(last.number - 1)];
@@ -54,9 +54,9 @@ double normal_draw(Normals& normals) { return 10 + normals(); }
 double exponential_draw(Normals& normals) { return normals.chi_square(2) / 2; }
 
 /// The half-width that a sample of sd 1 has at `times` the first look's trials: looks after it come into play.
-StoppingRule rule_of(std::int64_t first_look, double times, const std::string& unit = "") {
-    const double width = 2.2414 / std::sqrt(static_cast<double>(first_look) * times) * (unit == "%" ? 100 : 1);
-    return {{parse_goal("x=" + std::to_string(width) + unit)}, first_look * 16 + 7, first_look};
+StoppingRule rule_of(std::int64_t first_analysis, double times, const std::string& unit = "") {
+    const double width = 2.2414 / std::sqrt(static_cast<double>(first_analysis) * times) * (unit == "%" ? 100 : 1);
+    return {{parse_goal("x=" + std::to_string(width) + unit)}, first_analysis * 16 + 7, first_analysis};
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped
         const Replicated r = replicate(2000, rule_of(16, times), 10, normal_draw, decide);
         CAPTURE(times, r.missed, r.stops);
         CHECK(r.missed <= most_missed(2000));
-        CHECK(r.looks_used() >= 2);
+        CHECK(r.analyses_used() >= 2);
     }
 }
 
@@ -76,19 +76,19 @@ TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, st
         const Replicated r = replicate(2000, rule_of(64, times), 1, exponential_draw, decide);
         CAPTURE(times, r.missed, r.stops);
         CHECK(r.missed <= most_missed(2000));
-        CHECK(r.looks_used() >= 2);
+        CHECK(r.analyses_used() >= 2);
     }
     const Replicated relative = replicate(2000, rule_of(64, 1.4, "%"), 1, exponential_draw, decide);
     CAPTURE(relative.missed, relative.stops);
     CHECK(relative.missed <= most_missed(2000));
-    CHECK(relative.looks_used() >= 2);
+    CHECK(relative.analyses_used() >= 2);
 }
 
 TEST_CASE("stopping: so they do at the first look that is used, 4096 trials", "[long]") {
-    const Replicated r = replicate(2000, rule_of(first_look_trials, 1), 1, exponential_draw, decide);
+    const Replicated r = replicate(2000, rule_of(first_analysis_trials, 1), 1, exponential_draw, decide);
     CAPTURE(r.missed, r.stops);
     CHECK(r.missed <= most_missed(2000));
-    CHECK(r.looks_used() >= 2);
+    CHECK(r.analyses_used() >= 2);
 }
 
 TEST_CASE("stopping: intervals that were not widened would cover too rarely, and be found out", "[long]") {
@@ -103,14 +103,14 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {
     // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [model.md, Truth
     // against filter].
-    Scenario matched = matched_linear();
+    DeformableSettings matched = matched_linear();
     matched.poses = 8;
     const StoppingRule rule{{parse_goal("nees_ratio=3.4%"), parse_goal("nis_ratio=0.0225")}, 5000, 256};
     constexpr int seeds = 200;
     int missed[2] = {0, 0}, beyond_the_first = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Study study = new_study({resolved(matched)}, seed);
-        const Look look = run_until(study, rule, {0, 1, {}});
+        const InterimAnalysis look = run_until(study, rule, {0, 1, {}});
         REQUIRE(look.met);
         for (std::size_t g = 0; g < 2; ++g) missed[g] += std::abs(look.states[g].mean - 1) > look.states[g].half_width;
         beyond_the_first += look.number > 1;

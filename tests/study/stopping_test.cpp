@@ -24,29 +24,29 @@ std::vector<StoppingGoal> goals(const std::vector<std::string>& texts) {
     return goals;
 }
 
-std::vector<std::string> names(const Look& look) {
+std::vector<std::string> names(const InterimAnalysis& look) {
     std::vector<std::string> names;
     for (const GoalState& state : look.states) names.push_back(state.name);
     return names;
 }
 
 /// A look at one sample of this sd, for which `allowed` was asked and not met.
-Look one_look(double sd, double allowed, std::int64_t count = 4096) {
-    return {4096, 1, look_alpha(1), {{"x", count, 0, sd, allowed * 2, allowed}}, false};
+InterimAnalysis one_snapshot(double sd, double allowed, std::int64_t count = 4096) {
+    return {4096, 1, analysis_alpha(1), {{"x", count, 0, sd, allowed * 2, allowed}}, false};
 }
 
 }  // namespace
 
 TEST_CASE("stopping: looks are at 4096 trials, then doubled, and at the ceiling") {
-    CHECK(look_trials(10000) == std::vector<std::int64_t>{4096, 8192, 10000});
-    CHECK(look_trials(8192) == std::vector<std::int64_t>{4096, 8192});
-    CHECK(look_trials(100) == std::vector<std::int64_t>{100});
-    CHECK(look_trials(9, 2) == std::vector<std::int64_t>{2, 4, 8, 9});
-    CHECK(look_trials(10'000'000).size() == 13);
-    CHECK(look_trials(std::numeric_limits<std::int64_t>::max()).back() == std::numeric_limits<std::int64_t>::max());
+    CHECK(analysis_trials(10000) == std::vector<std::int64_t>{4096, 8192, 10000});
+    CHECK(analysis_trials(8192) == std::vector<std::int64_t>{4096, 8192});
+    CHECK(analysis_trials(100) == std::vector<std::int64_t>{100});
+    CHECK(analysis_trials(9, 2) == std::vector<std::int64_t>{2, 4, 8, 9});
+    CHECK(analysis_trials(10'000'000).size() == 13);
+    CHECK(analysis_trials(std::numeric_limits<std::int64_t>::max()).back() == std::numeric_limits<std::int64_t>::max());
     double spent = 0;
-    for (int j = 1; j <= 52; ++j) spent += look_alpha(j);
-    CHECK(look_alpha(1) == 0.025);
+    for (int j = 1; j <= 52; ++j) spent += analysis_alpha(j);
+    CHECK(analysis_alpha(1) == 0.025);
     CHECK(spent < 0.05);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("stopping: failed trials are left out, and too few values never suffic
 
 TEST_CASE("stopping: a look has every arm and scenario, or every pair, of the first trials only") {
     const Study study = small_study(1, 700, 2);
-    const Look look = look_at(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
+    const InterimAnalysis look = look_at(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
     CHECK(look.alpha == 0.00625);
     CHECK(names(look) == std::vector<std::string>{
         "trace_P of heading-straight/fixed.ekf", "trace_P of heading-straight/greedy.ekf",
@@ -104,7 +104,7 @@ TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm an
     auto& columns = study.scenarios[0].arms[0].columns;
     columns[column_status][7] = static_cast<double>(Status::non_finite);
     columns[column_unseen][7] = -1;  // its fill value, a number
-    const Look look = look_at(study, goals({"unseen=1", "unseen[greedy-fixed]=1"}), 300, 1);
+    const InterimAnalysis look = look_at(study, goals({"unseen=1", "unseen[greedy-fixed]=1"}), 300, 1);
     CHECK(look.states[0].count == 299);
     CHECK(look.states[1].count == 300);
     CHECK(look.states[4].count == 299);
@@ -117,19 +117,19 @@ TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm an
 TEST_CASE("stopping: the number of trials that it takes is predicted from the spread so far") {
     // t sd / sqrt(N) with sd = 1 at looks 2, 3, 4 ...: 0.02760, 0.02137, 0.01633, 0.01236, 0.00928 (SciPy).
     const StoppingRule rule{{}, 1 << 20};
-    CHECK(predicted_trials(one_look(1, 0.0277), rule) == 8192);
-    CHECK(predicted_trials(one_look(1, 0.0276), rule) == 16384);
-    CHECK(predicted_trials(one_look(1, 0.00927), rule) == 262144);
-    CHECK(predicted_trials(one_look(1, 0.0277, 2048), rule) == 32768);   // half of the trials have no value
-    CHECK(predicted_trials(one_look(1, 0.0214), {{}, 16000}) == 16384);  // beyond the ceiling
-    CHECK(predicted_trials(one_look(1, 0.0217), {{}, 16000}) == 16000);  // or at it: 2.7347 / sqrt(16000) = 0.02162
-    CHECK_FALSE(predicted_trials(one_look(1, 1e-10), rule));
-    CHECK_FALSE(predicted_trials(one_look(missing, 1, 1), rule));
-    Look at_the_ceiling = one_look(1, 0.028, 9000);  // 0.0288 there, and 0.0276 at the look before
+    CHECK(predicted_trials(one_snapshot(1, 0.0277), rule) == 8192);
+    CHECK(predicted_trials(one_snapshot(1, 0.0276), rule) == 16384);
+    CHECK(predicted_trials(one_snapshot(1, 0.00927), rule) == 262144);
+    CHECK(predicted_trials(one_snapshot(1, 0.0277, 2048), rule) == 32768);   // half of the trials have no value
+    CHECK(predicted_trials(one_snapshot(1, 0.0214), {{}, 16000}) == 16384);  // beyond the ceiling
+    CHECK(predicted_trials(one_snapshot(1, 0.0217), {{}, 16000}) == 16000);  // or at it: 2.7347 / sqrt(16000) = 0.02162
+    CHECK_FALSE(predicted_trials(one_snapshot(1, 1e-10), rule));
+    CHECK_FALSE(predicted_trials(one_snapshot(missing, 1, 1), rule));
+    InterimAnalysis at_the_ceiling = one_snapshot(1, 0.028, 9000);  // 0.0288 there, and 0.0276 at the look before
     at_the_ceiling.trials = 9000;
     at_the_ceiling.number = 3;
     CHECK(predicted_trials(at_the_ceiling, {{}, 9000}) == 16384);
-    Look two = one_look(1, 0.0277);
+    InterimAnalysis two = one_snapshot(1, 0.0277);
     two.states.push_back({"y", 4096, 0, 1, 0.035, 0.0135});
     two.states.push_back({"z", 4096, 0, 1, 0.035, 0.036});
     CHECK(predicted_trials(two, rule) == 65536);
@@ -137,7 +137,7 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
     two.states.push_back({"w", 1, 0, missing, missing, 1});
     CHECK(widest(two).name == "w");
     CHECK_FALSE(predicted_trials(two, rule));
-    Look met = one_look(1, 0.036);
+    InterimAnalysis met = one_snapshot(1, 0.036);
     met.met = true;
     met.states[0].half_width = 0.035;
     CHECK(predicted_trials(met, rule) == 4096);
@@ -154,11 +154,11 @@ TEST_CASE("stopping: a study stops at the first look that is precise enough, as 
     REQUIRE(half_width(256, 1) > 1.05 * half_width(512, 2));
     REQUIRE(half_width(512, 2) > 1.05 * half_width(1024, 3));
     const auto stopped = [&](double width, std::vector<std::int64_t>& looks) {
-        Scenario scenario = small_scenarios()[0];
+        DeformableSettings scenario = small_scenarios()[0];
         scenario.arms.controllers = {Controller::fixed};
         Study study = new_study({scenario}, 1);
-        const Look last = run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
-                                    [&](const Look& look) { looks.push_back(look.trials); });
+        const InterimAnalysis last = run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
+                                    [&](const InterimAnalysis& look) { looks.push_back(look.trials); });
         CHECK(study.scenarios[0].trials == last.trials);  // nothing beyond the look
         CHECK(study.complete);
         return last;
@@ -167,13 +167,13 @@ TEST_CASE("stopping: a study stops at the first look that is precise enough, as 
     CHECK(stopped(1.01 * half_width(256, 1), looks).met);
     CHECK(looks == std::vector<std::int64_t>{256});
     looks.clear();
-    const Look third = stopped(1.01 * half_width(1024, 3), looks);
+    const InterimAnalysis third = stopped(1.01 * half_width(1024, 3), looks);
     CHECK(third.met);
     CHECK(third.number == 3);
     CHECK_THAT(third.states[0].half_width, WithinRel(half_width(1024, 3), 1e-14));
     CHECK(looks == std::vector<std::int64_t>{256, 512, 1024});
     looks.clear();
-    const Look ceiling = stopped(0.5 * half_width(2000, 4), looks);
+    const InterimAnalysis ceiling = stopped(0.5 * half_width(2000, 4), looks);
     CHECK_FALSE(ceiling.met);
     CHECK(ceiling.number == 4);
     CHECK(looks == std::vector<std::int64_t>{256, 512, 1024, 2000});
@@ -185,7 +185,7 @@ TEST_CASE("stopping: a study stops at the first look that is precise enough, as 
 TEST_CASE("stopping: all goals must be met") {
     Study study = new_study(small_scenarios(), 1);
     const StoppingRule rule{goals({"unseen=1", "trace_P=1e-9"}), 300, 64};
-    const Look look = run_until(study, rule, {0, 2, {}});
+    const InterimAnalysis look = run_until(study, rule, {0, 2, {}});
     CHECK_FALSE(look.met);
     CHECK(look.trials == 300);
     CHECK(look.states[0].met());
@@ -198,7 +198,7 @@ TEST_CASE("stopping: any number of threads and any history stop at the same look
     const auto grown = [&](std::int64_t had, int threads) {
         Study study = new_study(small_scenarios(), 1);
         if (had > 0) run_study(study, {had, 2, {}});
-        const Look look = run_until(study, rule, {0, threads, {}});
+        const InterimAnalysis look = run_until(study, rule, {0, threads, {}});
         return std::pair(look, study);
     };
     const auto [look, study] = grown(0, 1);
@@ -216,7 +216,7 @@ TEST_CASE("stopping: any number of threads and any history stop at the same look
 TEST_CASE("stopping: scenarios of different length are first brought to the longest") {
     Study study = new_study(small_scenarios(), 1);
     study.scenarios[1] = small_study(1, 300, 2).scenarios[1];
-    const Look look = run_until(study, {goals({"unseen=1e9"}), 3000, 64}, {0, 2, {}});
+    const InterimAnalysis look = run_until(study, {goals({"unseen=1e9"}), 3000, 64}, {0, 2, {}});
     CHECK(look.trials == 64);
     CHECK(same_results(study, small_study(1, 300, 2)));
 }

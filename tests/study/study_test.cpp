@@ -56,7 +56,7 @@ TEST_CASE("study: progress counts every trial once, and ends with all") {
 }
 
 TEST_CASE("study: scenarios of one run need different names") {
-    std::vector<Scenario> scenarios = small_scenarios();
+    std::vector<DeformableSettings> scenarios = small_scenarios();
     scenarios[1].name = scenarios[0].name;
     CHECK_THROWS_AS(new_study(scenarios, 1), InputError);
 }
@@ -65,18 +65,18 @@ TEST_CASE("study: its hash names scenarios, seed and order, and nothing of how i
     const std::string hash = study_hash(small_study(1, 10, 1));
     CHECK(hash == study_hash(small_study(1, 700, 2)));
     CHECK(hash != study_hash(small_study(2, 10, 1)));
-    std::vector<Scenario> other = small_scenarios();
+    std::vector<DeformableSettings> other = small_scenarios();
     other[1].noise.walk = 0.30000000000000004;  // one bit
     CHECK(hash != study_hash(new_study(other, 1)));
-    std::vector<Scenario> fewer_arms = small_scenarios();
+    std::vector<DeformableSettings> fewer_arms = small_scenarios();
     fewer_arms[0].arms.controllers = {Controller::fixed};
     CHECK(hash != study_hash(new_study(fewer_arms, 1)));
 }
 
 TEST_CASE("study: all arms of a trial share their noise") {
     // With nothing to steer by, both arms must end in the same figures: a planner with one candidate, the fixed control.
-    std::vector<Scenario> scenarios = small_scenarios();
-    Scenario& s = scenarios.front();
+    std::vector<DeformableSettings> scenarios = small_scenarios();
+    DeformableSettings& s = scenarios.front();
     s.planner.turns = std::vector<double>{0.0};
     Study study = new_study({s}, 7);
     run_study(study, {256, 1, {}});

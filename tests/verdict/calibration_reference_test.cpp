@@ -114,12 +114,12 @@ TEST_CASE("calibration: bias, shape and credibility of NumPy's draws are SciPy's
         check_agrees(found.credibility.step[k].nci, number(credibility["nci_by_step"][k]));
         check_agrees(found.credibility.step[k].inclination, number(credibility["inclination_by_step"][k]));
         CHECK(shape["distance"][k] >= shape["cell_distance"][k]);
-        CHECK(shape["distance"][k] <= shape["cell_distance"][k].get<double>() + 1.0 / shape_cells);
+        CHECK(shape["distance"][k] <= shape["cell_distance"][k].get<double>() + 1.0 / distribution_cells);
     }
     check_agrees(found.credibility.nci, number(credibility["nci"]));
     check_agrees(found.credibility.inclination, number(credibility["inclination"]));
     ScenarioResults exact = results(1);
-    exact.arms.front().shape_distance = numbers(shape["distance"]);
+    exact.arms.front().distribution_distance = numbers(shape["distance"]);
     check_list(evidence_of(exact, exact.arms.front()).shape.p, shape["p"]);
 }
 

@@ -44,7 +44,7 @@ double least_shape_level() {
     return kolmogorov_smirnov_p(high + 1.0 / 4096, trials);
 }
 
-void look_at_blocks(const Evidence& evidence, Calibration& calibration) {
+void examine_groups(const Evidence& evidence, Calibration& calibration) {
     static const double coverage_level[] = {wilson_level(0.5), wilson_level(0.9), wilson_level(0.95),
                                             wilson_level(0.99)};
     for (const BlockEvidence& block : evidence.blocks) {
@@ -67,14 +67,14 @@ void look_at_blocks(const Evidence& evidence, Calibration& calibration) {
     }
 }
 
-void look_at_accuracy(const Evidence& evidence, double least_level, Calibration& calibration) {
+void examine_accuracy(const Evidence& evidence, double least_level, Calibration& calibration) {
     for (const BlockEvidence& block : evidence.blocks)
         calibration.between("RMSE over predicted of " + block.block, least_level, most_t_level,
                             misses(block.accuracy.ratio_ci95, 1));
 }
 
 /// Innovations are independent from step to step: so are the NIS, and the correlations of different lags, in the limit.
-void look_at_innovations(const Evidence& evidence, double least_level, Calibration& calibration) {
+void examine_innovations(const Evidence& evidence, double least_level, Calibration& calibration) {
     for (const NisEvidence& part : evidence.nis) {
         const std::string of = " of " + part.part;
         for (std::size_t k = 0; k < part.nis.ratio.size(); ++k)
@@ -93,7 +93,7 @@ void look_at_innovations(const Evidence& evidence, double least_level, Calibrati
     calibration.exactly("whiteness at all lags", any_of(0.05 / 10, 10), any);
 }
 
-void look_at_bias(const Evidence& evidence, Calibration& calibration) {
+void examine_bias(const Evidence& evidence, Calibration& calibration) {
     static const double one = t_quantile(0.05, trials - 1), all = t_quantile(0.05 / (8 * steps), trials - 1);
     int beyond = 0;
     for (const BiasEvidence& component : evidence.bias) {
@@ -105,7 +105,7 @@ void look_at_bias(const Evidence& evidence, Calibration& calibration) {
     calibration.on_average("biased components and steps", 0.05, beyond);
 }
 
-void look_at_shape(const Evidence& evidence, Calibration& calibration) {
+void examine_distribution(const Evidence& evidence, Calibration& calibration) {
     static const double least = least_shape_level();
     calibration.between("shape", least, 0.05, evidence.shape.p[middle] < 0.05);
 }
@@ -133,11 +133,11 @@ TEST_CASE("calibration: on the matched linear scenario every test rejects at its
         REQUIRE(evidence.nis.size() == 3);
         REQUIRE(evidence.whiteness.size() == 10);
         REQUIRE(evidence.bias.size() == 8);
-        look_at_blocks(evidence, calibration);
-        look_at_accuracy(evidence, least_t_level, calibration);
-        look_at_innovations(evidence, least_t_level, calibration);
-        look_at_bias(evidence, calibration);
-        look_at_shape(evidence, calibration);
+        examine_groups(evidence, calibration);
+        examine_accuracy(evidence, least_t_level, calibration);
+        examine_innovations(evidence, least_t_level, calibration);
+        examine_bias(evidence, calibration);
+        examine_distribution(evidence, calibration);
         look_at_verdict(evidence, calibration);
     });
     calibration.check();
@@ -150,10 +150,10 @@ TEST_CASE("calibration: so it does where rows vary from trial to trial", "[long]
     replicate(matched_with_gaps(), trials, 1000, [&](const Evidence& evidence) {
         const std::vector<double>& degrees = evidence.nis.front().nis.degrees;
         REQUIRE(degrees[middle] < 12 * trials - 300);  // 12 rows if nothing is missed, 10.2 on average
-        look_at_blocks(evidence, calibration);
-        look_at_accuracy(evidence, 0, calibration);
-        look_at_innovations(evidence, 0, calibration);
-        look_at_shape(evidence, calibration);
+        examine_groups(evidence, calibration);
+        examine_accuracy(evidence, 0, calibration);
+        examine_innovations(evidence, 0, calibration);
+        examine_distribution(evidence, calibration);
     });
     calibration.check();
 }
@@ -161,7 +161,7 @@ TEST_CASE("calibration: so it does where rows vary from trial to trial", "[long]
 TEST_CASE("calibration: few trials of few steps rarely make a filter that is right look wrong", "[long]") {
     // Student's interval alone does in 5 to 13 % of these, chi-square being skewed [measured].
     for (const int poses : {2, 3, 6}) {
-        Scenario s = matched_linear();
+        DeformableSettings s = matched_linear();
         s.poses = poses;
         for (const int few : {5, 10, 20}) {
             Calibration calibration;

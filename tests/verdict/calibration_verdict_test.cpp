@@ -20,7 +20,7 @@ struct Verdicts {
     std::map<std::string, int> found;  ///< seeds with a finding, by `what where`
 };
 
-Verdicts verdicts(const Scenario& scenario, std::int64_t trials) {
+Verdicts verdicts(const DeformableSettings& scenario, std::int64_t trials) {
     Verdicts result;
     std::map<std::string, std::pair<double, double>> sums;
     replicate(scenario, trials, seeds, [&](const Evidence& evidence) {
@@ -49,7 +49,7 @@ void check_ratio(const Verdicts& verdicts, const std::string& block, double thei
 
 TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic for 200 trials, whatever the seed",
           "[long]") {
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
     Verdicts v = verdicts(s, 200);
     CHECK(v.count["optimistic"] == seeds);  // measured at 50 trials: all 50 too
@@ -63,7 +63,7 @@ TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic
 
 TEST_CASE("calibration: a filter told sqrt(0.7) of all process noises is optimistic for 400 trials, whatever the seed",
           "[long]") {
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.heading = s.filter.odometry = s.filter.features = std::sqrt(0.7);
     Verdicts v = verdicts(s, 400);
     CHECK(v.count["optimistic"] == seeds);  // measured at 200 trials: all 50; at 100: 35
@@ -78,7 +78,7 @@ TEST_CASE("calibration: a filter told sqrt(0.7) of all process noises is optimis
 TEST_CASE("calibration: a covariance 1.1 times too large is pessimistic, 0.9 of it optimistic, for 2000 trials",
           "[long]") {
     for (const double factor : {1.1, 0.9}) {
-        Scenario s = matched_linear();
+        DeformableSettings s = matched_linear();
         s.filter.covariance = factor;
         Verdicts v = verdicts(s, 2000);
         CHECK(v.count[factor > 1 ? "pessimistic" : "optimistic"] ==
@@ -88,7 +88,7 @@ TEST_CASE("calibration: a covariance 1.1 times too large is pessimistic, 0.9 of 
 }
 
 TEST_CASE("calibration: sigma_head = 0.042 is mixed for 4000 trials, whatever the seed", "[long]") {
-    Scenario s;
+    DeformableSettings s;
     s.noise.heading = 0.042;
     s.arms.controllers = {Controller::fixed};
     Verdicts v = verdicts(s, 4000);
@@ -113,7 +113,7 @@ TEST_CASE("calibration: the matched filter is consistent for 4000 trials, but fo
 TEST_CASE("calibration: what all steps say counts as soon as their corrected interval is beyond the margin", "[long]") {
     // The chi-square bound beside that interval is for few trials, and must not cost many their power: for 4000 it has
     // the same width but for the skewness, 1 % of it. Steps taken for one would have one 2.3 times as wide.
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.covariance = 0.9;
     Evidence evidence;
     replicate(s, 4000, 1, [&](const Evidence& one) { evidence = one; });

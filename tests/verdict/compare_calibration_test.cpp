@@ -19,7 +19,7 @@ TEST_CASE("compare: the variance reduction is what unpaired runs with seeds of t
     constexpr std::uint64_t replications = 400;
     constexpr std::int64_t trials = 64;
     const std::vector<int> columns{column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio};
-    const std::vector<Scenario> circle{small_scenarios()[1]};
+    const std::vector<DeformableSettings> circle{small_scenarios()[1]};
     std::vector<std::vector<double>> paired(columns.size()), unpaired(columns.size());
     for (std::uint64_t r = 0; r < replications; ++r) {
         const Study both = run(circle, 1000 + r, trials), one = run(circle, 2000 + r, trials),
@@ -46,7 +46,7 @@ TEST_CASE("compare: conclusions hold together at 95 %", "[long]") {
     // 200 families of 5 comparisons of 100 standard-normal differences with mean 0. Each asks its t interval (at 99 %)
     // and its bootstrap's to leave 0 out: at most 4.9 % of the families may have a conclusion, 9.8. More than 22 has
     // 1e-4, none 1e-4. Without the correction 22.6 % had one, 45.
-    std::vector<Scenario> scenarios;
+    std::vector<DeformableSettings> scenarios;
     for (int s = 0; s < 5; ++s) scenarios.push_back(changed(matched(), "scenario.name", "s" + std::to_string(s)));
     Study study = new_study(scenarios, 1);
     int wrong = 0;

@@ -14,7 +14,7 @@ using namespace credence::test;
 
 namespace {
 
-ScenarioResults simulated(const Scenario& scenario, std::int64_t trials) {
+ScenarioResults simulated(const DeformableSettings& scenario, std::int64_t trials) {
     validate(scenario);
     Study study = new_study({resolved(scenario)}, 1);
     run_study(study, {trials, 0, {}});
@@ -23,7 +23,7 @@ ScenarioResults simulated(const Scenario& scenario, std::int64_t trials) {
 
 Evidence evidence_of_first_arm(const ScenarioResults& results) { return evidence_of(results, results.arms.front()); }
 
-Consistency verdict_of(const Scenario& scenario, std::int64_t trials, double margin = 0.05) {
+Consistency verdict_of(const DeformableSettings& scenario, std::int64_t trials, double margin = 0.05) {
     return judge(evidence_of_first_arm(simulated(scenario, trials)), margin);
 }
 
@@ -74,7 +74,7 @@ TEST_CASE("consistency: few trials do not make a consistent filter look inconsis
 
 TEST_CASE("consistency: one block outside is enough to decide, so the trials that decide are its own") {
     ScenarioResults results = simulated(matched_linear(), 60);
-    FigureTotals& pose = results.arms.front().totals[1];
+    SeriesTotals& pose = results.arms.front().totals[1];
     for (ExactSum& step : pose.sum) step.add(0.12 * step.rounded());  // the pose outside the margin, the others inside
     const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     REQUIRE(verdict_name(c.verdict) == "undecided");
@@ -83,7 +83,7 @@ TEST_CASE("consistency: one block outside is enough to decide, so the trials tha
 }
 
 TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 4000));
     const Consistency c = judge(evidence, 0.05);
@@ -97,7 +97,7 @@ TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic
 }
 
 TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic", "[long]") {
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.covariance = 1.1;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 20000));
     const Consistency c = judge(evidence, 0.05);
@@ -108,7 +108,7 @@ TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic
 
 TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") {
     // statistics.md: the seed's EKF with sigma_head = 0.042 gives 0.97 over all, 1.20 for the pose, 0.70 for the features.
-    Scenario s;
+    DeformableSettings s;
     s.noise.heading = 0.042;
     s.arms.controllers = {Controller::fixed};
     const Evidence evidence = evidence_of_first_arm(simulated(s, 10000));
@@ -122,10 +122,10 @@ TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") 
 TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent", "[long]") {
     ScenarioResults results = simulated(matched_linear(), 20000);
     REQUIRE(judge(evidence_of_first_arm(results), 0.05).verdict == Verdict::consistent);
-    const auto bias = std::find_if(results.figures.begin(), results.figures.end(),
-                                   [](const Figure& f) { return f.name == "standardised_error_f1_x"; });
-    REQUIRE(bias != results.figures.end());
-    FigureTotals& totals = results.arms.front().totals[static_cast<std::size_t>(bias - results.figures.begin())];
+    const auto bias = std::find_if(results.all_series.begin(), results.all_series.end(),
+                                   [](const Series& f) { return f.name == "standardised_error_f1_x"; });
+    REQUIRE(bias != results.all_series.end());
+    SeriesTotals& totals = results.arms.front().totals[static_cast<std::size_t>(bias - results.all_series.begin())];
     totals.sum[6].add(20000 * 0.05);  // a mean of 0.05 sigma at step 7, 7 standard errors
     const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     CHECK(verdict_name(c.verdict) == "undecided");
@@ -137,7 +137,7 @@ TEST_CASE("consistency: a bias of one component is found and named, and keeps a 
 
 TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
     ScenarioResults results = simulated(matched_linear(), 20000);
-    FigureTotals& whole = results.arms.front().totals.front();
+    SeriesTotals& whole = results.arms.front().totals.front();
     for (const std::size_t k : {2u, 3u, 4u, 8u}) {  // 10 % more NEES at steps 3 to 5 and 9
         whole.sum[k].add(0.1 * whole.sum[k].rounded());
         whole.square_sum[k].add(0.21 * whole.square_sum[k].rounded());
@@ -151,7 +151,7 @@ TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
 }
 
 TEST_CASE("consistency: a wider margin forgives more", "[long]") {
-    Scenario s = matched_linear();
+    DeformableSettings s = matched_linear();
     s.filter.covariance = 1.1;
     CHECK(verdict_name(verdict_of(s, 20000, 0.15).verdict) == "consistent");
 }

@@ -65,7 +65,7 @@ Products products_of(const oracle::Trial& trial, int features, int edges, int la
     return products;
 }
 
-oracle::Trial oracle_trial(const Scenario& scenario, std::uint64_t trial) {
+oracle::Trial oracle_trial(const DeformableSettings& scenario, std::uint64_t trial) {
     return oracle::run(scenario, Controller::fixed, for_oracle(keyed_noise(scenario, 7, trial)));
 }
 
@@ -74,7 +74,7 @@ oracle::Trial oracle_trial(const Scenario& scenario, std::uint64_t trial) {
 TEST_CASE("evidence: NIS of features and of edges, squared errors and variances are the oracle's") {
     for (const Settings& world : worlds()) {
         CAPTURE(described(world));
-        const Scenario scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
+        const DeformableSettings scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
         const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 7, 3));
         const oracle::Trial oracle = oracle_trial(scenario, 3);
         for (int k = 1; k < scenario.poses; ++k) {
@@ -86,7 +86,7 @@ TEST_CASE("evidence: NIS of features and of edges, squared errors and variances 
                   Approx(quadratic(step.innovation.head(seen), step.innovation_covariance.topLeftCorner(seen, seen))).epsilon(1e-9));
             CHECK(run.figure("nis_edges", k) ==
                   Approx(quadratic(step.innovation.tail(rest), step.innovation_covariance.bottomRightCorner(rest, rest))).epsilon(1e-9));
-            for (const StateBlock& block : state_blocks(scenario)) {
+            for (const ComponentGroup& block : state_blocks(scenario)) {
                 const auto e = (step.mean - step.truth).segment(block.first, block.count);
                 const auto P = step.covariance.diagonal().segment(block.first, block.count);
                 const std::string suffix = block.name == "all" ? "" : "_" + block.name;
@@ -102,7 +102,7 @@ TEST_CASE("evidence: NIS of features and of edges, squared errors and variances 
 TEST_CASE("evidence: errors and products of whitened innovations of detailed trials are the oracle's") {
     for (const Settings& world : worlds()) {
         CAPTURE(described(world));
-        const Scenario scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
+        const DeformableSettings scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
         const int trials = 11, features = static_cast<int>(scenario.features.positions.size()),
                   edges = static_cast<int>(edge_list(scenario).size()), lags = lag_count(scenario.poses);
         const Block block = run_block(Problem(scenario), 7, 0, trials);
@@ -136,7 +136,7 @@ TEST_CASE("evidence: errors and products of whitened innovations of detailed tri
 }
 
 TEST_CASE("evidence: later blocks have no details, and many edges are not whitened") {
-    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}});
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}});
     const Block later = run_block(Problem(scenario), 7, 16, 3);
     CHECK(later.arms.front().errors.empty());
     CHECK(later.arms.front().product_sums.empty());
@@ -150,9 +150,9 @@ TEST_CASE("evidence: later blocks have no details, and many edges are not whiten
 
 TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
     // Near singular: some trials fail.
-    const Scenario scenario = scenario_with({{"arms.controllers", "fixed"}, {"noise.heading", "0.9"}, {"sensor.sigma", "1e-9"},
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}, {"noise.heading", "0.9"}, {"sensor.sigma", "1e-9"},
                                              {"noise.odometry", "1e-7"}, {"filter.edges", "1e-7"}});
-    for (const Scenario& world : {scenario, scenario_with({{"arms.controllers", "fixed"}})}) {
+    for (const DeformableSettings& world : {scenario, scenario_with({{"arms.controllers", "fixed"}})}) {
         ScenarioResults results = empty_results(world);
         extend(results, 300);
         const Problem problem(world);
@@ -164,7 +164,7 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
         const ArmResults& arm = results.arms.front();
         const Eigen::Index steps = results.steps();
         std::vector<Eigen::MatrixXd> covered(state_blocks(world).size(), Eigen::MatrixXd::Zero(steps, 4));
-        Eigen::MatrixXd cells = Eigen::MatrixXd::Zero(steps, shape_cells);
+        Eigen::MatrixXd cells = Eigen::MatrixXd::Zero(steps, distribution_cells);
         for (std::uint64_t trial = 0; trial < 300; ++trial) {
             const Run run = run_arm(world, Controller::fixed, keyed_noise(world, 3, trial));
             if (failed(static_cast<Status>(static_cast<int>(run.columns[column_status])))) continue;
@@ -174,7 +174,7 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
                     const boost::math::chi_squared distribution(state_blocks(world)[b].count);
                     const double share = boost::math::cdf(distribution, std::min(value, 1e6));
                     for (Eigen::Index level = 0; level < 4; ++level) covered[b](k, level) += share < coverage_levels[level];
-                    if (b == 0) ++cells(k, std::min<Eigen::Index>(shape_cells - 1, static_cast<Eigen::Index>(share * shape_cells)));
+                    if (b == 0) ++cells(k, std::min<Eigen::Index>(distribution_cells - 1, static_cast<Eigen::Index>(share * distribution_cells)));
                 }
         }
         for (std::size_t b = 0; b < covered.size(); ++b)
@@ -182,8 +182,8 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
                 for (Eigen::Index level = 0; level < 4; ++level)
                     CHECK(static_cast<double>(arm.totals[b].covered[static_cast<std::size_t>(4 * k + level)]) == covered[b](k, level));
         for (Eigen::Index k = 0; k < steps; ++k)
-            for (Eigen::Index cell = 0; cell < shape_cells; ++cell)
-                if (static_cast<double>(arm.cells[static_cast<std::size_t>(k * shape_cells + cell)]) != cells(k, cell))
+            for (Eigen::Index cell = 0; cell < distribution_cells; ++cell)
+                if (static_cast<double>(arm.cells[static_cast<std::size_t>(k * distribution_cells + cell)]) != cells(k, cell))
                     FAIL_CHECK("cell " << cell << " of step " << k + 1);
     }
 }
@@ -193,8 +193,8 @@ TEST_CASE("evidence: stable quantiles of chi-square are Boost's") {
         const boost::math::chi_squared distribution(degrees);
         const EquiprobableCells cells(degrees);
         double worst = 0;
-        for (int i = 1; i < shape_cells; ++i) {
-            const double expected = boost::math::quantile(distribution, static_cast<double>(i) / shape_cells);
+        for (int i = 1; i < distribution_cells; ++i) {
+            const double expected = boost::math::quantile(distribution, static_cast<double>(i) / distribution_cells);
             const double bound = cells.upper()[static_cast<std::size_t>(i - 1)];
             worst = std::max(worst, std::abs(bound / expected - 1));
             CHECK(cells.cell(bound) == i);
@@ -202,8 +202,8 @@ TEST_CASE("evidence: stable quantiles of chi-square are Boost's") {
         }
         CHECK(worst < 5e-11);  // the series for 1000 degrees has 500 factors
         CHECK(cells.cell(0) == 0);
-        CHECK(cells.cell(1e300) == shape_cells - 1);
-        CHECK(cells.cell(infinity) == shape_cells - 1);
+        CHECK(cells.cell(1e300) == distribution_cells - 1);
+        CHECK(cells.cell(infinity) == distribution_cells - 1);
         for (const double level : coverage_levels)
             CHECK(stable_chi_square_quantile(level, degrees) ==
                   Approx(boost::math::quantile(distribution, level)).epsilon(2e-12));

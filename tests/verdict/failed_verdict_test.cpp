@@ -96,7 +96,7 @@ Evidence evidence_with(const FailingTrial& failure, std::size_t count) {
     Values values;
     for (std::size_t trial = 0; trial < count; ++trial) failure.apply(values, trial);
     values.write(folder / "record.h5");
-    const JudgedRecord record = read_judgement_record(folder / "record.h5");
+    const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == static_cast<std::int64_t>(count));
     return evidence_of(record.results, record.results.arms.front());
 }
@@ -137,7 +137,7 @@ TEST_CASE("failed: the verdict stands above what the other trials say, and above
         Values values;
         for (std::size_t trial = 0; trial < trials; ++trial) failure.apply(values, trial);
         values.write(folder / "record.h5");
-        const JudgedRecord record = read_judgement_record(folder / "record.h5");
+        const Record record = read_record(folder / "record.h5");
         const Evidence evidence = evidence_of(record.results, record.results.arms.front());
         CHECK(evidence.failed_trials() == 100);
         const Consistency with = judge(evidence, limits()), without = judge(evidence, limits(1));
@@ -156,13 +156,13 @@ TEST_CASE("failed: a trial that ends early has not failed where the dataset `ste
     values.declared.assign(trials, static_cast<std::int32_t>(steps));
     std::fill_n(values.declared.begin(), 900, 2);
     values.write(folder / "record.h5");
-    const JudgedRecord record = read_judgement_record(folder / "record.h5");
+    const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == 0);
     CHECK(record.results.arms.front().present == std::vector<std::int64_t>{1000, 1000, 100, 100});
     CHECK(judge(evidence_of(record.results, record.results.arms.front()), limits()).verdict == Verdict::consistent);
     values.declared.assign(trials, static_cast<std::int32_t>(steps));
     values.write(folder / "record.h5");
-    CHECK(read_judgement_record(folder / "record.h5").trouble_count == 900);
+    CHECK(read_record(folder / "record.h5").trouble_count == 900);
 }
 
 TEST_CASE("failed: diverged trials count, and every failed trial is in the first line of the arm") {

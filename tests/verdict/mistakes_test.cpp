@@ -39,8 +39,8 @@ double mean_ratio(const ArmResults& arm, const std::function<bool(Status)>& coun
 
 /// Trials that a step's shape was counted on.
 std::int64_t counted_cells(const ArmResults& arm, std::size_t k) {
-    const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * shape_cells);
-    return std::accumulate(first, first + shape_cells, std::int64_t{0});
+    const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells);
+    return std::accumulate(first, first + distribution_cells, std::int64_t{0});
 }
 
 /// Values of sd 1, but for one.
@@ -53,15 +53,15 @@ std::vector<double> values_with(std::size_t place, double outlier, std::size_t c
 }
 
 /// A look at the first of the values, as the production judges it.
-Look look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count, int number) {
+InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count, int number) {
     const GoalState state = decide({values.begin(), values.begin() + count}, rule.goals.front(), number);
-    return {count, number, look_alpha(number), {state}, state.met()};
+    return {count, number, analysis_alpha(number), {state}, state.met()};
 }
 
 }  // namespace
 
 TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and not one of 0") {
-    Scenario s;  // odometry that is worth nothing against measurements that are near perfect: S and P lose their digits
+    DeformableSettings s;  // odometry that is worth nothing against measurements that are near perfect: S and P lose their digits
     s.noise.odometry = 5e4;
     s.sensor.sigma = 1e-3;
     s.sensor.range_max = std::numeric_limits<double>::infinity();
@@ -91,14 +91,14 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
 }
 
 TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a normal of its mean and deviation") {
-    Scenario s;  // trace(P) is heavy-tailed here
+    DeformableSettings s;  // trace(P) is heavy-tailed here
     s.arms.controllers = {Controller::fixed};
     Study study = new_study({resolved(s)}, 1);
     run_study(study, {trials, 1, {}});
     std::vector<double> sorted = study.scenarios.front().arms.front().columns[column_trace_P];
     std::sort(sorted.begin(), sorted.end());
     const Report report = make_report(study, 0.05);
-    const FigureReport& figure = report.arms.front().figures[column_trace_P];
+    const ColumnReport& figure = report.arms.front().columns[column_trace_P];
     REQUIRE(reported_quantiles[0] == 0.05);
     REQUIRE(reported_quantiles[3] == 0.95);
     // Type 7: at places 0.05 * 299 = 14.95 and 284.05 of the sorted values, counted from 0.
@@ -108,7 +108,7 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
 }
 
 TEST_CASE("mistakes: diverged trials stay in every figure of the evidence, and are counted") {
-    Scenario s;
+    DeformableSettings s;
     s.noise.odometry = 1.2e6;  // where nothing is seen at a pose, which happens in some trials, P is beyond 1e12
     s.sensor.sigma = 1e3;
     s.sensor.range_max = std::numeric_limits<double>::infinity();
@@ -135,7 +135,7 @@ TEST_CASE("mistakes: a look is judged by its own values, not by the widest or na
     const StoppingRule rule{{parse_goal("x=0.5")}, 4096, 16};
     std::vector<double> values = values_with(3, 100, 4096);
     std::vector<double> widths;
-    const Look last = run_looks(rule, [&](std::int64_t count, int number) {
+    const InterimAnalysis last = run_analyses(rule, [&](std::int64_t count, int number) {
         widths.push_back(look_at_first(values, rule, count, number).states.front().half_width);
         return look_at_first(values, rule, count, number);
     });
@@ -145,7 +145,7 @@ TEST_CASE("mistakes: a look is judged by its own values, not by the widest or na
     CHECK(last.states.front().half_width < 0.5);
     const Summary summary = summarise({values.begin(), values.begin() + last.trials});
     const double width =
-        t_quantile(look_alpha(last.number), static_cast<double>(last.trials) - 1) * summary.standard_error;
+        t_quantile(analysis_alpha(last.number), static_cast<double>(last.trials) - 1) * summary.standard_error;
     CHECK(last.states.front().half_width == Approx(width).epsilon(1e-12));
     // An outlier that comes late: the next look is wider than the one before, and says so.
     values = values_with(20, 100, 64);

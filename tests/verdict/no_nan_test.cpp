@@ -21,21 +21,21 @@ using Json = nlohmann::json;
 
 namespace {
 
-Study run(const std::vector<Scenario>& scenarios, std::int64_t trials, Keep keep = Keep::trials) {
+Study run(const std::vector<DeformableSettings>& scenarios, std::int64_t trials, Keep keep = Keep::trials) {
     Study study = new_study(scenarios, 1, keep);
     run_study(study, {trials, 1, {}});
     return study;
 }
 
-Scenario small(const std::function<void(Scenario&)>& change) {
-    Scenario scenario = small_scenarios().front();
+DeformableSettings small(const std::function<void(DeformableSettings&)>& change) {
+    DeformableSettings scenario = small_scenarios().front();
     change(scenario);
     return resolved(scenario);
 }
 
 /// Some of its trials diverge without failing, with an S that has no whitened innovation.
 Study noise_of_1e9() {
-    return run({small([](Scenario& s) {
+    return run({small([](DeformableSettings& s) {
                    s.poses = 20;
                    s.noise.heading = 1e9;
                })}, 150);
@@ -56,8 +56,8 @@ Study without_numbers(double value) {
     for (ScenarioResults& results : study.scenarios)
         for (ArmResults& arm : results.arms) {
             for (std::size_t c = 0; c < arm.columns.size(); ++c)
-                if (is_figure(results.columns[c])) std::fill(arm.columns[c].begin(), arm.columns[c].end(), value);
-            for (FigureTotals& totals : arm.totals) {
+                if (is_reported(results.columns[c])) std::fill(arm.columns[c].begin(), arm.columns[c].end(), value);
+            for (SeriesTotals& totals : arm.totals) {
                 for (ExactSum& sum : totals.sum) sum.add(value);
                 for (ExactSum& sum : totals.square_sum) sum.add(value);
                 totals.run_square_sum.add(value);
@@ -114,7 +114,7 @@ Study interrupted(Keep keep) {
 
 TEST_CASE("report: no sentence says nan or inf, of studies that fail in every way") {
     SECTION("noise of 1e9") { check_renderings(noise_of_1e9()); }
-    SECTION("diverged") { check_renderings(run({small([](Scenario& s) { s.noise.odometry = 1e7; })}, 20)); }
+    SECTION("diverged") { check_renderings(run({small([](DeformableSettings& s) { s.noise.odometry = 1e7; })}, 20)); }
     SECTION("one trial") { check_renderings(run(small_scenarios(), 1)); }
     SECTION("two trials") { check_renderings(run(small_scenarios(), 2)); }
     SECTION("no trial") { check_renderings(new_study(small_scenarios(), 1)); }

@@ -28,7 +28,7 @@ bool starts(const std::string& text, const std::string& with) { return text.comp
 }  // namespace
 
 TEST_CASE("ini: an empty text is the default scenario, under the name given") {
-    const Scenario s = read_scenario_text("", "x.ini", "x");
+    const DeformableSettings s = read_scenario_text("", "x.ini", "x");
     CHECK(s.name == "x");
     CHECK(s.poses == 20);
     CHECK(s.planner.speeds == 10);
@@ -36,7 +36,7 @@ TEST_CASE("ini: an empty text is the default scenario, under the name given") {
 }
 
 TEST_CASE("ini: sections, comments, blank lines, spaces and carriage returns are read") {
-    const Scenario s = read_scenario_text(
+    const DeformableSettings s = read_scenario_text(
         "# a comment\r\n\n[scenario]\n name = abc # behind\n[model]\r\nprocess=translation\r\n\n[noise]\n  walk =  0.25 \n", "x.ini", "x");
     CHECK(s.name == "abc");
     CHECK(s.process == Process::translation);
@@ -44,7 +44,7 @@ TEST_CASE("ini: sections, comments, blank lines, spaces and carriage returns are
 }
 
 TEST_CASE("ini: what scenario_text writes reads back to the same text") {
-    Scenario s;
+    DeformableSettings s;
     s.name = "round";
     s.title = "A title, with = signs [and] brackets";
     s.features.positions = {{0.1, -0.2}, {1e-3, 4}};
@@ -57,7 +57,7 @@ TEST_CASE("ini: what scenario_text writes reads back to the same text") {
 }
 
 TEST_CASE("ini: overrides win, the last one most") {
-    const Scenario s = read_scenario_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
+    const DeformableSettings s = read_scenario_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
     CHECK(s.noise.walk == 3);
 }
 

@@ -21,7 +21,7 @@ struct Mean {
 /// Sums over the blocks of a study of one scenario.
 class Totals {
 public:
-    Totals(const LandmarkScenario& scenario, int blocks) : figures_(landmark_figures(scenario)), steps_(scenario.poses - 1) {
+    Totals(const LandmarkSettings& scenario, int blocks) : figures_(landmark_series(scenario)), steps_(scenario.poses - 1) {
         const LandmarkSimulation simulation(scenario);
         const std::size_t arms = scenario.estimators.size();
         sums_.resize(arms);
@@ -58,7 +58,7 @@ private:
         for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
     }
     std::size_t place(const std::string& name) const {
-        const auto found = std::find_if(figures_.begin(), figures_.end(), [&](const Figure& f) { return f.name == name; });
+        const auto found = std::find_if(figures_.begin(), figures_.end(), [&](const Series& f) { return f.name == name; });
         REQUIRE(found != figures_.end());
         return static_cast<std::size_t>(found - figures_.begin());
     }
@@ -67,7 +67,7 @@ private:
         return {value, std::sqrt((square_sum / trials_ - value * value) / trials_)};
     }
 
-    std::vector<Figure> figures_;
+    std::vector<Series> figures_;
     int steps_;
     double trials_ = 0;
     std::vector<std::vector<double>> sums_, squares_, run_squares_;
@@ -85,7 +85,7 @@ const std::vector<int> tenths{60, 120, 180, 240, 300, 360, 420, 480, 540, 600};
 }  // namespace
 
 TEST_CASE("landmarks: every table of the classical loop is what an independent implementation found", "[long]") {
-    const Totals totals(LandmarkScenario(), 4);  // arms: ekf, ideal, fej, riekf, iekf
+    const Totals totals(LandmarkSettings(), 4);  // arms: ekf, ideal, fej, riekf, iekf
     const double pose[5][10]{{1.48, 1.82, 1.97, 2.08, 2.18, 2.25, 2.32, 2.39, 2.30, 2.41},
                              {1.02, 1.01, 1.04, 0.98, 1.04, 1.01, 1.03, 1.07, 1.02, 1.04},
                              {1.04, 1.04, 1.07, 1.00, 1.08, 1.04, 1.04, 1.10, 1.05, 1.07},
@@ -137,7 +137,7 @@ TEST_CASE("landmarks: under less heading noise the extended Kalman filter loses 
     };
     for (const auto& [sigma, ekf, riekf] : {Row{0.001, 0.99, 0.96}, Row{0.01, 1.29, 1.02}, Row{0.02, 1.77, 1.01}}) {
         CAPTURE(sigma);
-        LandmarkScenario scenario;
+        LandmarkSettings scenario;
         scenario.noise.heading = sigma;
         scenario.estimators = {Estimator::ekf, Estimator::riekf};
         const Totals totals(scenario, 2);

@@ -15,7 +15,7 @@ using Catch::Contains;
 
 namespace {
 
-Declaration landmarks(const std::string& lines) {
+Scenario landmarks(const std::string& lines) {
     return read_declaration_text("[scenario]\nworld = landmarks\n" + lines, "test", "test");
 }
 
@@ -36,17 +36,17 @@ TEST_CASE("landmark world: a scenario names its world, and its text reads back a
     const std::string lines = "poses = 40\nlength_unit = km\n[loop]\nsides = 17\nstep = 2.5\n[landmarks]\ncount = 9\n"
                               "offset = 2\nprior = 3\n[sensor]\nrange_max = inf\nsigma = 0.2\n[noise]\nheading = 0.02\n"
                               "odometry = 0.3\n[arms]\nestimators = riekf, ekf\n";
-    const Declaration declared = landmarks(lines);
+    const Scenario declared = landmarks(lines);
     CHECK(declared.world == "landmarks");
     CHECK(declared.poses == 40);
     CHECK(declared.length_unit == "km");
     CHECK(declared.arms == std::vector<std::string>{"fixed.riekf", "fixed.ekf"});
     CHECK(declared.components.size() == 3 + 2 * 9);
     CHECK(declared.blocks.size() == 5 + 9);
-    const Declaration again = read_declaration_text(scenario_text(declared), "test", "other");
+    const Scenario again = read_declaration_text(scenario_text(declared), "test", "other");
     CHECK(again.settings == declared.settings);
     CHECK(again.arms == declared.arms);
-    const LandmarkScenario scenario = landmark_scenario_of(declared);
+    const LandmarkSettings scenario = landmark_scenario_of(declared);
     CHECK(scenario.loop.sides == 17);
     CHECK(scenario.loop.step == 2.5);
     CHECK(scenario.landmarks.count == 9);
@@ -61,7 +61,7 @@ TEST_CASE("landmark world: a scenario names its world, and its text reads back a
 TEST_CASE("landmark world: its keys have help, and their defaults are those of the classical loop") {
     const std::vector<DescribedKey> keys = find_world("landmarks")->keys();
     for (const DescribedKey& key : keys) CHECK(!key.help.empty());
-    const Declaration defaults = landmarks("");
+    const Scenario defaults = landmarks("");
     for (const Setting& setting : defaults.settings) {
         if (setting.key == world_key || setting.key == "scenario.name") continue;
         CAPTURE(setting.key);
@@ -86,24 +86,24 @@ TEST_CASE("landmark world: what makes no sense is refused by the line it stands 
 }
 
 TEST_CASE("landmark world: a block is its trials one by one, on every unit") {
-    LandmarkScenario scenario;
+    LandmarkSettings scenario;
     scenario.poses = 25;
     scenario.loop.sides = 20;
     scenario.landmarks.count = 6;
-    const std::vector<Column> columns = find_world("landmarks")->columns(declaration_of(scenario));
+    const std::vector<Column> columns = find_world("landmarks")->columns(scenario_of(scenario));
     const LandmarkProblem problem(scenario);
     const LandmarkView& view = problem.view();
     using Heading = Layout<Process::heading, any_count>;
     Unobserved nothing;
     const auto work = std::make_unique<CommonWorkspace<Heading, double>>();
     constexpr int trials = 11;
-    for (const Unit& unit : runnable_units()) {
-        CAPTURE(unit.name);
-        const Block block = run_block(LandmarkSimulation(scenario, unit), columns, scenario.estimators.size(), 5, 1, trials);
+    for (const Target& target : runnable_targets()) {
+        CAPTURE(target.name);
+        const Block block = run_block(LandmarkSimulation(scenario, target), columns, scenario.estimators.size(), 5, 1, trials);
         const ArmBlock& ekf = block.arms.front();
         for (int trial = 0; trial < trials; ++trial) {
             double own[column_count];
-            std::vector<double> figures(static_cast<std::size_t>(view.figure_count * (view.poses - 1)));
+            std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
             run_trial(view, KeyedDraws<double>(5, static_cast<std::uint64_t>(block_size + trial), infinity), nothing,
                       *work, own, figures.data());
             for (std::size_t c = 0; c < column_count; ++c)

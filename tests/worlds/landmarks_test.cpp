@@ -21,7 +21,7 @@ std::vector<int> rows_of(const std::vector<int>& landmarks) {
 }  // namespace
 
 TEST_CASE("landmarks: every estimator is its paper's filter on a state that grows") {
-    for (const LandmarkScenario& scenario : {classical(70), other()})
+    for (const LandmarkSettings& scenario : {classical(70), other()})
         for (const Estimator estimator : all_estimators)
             for (const std::uint64_t trial : {0u, 1u}) {
                 CAPTURE(estimator, trial, scenario.landmarks.count);
@@ -55,7 +55,7 @@ TEST_CASE("landmarks: every estimator is its paper's filter on a state that grow
 }
 
 TEST_CASE("landmarks: where one is first seen, and what is believed of it before") {
-    LandmarkScenario scenario = other();
+    LandmarkSettings scenario = other();
     scenario.poses = 12;  // not once around
     const LandmarkRun run = run_landmarks(scenario, Estimator::ekf, noise_of(3));
     int never = 0, at_start = 0;
@@ -82,7 +82,7 @@ TEST_CASE("landmarks: where one is first seen, and what is believed of it before
 }
 
 TEST_CASE("landmarks: nothing is left of what was believed before first sight") {
-    LandmarkScenario near = classical(66), far = near;
+    LandmarkSettings near = classical(66), far = near;
     near.landmarks.prior = 0.5;
     far.landmarks.prior = 1000;
     for (const Estimator estimator : all_estimators) {
@@ -99,7 +99,7 @@ TEST_CASE("landmarks: nothing is left of what was believed before first sight") 
 }
 
 TEST_CASE("landmarks: figures count rows, what is out of sight and first sights as they are") {
-    const LandmarkScenario scenario = classical(30);
+    const LandmarkSettings scenario = classical(30);
     const LandmarkRun run = run_landmarks(scenario, Estimator::ekf, noise_of(0));
     double unseen = 0;
     for (int k = 1; k < scenario.poses; ++k) {
@@ -218,7 +218,7 @@ TEST_CASE("landmarks: who believes to observe the turn of everything, and who do
 }
 
 TEST_CASE("landmarks: an iterated update that has not come to rest is counted") {
-    LandmarkScenario scenario = classical(121);
+    LandmarkSettings scenario = classical(121);
     scenario.noise.heading = 0.2;  // so that there are some
     int unsettled = 0, settled = 0;
     for (const std::uint64_t trial : {0u, 1u, 2u, 3u}) {

@@ -32,7 +32,7 @@ struct Spoiled {
     static constexpr const char* name = "spoiled";
     static void keys(OwnKeys<Settings>& keys) { keys.integer("fault.step", &Settings::step, 1, 100, "where"); }
     static std::vector<Component> components(const Settings&) { return {{"a", "m"}, {"b", "m"}}; }
-    static std::vector<StateBlock> blocks(const Settings&) { return {}; }
+    static std::vector<ComponentGroup> blocks(const Settings&) { return {}; }
     static std::vector<std::string> arms(const Settings&) { return {"sound", "indefinite", "nan", "large", "missing"}; }
     static int innovation_rows(const Settings&) { return 3; }
     static void run(const Settings& s, OwnTrial& trial) {
@@ -72,7 +72,7 @@ struct Keyed : Spoiled {
         keys.integer("draw.index", &Settings::index, low, high, "of the key");
     }
     static std::vector<Component> components(const Settings&) { return {{"a", "m"}, {"b", "m"}}; }
-    static std::vector<StateBlock> blocks(const Settings&) { return {}; }
+    static std::vector<ComponentGroup> blocks(const Settings&) { return {}; }
     static std::vector<std::string> arms(const Settings&) { return {"normal", "uniform"}; }
     static int innovation_rows(const Settings&) { return 0; }
     static std::vector<Column> columns(const Settings&) { return {{"x", "of the draw", "1", ColumnType::real, -1}}; }
@@ -99,12 +99,12 @@ const bool added = [] {
     return true;
 }();
 
-Declaration tracker(const Overrides& more = {}) {
+Scenario tracker(const Overrides& more = {}) {
     return read_declaration_text("[scenario]\nworld = tracker\nposes = 30\n", "test", "mine", more);
 }
 
-Study run(const Declaration& scenario, std::int64_t trials, int threads = 1, std::uint64_t seed = 1) {
-    Study study = new_study(std::vector<Declaration>{scenario}, seed);
+Study run(const Scenario& scenario, std::int64_t trials, int threads = 1, std::uint64_t seed = 1) {
+    Study study = new_study(std::vector<Scenario>{scenario}, seed);
     RunOptions options;
     options.trials = trials;
     options.threads = threads;
@@ -151,7 +151,7 @@ TEST_CASE("own world: the filter that knows its model is consistent, the calm on
 }
 
 TEST_CASE("own world: the same bits for any number of threads, over shards, and after resuming") {
-    const Declaration scenario = tracker();
+    const Scenario scenario = tracker();
     const Study whole = run(scenario, 700);
     CHECK(same_results(whole, run(scenario, 700, 3)));
     CHECK_FALSE(same_results(whole, run(scenario, 700, 1, 2)));
@@ -159,7 +159,7 @@ TEST_CASE("own world: the same bits for any number of threads, over shards, and 
     const TemporaryFolder folder;
     std::vector<std::string> parts;
     for (const std::int64_t shard : {1, 0}) {
-        StoredRun stored(folder / ("part" + std::to_string(shard)), new_study(std::vector<Declaration>{scenario}, 1),
+        StoredRun stored(folder / ("part" + std::to_string(shard)), new_study(std::vector<Scenario>{scenario}, 1),
                          Start::fresh);
         RunOptions options;
         options.trials = 700;
@@ -172,7 +172,7 @@ TEST_CASE("own world: the same bits for any number of threads, over shards, and 
     write_results(folder / "whole", merge_results(parts), {});
     CHECK(same_results(read_results(folder / "whole").study, whole));
 
-    StoredRun grown(folder / "whole", new_study(std::vector<Declaration>{scenario}, 1), Start::resume);
+    StoredRun grown(folder / "whole", new_study(std::vector<Scenario>{scenario}, 1), Start::resume);
     RunOptions options;
     options.trials = 900;
     options.keeper = &grown.begin(900, 1, {});
@@ -241,10 +241,10 @@ TEST_CASE("own world: figures are those of the formulas") {
 }
 
 TEST_CASE("own world: what a world does wrong is said, not counted") {
-    const Declaration shorter = read_declaration_text("[scenario]\nworld = short\n", "test", "mine");
+    const Scenario shorter = read_declaration_text("[scenario]\nworld = short\n", "test", "mine");
     REQUIRE_THROWS_WITH(run(shorter, 1), "world short: a trial took 18 steps, not 19.");
     REQUIRE_THROWS_AS(add_own_world<Tracker>(), InputError);
-    Declaration broken = tracker();
+    Scenario broken = tracker();
     broken.blocks.push_back({"beyond", 3, 2});
     REQUIRE_THROWS_WITH(check_declared(broken), "world tracker: block beyond is not in the state.");
     broken = tracker();
@@ -259,7 +259,7 @@ TEST_CASE("own world: a key of a draw that the counter has no room for is refuse
     REQUIRE_THROWS_WITH(keyed(0, -1, 0), "world keyed: invalid pose of a draw -1 (must be 0 to 2147483647).");
     REQUIRE_THROWS_WITH(keyed(0, 1, -1), "world keyed: invalid index of a draw -1 (must be 0 to " + last + ").");
     REQUIRE_THROWS_WITH(keyed(0, 1, 134217728), "world keyed: invalid index of a draw 134217728 (must be 0 to " + last + ").");
-    const Declaration undeclared = read_declaration_text("[scenario]\nworld = undeclared\n", "test", "mine");
+    const Scenario undeclared = read_declaration_text("[scenario]\nworld = undeclared\n", "test", "mine");
     REQUIRE_THROWS_WITH(run(undeclared, 1), "world undeclared: a column that it does not have is set.");
 }
 
@@ -297,7 +297,7 @@ TEST_CASE("own world: its keys are read, refused and shown like any other") {
 TEST_CASE("own world: its keys are swept like those of any other") {
     const TemporaryFolder folder;
     std::ofstream(folder / "mine.ini") << "[scenario]\nworld = tracker\nposes = 30\n";
-    const std::vector<Declaration> grid = read_grid(folder / "mine.ini", {}, parse_grid({"sensor.sigma=0.5,1"}));
+    const std::vector<Scenario> grid = read_grid(folder / "mine.ini", {}, parse_grid({"sensor.sigma=0.5,1"}));
     REQUIRE(grid.size() == 2);
     CHECK(grid[1].name == "mine_sigma-1");
     CHECK(grid[1].sweep == SweepPoint{"mine", {{"sensor.sigma", "1"}}});

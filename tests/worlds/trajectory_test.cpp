@@ -20,7 +20,7 @@ double mahalanobis(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) { return 
 TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in every arm") {
     const Study study = small_study(3, 300, 2);
     for (const ScenarioResults& results : study.scenarios) {
-        const Problem problem(scenario_of(results.scenario));
+        const Problem problem(settings_of(results.scenario));
         for (std::size_t a = 0; a < results.arms.size(); ++a)
             for (const std::int64_t trial : {0, 17, 255, 256, 299}) {
                 const Trajectory t = replay_trial(problem, arms_of(problem.scenario())[a], 3, trial);
@@ -32,7 +32,7 @@ TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in
 }
 
 TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from what is written down") {
-    for (const Scenario& scenario : small_scenarios()) {
+    for (const DeformableSettings& scenario : small_scenarios()) {
         const Problem problem(scenario);
         const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 2);
         const int n = state_size(scenario);
@@ -89,7 +89,7 @@ TEST_CASE("trajectory: recorded noise that does not cover the scenario is refuse
     NoiseRecord record;
     record.poses = 8;
     record.features = 3;
-    Scenario s = small_scenarios().front();
+    DeformableSettings s = small_scenarios().front();
     CHECK_NOTHROW(check_covers(record, s, "r.h5"));
     s.poses = 9;
     CHECK_THROWS_AS(check_covers(record, s, "r.h5"), InputError);

@@ -39,8 +39,8 @@ struct DifferenceTotals {
 /// What is kept of an arm's columns where no trial is kept.
 struct ArmAggregates {
     std::vector<std::int64_t> statuses;      ///< [statuses] trials, by how they ended
-    std::vector<ExactMoments> columns;       ///< [column_count] over the trials that did not fail; of figures only
-    /// [earlier arms, column_count] this arm minus that one; of figures only
+    std::vector<ExactMoments> columns;       ///< [column_count] over the trials that did not fail; of series only
+    /// [earlier arms, column_count] this arm minus that one; of series only
     std::vector<std::vector<DifferenceTotals>> differences;
 
     void add(const ArmAggregates& other);

@@ -10,8 +10,8 @@ namespace credence {
 struct SimulationShape {
     int poses = 0;          ///< K
     int state_size = 0;     ///< n
-    int column_count = 0, figure_count = 0;
-    int block_count = 0;    ///< blocks of the state: the first figures are their NEES, the whole state's before all
+    int column_count = 0, series_count = 0;
+    int block_count = 0;    ///< blocks of the state: the first series are their NEES, the whole state's before all
 };
 
 /// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.
@@ -24,9 +24,9 @@ struct Batch {
     std::int64_t first_trial = 0;
     int trials = 0;
     double* columns = nullptr;          ///< [octets, column_count, 8], a failed trial's still unfilled
-    double* sums = nullptr;             ///< [figure_count, K - 1, 8], added to
-    double* square_sums = nullptr;      ///< [figure_count, K - 1, 8], added to
-    double* run_square_sums = nullptr;  ///< [figure_count, 8], added to: of each trial's sum over its steps
+    double* sums = nullptr;             ///< [series_count, K - 1, 8], added to
+    double* square_sums = nullptr;      ///< [series_count, K - 1, 8], added to
+    double* run_square_sums = nullptr;  ///< [series_count, 8], added to: of each trial's sum over its steps
     std::int32_t* covered = nullptr;    ///< [blocks, K - 1, levels], added to: trials below the coverage bounds
     double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
     // Of detailed trials only; null for others.

@@ -15,9 +15,9 @@ inline constexpr int block_size = 256;
 /// of i mod 8 in trial order, then added up in order. That is the same for every lane width up to 8.
 struct ArmBlock {
     std::vector<double> columns;            ///< [columns, trials], failed trials filled
-    std::vector<double> sums;               ///< [figure_count, K - 1]
-    std::vector<double> square_sums;        ///< [figure_count, K - 1]
-    std::vector<double> run_square_sums;    ///< [figure_count], of each trial's sum over its steps
+    std::vector<double> sums;               ///< [series_count, K - 1]
+    std::vector<double> square_sums;        ///< [series_count, K - 1]
+    std::vector<double> run_square_sums;    ///< [series_count], of each trial's sum over its steps
     std::vector<std::int32_t> covered;      ///< [blocks of the state, K - 1, levels] trials below each coverage bound
     std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
     int counted = 0;                        ///< trials that did not fail
@@ -47,7 +47,7 @@ bool detailed(const SimulationShape& shape, std::int64_t index);
 /// A scenario made ready to run its blocks.
 class BlockRunner {
 public:
-    explicit BlockRunner(const Declaration& scenario);
+    explicit BlockRunner(const Scenario& scenario);
 
     /// Simulates the first `trials` trials of a block. Thread-safe.
     Block run(std::uint64_t root_seed, std::int64_t index, int trials) const;

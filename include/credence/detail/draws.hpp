@@ -39,7 +39,7 @@ constexpr int largest_wide_index = (1 << 27) - 1;
 /// so that the bits above the sixteenth have room where the attempt is in others. Below 65536 it is the index itself.
 constexpr int wide_index(int index) { return (index & 0xffff) | (index >> 16) << 20; }
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Four 32-bit words, each in the low half of a 64-bit one (one per lane); the high halves hold nothing in particular.
 template <class Word>
@@ -213,5 +213,5 @@ void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real
     }
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

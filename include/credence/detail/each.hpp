@@ -29,7 +29,7 @@ inline constexpr Known<0> zero{};
 inline constexpr Known<1> one{};
 inline constexpr Known<2> two{};
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <int a, int b>
 constexpr Known<a + b> operator+(Known<a>, Known<b>) { return {}; }
@@ -58,5 +58,5 @@ CREDENCE_INLINE void each(Known<first>, Known<last>, Body&& body) {
     if constexpr (first < last) each_written_out<first>(body, std::make_integer_sequence<int, last - first>{});
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -5,7 +5,7 @@
 #include <credence/detail/real.hpp>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 inline constexpr double pi = 3.14159265358979323846;
 
@@ -107,5 +107,5 @@ Real wrapped(Real angle) {
     return fnma(turns, Real(2.44929359829470641435e-16), fnma(turns, Real(2 * pi), angle));
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -4,17 +4,17 @@
 // World, sensor, filter and controller are templates on `Real`. `double` is the readable reference; a pack of doubles
 // runs several trials at once. The equations therefore never branch on a Real: they compare to a mask and select.
 //
-// Everything a unit of the engine inlines lives in `inline namespace CREDENCE_UNIT`: each instruction set compiles
+// Everything a unit of the engine inlines lives in `inline namespace CREDENCE_TARGET`: each instruction set compiles
 // its own copy under its own name, so that the linker can never hand one machine another machine's code.
 
 #include <cstdint>
 
-#ifndef CREDENCE_UNIT
-#define CREDENCE_UNIT portable
+#ifndef CREDENCE_TARGET
+#define CREDENCE_TARGET portable
 #endif
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The comparison result of a Real: one bool per lane.
 template <class Real>
@@ -117,5 +117,5 @@ Vector2<Real> rotate_back(const Rotation<Real>& r, const Vector2<Real>& a) {
     return {fma(r.sine, a.y, r.cosine * a.x), fnma(r.sine, a.x, r.cosine * a.y)};
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -6,7 +6,7 @@
 #include <credence/detail/each.hpp>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// N reals, N packs of bits or N masks.
 template <class T, int N>
@@ -98,5 +98,5 @@ Several<T, N> exclusive_or(const Several<T, N>& a, const Several<T, N>& b, const
 
 #undef CREDENCE_BY_PART
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

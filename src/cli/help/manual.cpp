@@ -104,7 +104,7 @@ std::string page() {
     for (const ExitCode& exit : exit_codes())
         text += roff::tagged(roff::bold(std::to_string(exit.code)), exit.meaning + ".");
     text += roff::section("ENVIRONMENT") +
-            roff::tagged(roff::bold(force_unit_variable),
+            roff::tagged(roff::bold(force_target_variable),
                          "portable, v3 or v4: the instruction set to run, for tests; all give the same bits.") +
             roff::tagged(roff::bold("OMP_NUM_THREADS"), "The threads of a run where --threads does not say.") +
             roff::section("FILES") + files_text() + roff::section("EXAMPLES");

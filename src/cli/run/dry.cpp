@@ -25,7 +25,7 @@ struct BlockSeconds {
 };
 
 /// Tried with more and more trials of the last block, for a fifth of a second, or less where there are many scenarios.
-BlockSeconds seconds_of_a_block(const Declaration& scenario, const RunRequest& request) {
+BlockSeconds seconds_of_a_block(const Scenario& scenario, const RunRequest& request) {
     constexpr int octet = 8;  // a pack of fewer trials takes as long
     const double enough = std::min(0.1, 5 / static_cast<double>(request.scenarios.size()));
     const BlockRunner runner(scenario);

@@ -1,6 +1,6 @@
 #include "cli/run/ranks.hpp"
 
-#include "cluster/mpi/mpi_post.hpp"
+#include "cluster/mpi/mpi_transport.hpp"
 #include "cli/process/interrupt.hpp"
 
 #include <credence/error.hpp>
@@ -25,11 +25,11 @@ bool rank_0_says_it(const std::string& command, const std::vector<std::string>& 
     if (command != "run" || !rank_of_launcher(environment()) || given(arguments, "--mpi", "off") ||
         given(arguments, "--shard", "auto"))
         return false;
-    const std::unique_ptr<Post> post = start_mpi();
+    const std::unique_ptr<Transport> post = start_mpi();
     return post && post->rank() > 0;
 }
 
-std::unique_ptr<Post> post_of(const Parsed& parsed) {
+std::unique_ptr<Transport> transport_of(const Parsed& parsed) {
     const std::string mpi = parsed.choice("mpi");
     const bool own_shards = parsed.text("shard") == "auto";
     if (mpi == "on" && own_shards)
@@ -39,7 +39,7 @@ std::unique_ptr<Post> post_of(const Parsed& parsed) {
     const std::optional<LauncherRank> launched = rank_of_launcher(environment());
     if (mpi == "off" || (mpi == "auto" && (own_shards || !launched))) return nullptr;
     const std::string named = launched ? "the environment has " + launched->names + ", but " : "";
-    std::unique_ptr<Post> post = start_mpi();
+    std::unique_ptr<Transport> post = start_mpi();
     if (!post)
         throw InputError("cannot share the run among ranks (" + named + "this credence was built without MPI). Build it with "
                          "-DCREDENCE_MPI=ON, make each process a run of its own: --shard auto -o 'part-{shard}.h5', or run "
@@ -50,7 +50,7 @@ std::unique_ptr<Post> post_of(const Parsed& parsed) {
     return post;
 }
 
-int follow_rank_0(Post& post) {
+int follow_rank_0(Transport& post) {
     const Interrupt interrupt;
     try {
         follow(post, [] { return Interrupt::came() ? Interrupt::name() : std::string(); });

@@ -17,9 +17,9 @@ bool rank_0_says_it(const std::string& command, const std::vector<std::string>& 
 /// The ranks of the run; null where this process runs alone. `--mpi auto`: where an MPI launcher started more than one
 /// process, and `--shard auto` does not make each of them a run of its own. Throws
 /// InputError, also where the environment names other ranks and MPI knows of none.
-std::unique_ptr<Post> post_of(const Parsed& parsed);
+std::unique_ptr<Transport> transport_of(const Parsed& parsed);
 
 /// A rank other than 0: the exit code.
-int follow_rank_0(Post& post);
+int follow_rank_0(Transport& post);
 
 }  // namespace credence::cli

@@ -39,16 +39,16 @@ Start start_of(const Parsed& parsed) {
 }
 
 /// Those of the files, each at every point of the grid.
-std::vector<Declaration> scenarios_of(const Parsed& parsed) {
+std::vector<Scenario> scenarios_of(const Parsed& parsed) {
     const std::vector<SweepAxis> axes = parsed.sweep();
     const std::size_t count = parsed.arguments.size() * point_count(axes);
     if (!axes.empty() && count > most_swept_scenarios)
         throw invalid_value("--sweep", joined(parsed.values.at("sweep")),
                             "so many points of so many files are " + std::to_string(count) + " scenarios",
                             "Give at most " + std::to_string(most_swept_scenarios) + " in one study");
-    std::vector<Declaration> scenarios;
+    std::vector<Scenario> scenarios;
     for (const std::string& path : parsed.arguments)
-        for (Declaration& one : read_grid(path, parsed.overrides(), axes)) scenarios.push_back(std::move(one));
+        for (Scenario& one : read_grid(path, parsed.overrides(), axes)) scenarios.push_back(std::move(one));
     return scenarios;
 }
 

@@ -13,7 +13,7 @@
 namespace credence::cli {
 
 struct RunRequest {
-    std::vector<Declaration> scenarios;
+    std::vector<Scenario> scenarios;
     std::string output;
     std::uint64_t root_seed = 1;
     RunOptions options;

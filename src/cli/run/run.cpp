@@ -75,7 +75,7 @@ std::string now_text() {
 struct Work {
     bool changed = false;
     double seconds = 0;
-    std::optional<Look> last_look;  ///< with --until
+    std::optional<InterimAnalysis> last_analysis;  ///< with --until
 };
 
 /// Runs what is missing of what was asked for.
@@ -84,7 +84,7 @@ Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
     Work work;
     RunOptions options = request.options;
     options.stop = [ranks] { return Interrupt::came() || (ranks != nullptr && ranks->asked_to_stop()); };
-    options.crew = ranks;
+    options.workers = ranks;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
     if (ranks != nullptr)
         ranks->begin(definition_of(stored.study()), request.threads_given ? options.threads : 0,
@@ -92,7 +92,7 @@ Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
     // With --until nobody knows yet how many trials will be asked for: each look asks for its own.
     options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
     if (!request.goals.empty()) {
-        work.last_look = grow_until_precise(stored.study(), request, options);
+        work.last_analysis = grow_until_precise(stored.study(), request, options);
     } else {
         ProgressLine progress(request.quiet);
         options.progress = [&](const Progress& now) { progress(now); };
@@ -142,7 +142,7 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
 }
 
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
-    print(report_text(make_report(study, {})) + "\n" + (work.last_look ? stopping_text(*work.last_look) : "") +
+    print(report_text(make_report(study, {})) + "\n" + (work.last_analysis ? stopping_text(*work.last_analysis) : "") +
           printable(request.output) +
           (work.changed ? ": " + bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output))) +
                               ", computed in " + duration_text(work.seconds) + " on " + threads_text(request) + " threads\n"
@@ -166,7 +166,7 @@ Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const
 }  // namespace
 
 int run(const Parsed& parsed, const std::string& command_line) {
-    const std::unique_ptr<Post> post = post_of(parsed);
+    const std::unique_ptr<Transport> post = transport_of(parsed);
     if (post && post->rank() > 0) return follow_rank_0(*post);
     const bool shared = post && post->size() > 1;
     const std::unique_ptr<RankLeader> ranks = shared ? std::make_unique<RankLeader>(*post) : nullptr;
@@ -180,8 +180,8 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const Work work = keep(stored, request, ranks.get(), command_line);
     const std::string signal = stopped_by(ranks.get());
     if (!signal.empty() && !stored.study().complete) return stopped(stored, request, signal, command_line);
-    if (work.last_look && !work.last_look->met)
-        say("credence run: " + imprecision_text(*work.last_look, request.rule()) + "\n");
+    if (work.last_analysis && !work.last_analysis->met)
+        say("credence run: " + imprecision_text(*work.last_analysis, request.rule()) + "\n");
     if (!request.quiet) print_table(stored.study(), request, work);
     return 0;
 }

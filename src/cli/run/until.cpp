@@ -29,14 +29,14 @@ std::string interval_text(const GoalState& state) {
     return formatted("%.*f", decimals, state.mean) + " ± " + formatted("%.*f", decimals, state.half_width);
 }
 
-std::string prediction_text(const Look& look, const StoppingRule& rule) {
+std::string prediction_text(const InterimAnalysis& look, const StoppingRule& rule) {
     const std::optional<std::int64_t> trials = predicted_trials(look, rule);
     if (!trials) return unreachable;
     return "about " + std::to_string(*trials) + " trials are needed" +
            (*trials > rule.ceiling ? ", more than the ceiling of " + std::to_string(rule.ceiling) : "");
 }
 
-std::string look_text(const Look& look, const StoppingRule& rule) {
+std::string look_text(const InterimAnalysis& look, const StoppingRule& rule) {
     const GoalState& state = widest(look);
     return "look " + std::to_string(look.number) + ", " + std::to_string(look.trials) + " trials: " + state.name + " " +
            interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " +
@@ -44,16 +44,16 @@ std::string look_text(const Look& look, const StoppingRule& rule) {
 }
 
 /// Progress over all looks: trials that have been run, of those that the last look predicted.
-class LookProgress {
+class AnalysisProgress {
 public:
-    LookProgress(bool quiet, const StoppingRule& rule) : quiet_(quiet), rule_(rule), line_(quiet) {}
+    AnalysisProgress(bool quiet, const StoppingRule& rule) : quiet_(quiet), rule_(rule), line_(quiet) {}
 
     void operator()(const Progress& now) {
         now_ = now;
         line_({before_.done + now.done, before_.done + std::max(now.total, expected_), before_.seconds + now.seconds});
     }
 
-    void look_done(const Look& look, std::size_t scenarios) {
+    void look_done(const InterimAnalysis& look, std::size_t scenarios) {
         before_.done += now_.done;
         before_.seconds += now_.seconds;
         now_ = {};
@@ -73,15 +73,15 @@ private:
 
 }  // namespace
 
-Look grow_until_precise(Study& study, const RunRequest& request, RunOptions options) {
+InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunOptions options) {
     const StoppingRule rule = request.rule();
-    LookProgress progress(request.quiet, rule);
+    AnalysisProgress progress(request.quiet, rule);
     options.progress = [&](const Progress& now) { progress(now); };
     return run_until(study, rule, options,
-                     [&](const Look& look) { progress.look_done(look, study.scenarios.size()); });
+                     [&](const InterimAnalysis& look) { progress.look_done(look, study.scenarios.size()); });
 }
 
-std::string stopping_text(const Look& look) {
+std::string stopping_text(const InterimAnalysis& look) {
     std::string text = "stopped at look " + std::to_string(look.number) + ", " + std::to_string(look.trials) +
                        " trials: " + (look.met ? "" : "not ") + "as precise as asked. Intervals at " +
                        formatted("%.*g", 6, 100 * (1 - look.alpha)) + " %, so that all looks together keep 95 %:\n";
@@ -93,7 +93,7 @@ std::string stopping_text(const Look& look) {
     return text;
 }
 
-std::string imprecision_text(const Look& look, const StoppingRule& rule) {
+std::string imprecision_text(const InterimAnalysis& look, const StoppingRule& rule) {
     const GoalState& state = widest(look);
     const std::optional<std::int64_t> trials = predicted_trials(look, rule);
     const std::string needed = trials ? "it needs about " + std::to_string(*trials) + " trials" : unreachable;

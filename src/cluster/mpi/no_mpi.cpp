@@ -1,8 +1,8 @@
-#include "cluster/mpi/mpi_post.hpp"
+#include "cluster/mpi/mpi_transport.hpp"
 
 namespace credence {
 
-std::unique_ptr<Post> start_mpi() { return nullptr; }
+std::unique_ptr<Transport> start_mpi() { return nullptr; }
 
 std::string mpi_library() { return "none"; }
 

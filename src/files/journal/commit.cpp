@@ -8,7 +8,7 @@ namespace credence {
 
 namespace {
 
-constexpr std::uint32_t record_magic = 0x6b636f6c;
+constexpr std::uint32_t commit_magic = 0x6b636f6c;
 
 }  // namespace
 
@@ -103,8 +103,8 @@ void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trial
     get(to.nees, layout.nees());
 }
 
-void put_record_head(ByteWriter& to, const RecordHead& head) {
-    to.put(record_magic);
+void put_commit_head(ByteWriter& to, const CommitHead& head) {
+    to.put(commit_magic);
     to.put(head.scenario);
     to.put(head.payload);
 }
@@ -113,12 +113,12 @@ namespace {
 
 /// Padded with nulls to its size; what is longer is cut.
 void put_release(ByteWriter& to, std::string release) {
-    release.resize(record_release_size, '\0');
+    release.resize(commit_release_size, '\0');
     to.put_raw(release.data(), release.size());
 }
 
 std::string get_release(ByteReader& from) {
-    std::string release(from.raw(record_release_size), record_release_size);
+    std::string release(from.raw(commit_release_size), commit_release_size);
     release.resize(std::min(release.find('\0'), release.size()));
     if (std::any_of(release.begin(), release.end(), [](char c) { return c < ' ' || c > '~'; }))
         throw BadBytes("an impossible release");
@@ -127,16 +127,16 @@ std::string get_release(ByteReader& from) {
 
 }  // namespace
 
-RecordHead get_record_head(ByteReader& from) {
-    if (from.get<std::uint32_t>() != record_magic) throw BadBytes("no record begins there");
-    RecordHead head;
+CommitHead get_commit_head(ByteReader& from) {
+    if (from.get<std::uint32_t>() != commit_magic) throw BadBytes("no record begins there");
+    CommitHead head;
     head.scenario = from.get<std::uint32_t>();
     head.payload = from.get<std::int64_t>();
-    if (head.payload < static_cast<std::int64_t>(record_start_size)) throw BadBytes("a record is too short");
+    if (head.payload < static_cast<std::int64_t>(commit_start_size)) throw BadBytes("a record is too short");
     return head;
 }
 
-void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep) {
+void put_commit_start(ByteWriter& to, const CommitStart& start, Keep keep) {
     to.put(start.trials);
     to.put(start.counted);
     put_shard(to, start.shard);
@@ -156,13 +156,13 @@ void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep) {
     }
 }
 
-std::size_t block_list_size(const RecordStart& start, Keep keep) {
+std::size_t block_list_size(const CommitStart& start, Keep keep) {
     return keep == Keep::aggregates ? start.ranges.size() * journal_range_size
                                     : start.blocks.size() * journal_block_size;
 }
 
-RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout) {
-    RecordStart start{trials, 0, {}};
+CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout) {
+    CommitStart start{trials, 0, {}};
     BlockRanges without_values;
     for (const std::int64_t block : blocks) {
         if (layout.keep() == Keep::aggregates && !layout.detailed(block)) {
@@ -180,7 +180,7 @@ RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t tria
 namespace {
 
 /// Ranges of a study's blocks, and in `start.blocks` those that have values.
-void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, RecordStart& start) {
+void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, CommitStart& start) {
     for (; count > 0; --count) {
         const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};
         if (range.first < 0 || range.last < range.first || range.last >= block_count(start.trials))
@@ -194,8 +194,8 @@ void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout
 
 }  // namespace
 
-RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
-    RecordStart start;
+CommitStart get_commit_start(ByteReader& from, const BlockLayout& layout) {
+    CommitStart start;
     start.trials = from.get<std::int64_t>();
     start.counted = from.get<std::int64_t>();
     if (start.trials < 0 || start.trials > most_trials || start.counted < 0 || start.counted > start.trials)
@@ -217,17 +217,17 @@ RecordStart get_record_start(ByteReader& from, const BlockLayout& layout) {
     return start;
 }
 
-std::string record_start_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, std::size_t size_after) {
+std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, std::size_t size_after) {
     ByteWriter record;
-    const std::size_t payload = record_start_size + block_list_size(start, keep) + size_after;
-    put_record_head(record, {scenario, static_cast<std::int64_t>(payload)});
-    put_record_start(record, start, keep);
+    const std::size_t payload = commit_start_size + block_list_size(start, keep) + size_after;
+    put_commit_head(record, {scenario, static_cast<std::int64_t>(payload)});
+    put_commit_start(record, start, keep);
     return record.take();
 }
 
-std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
+std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, const std::string& values,
                          const std::string& totals) {
-    return record_start_bytes(scenario, start, keep, values.size() + totals.size()) + values + totals;
+    return commit_start_bytes(scenario, start, keep, values.size() + totals.size()) + values + totals;
 }
 
 }  // namespace credence

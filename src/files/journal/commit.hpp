@@ -79,16 +79,16 @@ void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block
 void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to);
 
 /// What stands before a record's payload, and what stands in it before the blocks' values.
-struct RecordHead {
+struct CommitHead {
     std::uint32_t scenario = 0;
     std::int64_t payload = 0;  ///< bytes
 };
-inline constexpr std::size_t record_head_size = 16, record_tail_size = 4;
-void put_record_head(ByteWriter& to, const RecordHead& head);
+inline constexpr std::size_t commit_head_size = 16, commit_tail_size = 4;
+void put_commit_head(ByteWriter& to, const CommitHead& head);
 /// Throws BadBytes where no record begins there.
-RecordHead get_record_head(ByteReader& from);
+CommitHead get_commit_head(ByteReader& from);
 
-struct RecordStart {
+struct CommitStart {
     std::int64_t trials = 0;           ///< that the study was asked for then
     std::int64_t counted = 0;          ///< trials of the scenario that the totals hold
     std::vector<JournalBlock> blocks;  ///< that have values, in their order: all of them, where the trials are kept
@@ -96,24 +96,24 @@ struct RecordStart {
     std::vector<BlockRange> ranges{};  ///< where no trial is kept: all blocks, those that have values in their order
     std::string release{};             ///< that computed the blocks
 };
-void put_record_start(ByteWriter& to, const RecordStart& start, Keep keep = Keep::trials);
+void put_commit_start(ByteWriter& to, const CommitStart& start, Keep keep = Keep::trials);
 /// Throws BadBytes where the blocks or the release cannot be. With ranges, `layout` says which of their blocks have values.
-RecordStart get_record_start(ByteReader& from, const BlockLayout& layout);
-inline constexpr std::size_t record_release_size = 64, record_start_size = 36 + record_release_size, journal_block_size = 12, journal_range_size = 16;
+CommitStart get_commit_start(ByteReader& from, const BlockLayout& layout);
+inline constexpr std::size_t commit_release_size = 64, commit_start_size = 36 + commit_release_size, journal_block_size = 12, journal_range_size = 16;
 /// Of the part that lists the blocks.
-std::size_t block_list_size(const RecordStart& start, Keep keep);
+std::size_t block_list_size(const CommitStart& start, Keep keep);
 
 /// The start of a record of these blocks, whose values stand in this order.
-RecordStart record_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout);
+CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout);
 
 /// Throws BadBytes for a shard that is none.
 void put_shard(ByteWriter& to, const Shard& shard);
 Shard get_shard(ByteReader& from);
 
 /// A record but for its checksum; and what of it stands before values and totals of so many bytes.
-std::string record_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, const std::string& values,
+std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, const std::string& values,
                          const std::string& totals);
-std::string record_start_bytes(std::uint32_t scenario, const RecordStart& start, Keep keep, std::size_t size_after);
+std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, std::size_t size_after);
 
 /// CRC-32 of zlib, going on from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);

@@ -32,7 +32,7 @@ std::string header_bytes(const JournalHeader& header) {
     put_shard(body, header.shard);
     body.put(header.study.root_seed);
     body.put_count(header.study.scenarios.size());
-    for (const Declaration& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
+    for (const Scenario& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
     ByteWriter all;
     all.put_raw(magic.data(), magic.size());
     all.put(header.study.keep == Keep::trials ? journal_version : aggregates_version);

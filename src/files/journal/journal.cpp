@@ -79,13 +79,13 @@ bool Journal::due(std::int64_t held) const {
     return waited > least && (pending_size_ > totals_size_ / 4 || waited > longest);
 }
 
-void Journal::put_record(std::size_t scenario, const Study& study) {
+void Journal::put_commit(std::size_t scenario, const Study& study) {
     Kept& kept = kept_[scenario];
     ByteWriter totals;
     put_totals(totals, *WithTotals(study.scenarios[scenario]));
     const Keep keep = kept.layout.keep();
-    RecordStart start = record_of(kept.pending, study.trials, kept.layout);
-    const std::size_t before = record_head_size + record_start_size + block_list_size(start, keep);
+    CommitStart start = commit_of(kept.pending, study.trials, kept.layout);
+    const std::size_t before = commit_head_size + commit_start_size + block_list_size(start, keep);
     std::int64_t position = file_.size() + batch_size_ + static_cast<std::int64_t>(before);
     for (const JournalBlock& block : start.blocks) {
         kept.placed.put(block.index, {block.trials, position, false});
@@ -100,18 +100,18 @@ void Journal::put_record(std::size_t scenario, const Study& study) {
     note_computed(computed_by_, release_, scenario, kept.pending);
     totals_size_ += totals.size();
     // Moved out: values are large, and a string that is only cleared would keep its room, one for every scenario.
-    batch_.push_back({record_start_bytes(static_cast<std::uint32_t>(scenario), start, keep,
+    batch_.push_back({commit_start_bytes(static_cast<std::uint32_t>(scenario), start, keep,
                                          kept.pending_values.size() + totals.size()),
                       kept.pending_values.take(), totals.take()});
-    batch_size_ += batch_.back().size() + static_cast<std::int64_t>(record_tail_size);
+    batch_size_ += batch_.back().size() + static_cast<std::int64_t>(commit_tail_size);
     kept.pending.clear();
 }
 
 void Journal::prepare(const Study& study) {
     totals_size_ = 0;
     for (std::size_t s = 0; s < kept_.size(); ++s)
-        if (!kept_[s].pending.empty()) put_record(s, study);
-    if (batch_.empty() && study.trials > asked_) put_record(0, study);  // what was asked for is worth a record without blocks
+        if (!kept_[s].pending.empty()) put_commit(s, study);
+    if (batch_.empty() && study.trials > asked_) put_commit(0, study);  // what was asked for is worth a record without blocks
     asked_ = std::max(asked_, study.trials);
     pending_size_ = pending_blocks_ = 0;
     last_commit_ = std::chrono::steady_clock::now();
@@ -120,7 +120,7 @@ void Journal::prepare(const Study& study) {
 
 void Journal::commit() {
     std::vector<std::string> pieces;
-    for (PreparedRecord& record : batch_) {
+    for (PreparedCommit& record : batch_) {
         std::uint32_t crc = 0;
         for (std::string* piece : {&record.start, &record.values, &record.totals}) {
             crc = checksum(piece->data(), piece->size(), crc);
@@ -140,8 +140,8 @@ void Journal::check_unchanged() const {
     try {
         const std::string header = file_.read(0, header_size_);
         std::uint32_t seal = checksum(header.data(), header.size());
-        end = scan_records(file_, header_size_, layouts(),
-                           [&](const FoundRecord& record) { seal = seal_with(seal, record.checksum); });
+        end = scan_commits(file_, header_size_, layouts(),
+                           [&](const FoundCommit& record) { seal = seal_with(seal, record.checksum); });
         if (end == file_.size() && seal == seal_) return;
     } catch (const BadBytes&) {  // whole records, but not this study's
     } catch (const InputError&) {  // it ends too early

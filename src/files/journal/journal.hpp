@@ -123,7 +123,7 @@ private:
     std::vector<BlockLayout> layouts() const;
     bool keeps_trials() const { return kept_.empty() || kept_.front().layout.keep() == Keep::trials; }
     std::vector<JournalScenario> scan(const Study& study);
-    void put_record(std::size_t scenario, const Study& study);
+    void put_commit(std::size_t scenario, const Study& study);
     void read_details(std::size_t scenario, ScenarioResults& results) const;
     static std::int64_t rows_in_file(const Kept& kept, std::size_t at, std::int64_t skip, std::int64_t left);
     void read_values(std::int64_t position, ColumnType type, double* values, std::int64_t count) const;
@@ -138,13 +138,13 @@ private:
     std::vector<Kept> kept_;
 
     /// A record to be committed, its checksum still missing.
-    struct PreparedRecord {
+    struct PreparedCommit {
         std::string start, values, totals;
 
         std::int64_t size() const { return static_cast<std::int64_t>(start.size() + values.size() + totals.size()); }
     };
 
-    std::vector<PreparedRecord> batch_;
+    std::vector<PreparedCommit> batch_;
     std::int64_t batch_size_ = 0;    ///< bytes, with their checksums
     std::atomic<bool> committing_ = false;
     std::size_t totals_size_ = 0;    ///< of the last commit

@@ -21,7 +21,7 @@ std::vector<BlockLayout> Journal::layouts() const {
 std::vector<JournalScenario> Journal::scan(const Study& study) {
     std::vector<JournalScenario> found(study.scenarios.size());
     const std::vector<BlockLayout> layouts = this->layouts();
-    const std::int64_t end = scan_records(file_, header_size_, layouts, [&](const FoundRecord& record) {
+    const std::int64_t end = scan_commits(file_, header_size_, layouts, [&](const FoundCommit& record) {
         seal_ = seal_with(seal_, record.checksum);
         JournalScenario& scenario = found[record.scenario];
         BlockRanges blocks;

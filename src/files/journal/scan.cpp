@@ -8,8 +8,8 @@ namespace credence {
 
 namespace {
 
-constexpr auto head_size = static_cast<std::int64_t>(record_head_size),
-               tail_size = static_cast<std::int64_t>(record_tail_size);
+constexpr auto head_size = static_cast<std::int64_t>(commit_head_size),
+               tail_size = static_cast<std::int64_t>(commit_tail_size);
 
 /// The checksum that follows these bytes of the file; nothing where theirs is another.
 std::optional<std::uint32_t> right_checksum(const JournalBytes& file, std::int64_t begin, std::int64_t end) {
@@ -24,13 +24,13 @@ std::optional<std::uint32_t> right_checksum(const JournalBytes& file, std::int64
 }
 
 /// The head of the record that begins at `position`; nothing where it is torn.
-std::optional<RecordHead> find_head(const JournalBytes& file, std::int64_t position) {
+std::optional<CommitHead> find_head(const JournalBytes& file, std::int64_t position) {
     const std::int64_t left = file.size() - position - head_size - tail_size;
-    if (left < static_cast<std::int64_t>(record_start_size)) return std::nullopt;
+    if (left < static_cast<std::int64_t>(commit_start_size)) return std::nullopt;
     const std::string bytes = file.read(position, head_size);
     try {
         ByteReader from(bytes.data(), bytes.size());
-        const RecordHead head = get_record_head(from);
+        const CommitHead head = get_commit_head(from);
         return head.payload > left ? std::nullopt : std::optional(head);
     } catch (const BadBytes&) {
         return std::nullopt;
@@ -38,23 +38,23 @@ std::optional<RecordHead> find_head(const JournalBytes& file, std::int64_t posit
 }
 
 /// The record that begins at `position`; nothing where it is torn. Throws BadBytes for one that cannot be.
-std::optional<FoundRecord> find_record(const JournalBytes& file, std::int64_t position,
+std::optional<FoundCommit> find_record(const JournalBytes& file, std::int64_t position,
                                        const std::vector<BlockLayout>& layouts) {
-    const std::optional<RecordHead> head = find_head(file, position);
+    const std::optional<CommitHead> head = find_head(file, position);
     if (!head) return std::nullopt;
     const std::int64_t payload = position + head_size, end = payload + head->payload;
     const std::optional<std::uint32_t> crc = right_checksum(file, position, end);
     if (!crc) return std::nullopt;
     std::uint32_t count = 0;
-    file.read(payload + static_cast<std::int64_t>(record_start_size - sizeof count), &count, sizeof count);
+    file.read(payload + static_cast<std::int64_t>(commit_start_size - sizeof count), &count, sizeof count);
     if (head->scenario >= layouts.size()) throw BadBytes("a record is of a scenario that the study does not have");
     const BlockLayout& layout = layouts[head->scenario];
     const std::size_t listed = layout.keep() == Keep::aggregates ? journal_range_size : journal_block_size;
-    const auto start_size = static_cast<std::int64_t>(record_start_size + count * listed);
+    const auto start_size = static_cast<std::int64_t>(commit_start_size + count * listed);
     if (start_size > head->payload) throw BadBytes("a record has more blocks than bytes");
     const std::string start = file.read(payload, start_size);
     ByteReader from(start.data(), start.size());
-    FoundRecord record{head->scenario, get_record_start(from, layout), {}, payload + start_size, end, *crc};
+    FoundCommit record{head->scenario, get_commit_start(from, layout), {}, payload + start_size, end, *crc};
     for (const JournalBlock& block : record.start.blocks) {
         const std::int64_t size = layout.size(block);
         if (size > end - record.totals) throw BadBytes("a record has fewer values than its blocks");
@@ -88,9 +88,9 @@ std::optional<FoundHeader> find_header(const JournalBytes& file) {
     }
 }
 
-std::int64_t scan_records(const JournalBytes& file, std::int64_t position, const std::vector<BlockLayout>& layouts,
-                          const std::function<void(const FoundRecord&)>& found) {
-    while (const std::optional<FoundRecord> record = find_record(file, position, layouts)) {
+std::int64_t scan_commits(const JournalBytes& file, std::int64_t position, const std::vector<BlockLayout>& layouts,
+                          const std::function<void(const FoundCommit&)>& found) {
+    while (const std::optional<FoundCommit> record = find_record(file, position, layouts)) {
         found(*record);
         position = record->end + tail_size;
     }

@@ -23,9 +23,9 @@ struct FoundHeader {
 std::optional<FoundHeader> find_header(const JournalBytes& file);
 
 /// A record whose checksum is right.
-struct FoundRecord {
+struct FoundCommit {
     std::uint32_t scenario = 0;
-    RecordStart start;
+    CommitStart start;
     std::vector<std::int64_t> places;  ///< where the values of each of start.blocks begin in the file
     std::int64_t totals = 0;           ///< where the totals begin
     std::int64_t end = 0;              ///< of the totals
@@ -35,7 +35,7 @@ struct FoundRecord {
 /// Calls `found` for every record from `position` on, up to one that is torn or has another checksum; returns where
 /// that one begins. `layouts` are those of the study's scenarios. Throws BadBytes for a record that cannot be,
 /// InputError where the file cannot be read.
-std::int64_t scan_records(const JournalBytes& file, std::int64_t position, const std::vector<BlockLayout>& layouts,
-                          const std::function<void(const FoundRecord&)>& found);
+std::int64_t scan_commits(const JournalBytes& file, std::int64_t position, const std::vector<BlockLayout>& layouts,
+                          const std::function<void(const FoundCommit&)>& found);
 
 }  // namespace credence

@@ -94,11 +94,11 @@ void get_aggregates(ByteReader& from, ArmAggregates& aggregates) {
 
 void put_arm(ByteWriter& to, const ArmResults& arm) {
     to.put(arm.counted);
-    for (const FigureTotals& figure : arm.totals) {
-        put_sums(to, figure.sum);
-        put_sums(to, figure.square_sum);
-        put_sum(to, figure.run_square_sum);
-        put_counts(to, figure.covered);
+    for (const SeriesTotals& series : arm.totals) {
+        put_sums(to, series.sum);
+        put_sums(to, series.square_sum);
+        put_sum(to, series.run_square_sum);
+        put_counts(to, series.covered);
     }
     put_counts(to, arm.cells);
     put_sums(to, arm.products.sum);
@@ -109,11 +109,11 @@ void put_arm(ByteWriter& to, const ArmResults& arm) {
 
 void get_arm(ByteReader& from, ArmResults& arm) {
     arm.counted = from.get<std::int64_t>();
-    for (FigureTotals& figure : arm.totals) {
-        get_sums(from, figure.sum);
-        get_sums(from, figure.square_sum);
-        figure.run_square_sum = get_sum(from);
-        get_counts(from, figure.covered);
+    for (SeriesTotals& series : arm.totals) {
+        get_sums(from, series.sum);
+        get_sums(from, series.square_sum);
+        series.run_square_sum = get_sum(from);
+        get_counts(from, series.covered);
     }
     get_counts(from, arm.cells);
     get_sums(from, arm.products.sum);

@@ -7,7 +7,7 @@
 
 namespace credence {
 
-/// Everything of the results that grows with figures and steps and not with trials; the errors of detailed trials too
+/// Everything of the results that grows with series and steps and not with trials; the errors of detailed trials too
 /// are left out.
 void put_totals(ByteWriter& to, const ScenarioResults& results);
 

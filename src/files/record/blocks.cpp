@@ -1,6 +1,6 @@
 // The attribute `blocks`: parts of the state that are judged by themselves.
 
-#include <credence/declaration.hpp>
+#include <credence/scenario.hpp>
 #include <credence/text.hpp>
 
 #include "files/record/file.hpp"
@@ -20,7 +20,7 @@ const std::string example = "Write the blocks as NAME FIRST:END, counted from 0 
 std::string quoted(const std::string& text) { return "`" + printable(text) + "`"; }
 
 /// One `NAME FIRST:END`.
-StateBlock parse_block(const std::string& entry, int n, const std::string& place) {
+ComponentGroup parse_block(const std::string& entry, int n, const std::string& place) {
     const std::size_t space = entry.find_first_of(" \t\r\n"), colon = entry.find(':');
     if (space == std::string::npos || colon == std::string::npos || colon < space)
         throw Error(place, "broken entry " + quoted(entry), example);
@@ -42,11 +42,11 @@ StateBlock parse_block(const std::string& entry, int n, const std::string& place
 
 }  // namespace
 
-std::vector<StateBlock> parse_blocks(const std::string& text, int n, const std::string& place) {
-    std::vector<StateBlock> blocks{{"all", 0, n}};
+std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place) {
+    std::vector<ComponentGroup> blocks{{"all", 0, n}};
     for (const std::string& entry : split_list(text)) {
-        const StateBlock block = parse_block(entry, n, place);
-        if (std::any_of(blocks.begin(), blocks.end(), [&](const StateBlock& b) { return b.name == block.name; }))
+        const ComponentGroup block = parse_block(entry, n, place);
+        if (std::any_of(blocks.begin(), blocks.end(), [&](const ComponentGroup& b) { return b.name == block.name; }))
             throw Error(place, "names two blocks " + quoted(block.name), "Give each block a name of its own");
         if (blocks.size() > most_blocks)
             throw Error(place, "has more than " + std::to_string(most_blocks) + " blocks", "Leave some out");

@@ -1,6 +1,6 @@
 #include "files/record/file.hpp"
 
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ const Handle& with_dataset(const Handle& root, const std::string& name) {
     return root;
 }
 
-std::vector<StateBlock> read_blocks(const Handle& root, int n) {
+std::vector<ComponentGroup> read_blocks(const Handle& root, int n) {
     const std::string name = "blocks", place = hdf5::attribute_place(root, name);
     if (hdf5::has_attribute(root, name)) return parse_blocks(hdf5::read_any_text(root, name), n, place);
     if (hdf5::has_link(root, name) || H5Aexists_by_name(root.id(), "error", name.c_str(), H5P_DEFAULT) > 0)

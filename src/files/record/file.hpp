@@ -52,6 +52,6 @@ private:
 
 /// The whole state as `all`, then the blocks that a text names, such as `pose 0:3, feature_1 3:5`, of a state of n
 /// components. Throws hdf5::Error at `place`.
-std::vector<StateBlock> parse_blocks(const std::string& text, int n, const std::string& place);
+std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
 
 }  // namespace credence

@@ -25,7 +25,7 @@ void add_part(const RecordPart& part, const RecordShape& shape, const RecordValu
 
 }  // namespace
 
-JudgedRecord read_record(const RecordFile& file, const std::string& path,
+Record read_record(const RecordFile& file, const std::string& path,
                          const std::function<void(const Progress&)>& progress) {
     const auto start = std::chrono::steady_clock::now();
     const RecordShape& shape = file.shape();
@@ -47,7 +47,7 @@ JudgedRecord read_record(const RecordFile& file, const std::string& path,
     return totals.finish();
 }
 
-JudgedRecord read_judgement_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "

@@ -23,7 +23,7 @@ std::string scenario_name(const std::string& path) {
 }
 
 std::vector<Column> record_columns(const RecordShape& shape) {
-    std::vector<Column> columns = trial_columns(Scenario());
+    std::vector<Column> columns = trial_columns(DeformableSettings());
     const auto describe = [&](ColumnIndex column, const std::string& long_name, const std::string& unit) {
         columns[column].long_name = long_name;
         columns[column].unit = unit;
@@ -45,9 +45,9 @@ ArmResults empty_arm(const ScenarioResults& results) {
     ArmResults arm;
     arm.name = "record";
     for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
-    for (const Figure& figure : results.figures) {
-        const std::size_t counts = figure.role == FigureRole::nees ? steps * coverage_level_count : 0;
-        arm.totals.push_back({std::vector<ExactSum>(steps), std::vector<ExactSum>(figure.integer ? 0 : steps), {},
+    for (const Series& series : results.all_series) {
+        const std::size_t counts = series.role == SeriesRole::nees ? steps * coverage_level_count : 0;
+        arm.totals.push_back({std::vector<ExactSum>(steps), std::vector<ExactSum>(series.integer ? 0 : steps), {},
                               ExactSum(), std::vector<std::int64_t>(counts)});
     }
     arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
@@ -62,18 +62,18 @@ ArmResults empty_arm(const ScenarioResults& results) {
 
 std::size_t pose_block(const RecordShape& shape) {
     const auto found = std::find_if(shape.blocks.begin(), shape.blocks.end(),
-                                    [](const StateBlock& block) { return block.name == "pose"; });
+                                    [](const ComponentGroup& block) { return block.name == "pose"; });
     return found == shape.blocks.end() ? 0 : static_cast<std::size_t>(found - shape.blocks.begin());
 }
 
-ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Figure>& figures,
+ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path) {
     ScenarioResults results;
     results.scenario.name = scenario_name(path);
     results.scenario.title = "record " + printable(path);
     results.scenario.poses = shape.steps + 1;
     results.columns = record_columns(shape);
-    results.figures = figures;
+    results.all_series = all_series;
     results.trials = shape.trials;
     results.arms.push_back(empty_arm(results));
     return results;

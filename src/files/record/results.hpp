@@ -14,7 +14,7 @@ namespace credence {
 std::size_t pose_block(const RecordShape& shape);
 
 /// Results with one arm, all of whose totals are 0, columns filled and details NaN; without cells and distances.
-ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Figure>& figures,
+ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path);
 
 }  // namespace credence

@@ -23,18 +23,18 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     : shape_(shape),
-      figures_(record_figures(shape_)),
-      judge_(shape_, figures_),
+      all_series_(record_series(shape_)),
+      judge_(shape_, all_series_),
       products_(size(lag_count(shape_.steps + 1)), size(shape_.m)) {
-    record_.results = empty_record_results(shape_, figures_.list, path);
+    record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
     keeps_nees_ = shape.trials <= most_values / shape.steps;
-    keeps_cells_ = std::int64_t{shape.steps} * shape_cells <= most_values;
+    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values;
     if (keeps_nees_) nees_.resize(size(shape.steps));
-    if (keeps_cells_) arm().cells.resize(size(shape.steps) * shape_cells);
-    for (const StateBlock& block : shape.blocks)
+    if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
+    for (const ComponentGroup& block : shape.blocks)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
-    values_.resize(size(shape.steps) * figures_.list.size());
+    values_.resize(size(shape.steps) * all_series_.list.size());
 }
 
 void RecordTotals::add(const RecordStep& step) {
@@ -75,10 +75,10 @@ void RecordTotals::start_trial() {
 
 void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
     const std::size_t k = size(step.step);
-    double* values = &figure(0, k);
+    double* values = &series(0, k);
     const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
     if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
-    if (!figures_add_up(values, figures_.list.size()))
+    if (!figures_add_up(values, all_series_.list.size()))
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
     if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
         note(step, Status::diverged, beyond);
@@ -95,7 +95,7 @@ void RecordTotals::note(const RecordStep& step, Status status, const std::string
 void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
     if (trial >= record_.results.detailed()) return;
     const std::size_t at = size(trial) * size(shape_.steps) + k;
-    arm().nees[at] = figure(0, k);
+    arm().nees[at] = series(0, k);
     std::copy(checked.e.begin(), checked.e.end(), arm().errors.begin() + static_cast<std::ptrdiff_t>(at) * shape_.n);
 }
 
@@ -119,7 +119,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
     double row[column_count];
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;
-        for (const std::size_t k : present_) sum += figure(f, k);
+        for (const std::size_t k : present_) sum += series(f, k);
         return sum;
     };
     const double count = static_cast<double>(present_.size());
@@ -127,11 +127,11 @@ void RecordTotals::add_columns(std::int64_t trial) {
     row[column_status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     row[column_unseen] = -1;
     if (!fill_failed(record_.results.columns, row)) {
-        row[column_trace_P] = figure(figures_.variance, present_.back());
-        row[column_mean_trace_P] = over_steps(figures_.variance) / count;
-        row[column_pose_error] = over_steps(figures_.squared_error + pose_block(shape_));
+        row[column_trace_P] = series(all_series_.variance, present_.back());
+        row[column_mean_trace_P] = over_steps(all_series_.variance) / count;
+        row[column_pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
         row[column_nees_ratio] = over_steps(0) / count / shape_.n;
-        row[column_nis_ratio] = record_.has_innovations ? over_steps(figures_.nis) / over_steps(figures_.rows) : nan;
+        row[column_nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
     for (std::size_t c = 0; c < column_count; ++c) arm().columns[c][size(trial)] = row[c];
 }
@@ -139,15 +139,15 @@ void RecordTotals::add_columns(std::int64_t trial) {
 void RecordTotals::add_totals() {
     ++arm().counted;
     const double count = static_cast<double>(present_.size()), steps = shape_.steps;
-    for (std::size_t f = 0; f < figures_.list.size(); ++f) {
-        FigureTotals& totals = arm().totals[f];
-        const bool innovations = record_.has_innovations && (f == figures_.nis || f == figures_.rows);
+    for (std::size_t f = 0; f < all_series_.list.size(); ++f) {
+        SeriesTotals& totals = arm().totals[f];
+        const bool innovations = record_.has_innovations && (f == all_series_.nis || f == all_series_.rows);
         double run = 0;
         for (const std::size_t k : present_) {
-            const double value = figure(f, k);
+            const double value = series(f, k);
             run += value;
             totals.sum[k].add(value);
-            if (!figures_.list[f].integer) totals.square_sum[k].add(value * value);
+            if (!all_series_.list[f].integer) totals.square_sum[k].add(value * value);
             for (std::size_t l = 0; f < shape_.blocks.size() && l < coverage_level_count; ++l)
                 totals.covered[k * coverage_level_count + l] += value < bounds_[f * coverage_level_count + l];
         }
@@ -155,7 +155,7 @@ void RecordTotals::add_totals() {
         totals.run_sum->add(run);
         totals.run_square_sum.add(run * run);
     }
-    add_shape();
+    add_distribution();
     for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
         arm().products.sum[lag].add(products_.sum[lag]);
         arm().products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
@@ -163,19 +163,19 @@ void RecordTotals::add_totals() {
     }
 }
 
-void RecordTotals::add_shape() {
+void RecordTotals::add_distribution() {
     const auto cells = equiprobable_cells(shape_.n);
     for (const std::size_t k : present_) {
         ++arm().present[k];
-        if (keeps_cells_) ++arm().cells[k * shape_cells + size(cells->cell(figure(0, k)))];
-        if (keeps_nees_) nees_[k].push_back(figure(0, k));
+        if (keeps_cells_) ++arm().cells[k * distribution_cells + size(cells->cell(series(0, k)))];
+        if (keeps_nees_) nees_[k].push_back(series(0, k));
     }
 }
 
-JudgedRecord RecordTotals::finish() {
-    if (keeps_nees_ || !keeps_cells_) arm().shape_distance.assign(size(shape_.steps), nan);
+Record RecordTotals::finish() {
+    if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
-        arm().shape_distance[k] = chi_square_distance(std::move(nees_[k]), shape_.n);
+        arm().distribution_distance[k] = chi_square_distance(std::move(nees_[k]), shape_.n);
     return std::move(record_);
 }
 

@@ -26,11 +26,11 @@ public:
     void add(const RecordStep& step);
 
     /// The results, after the last step.
-    JudgedRecord finish();
+    Record finish();
 
 private:
     ArmResults& arm() { return record_.results.arms.front(); }
-    double& figure(std::size_t f, std::size_t k) { return values_[k * figures_.list.size() + f]; }
+    double& series(std::size_t f, std::size_t k) { return values_[k * all_series_.list.size() + f]; }
 
     void start_trial();
     void add_covered(const RecordStep& step);
@@ -41,12 +41,12 @@ private:
     void end_trial(std::int64_t trial);
     void add_columns(std::int64_t trial);
     void add_totals();
-    void add_shape();
+    void add_distribution();
 
     RecordShape shape_;
-    StateFigures figures_;
-    StepJudge judge_;
-    JudgedRecord record_;
+    StateSeries all_series_;
+    StepEvaluator judge_;
+    Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::vector<std::vector<double>> nees_;      ///< [steps] of the whole state, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [blocks, levels] NEES below them counts as covered
@@ -56,12 +56,12 @@ private:
     Status status_ = Status::completed;
     RecordTrouble trouble_;                      ///< why it failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
-    std::vector<double> values_;                 ///< [steps, figure_count], only of steps that exist
+    std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
     LagProducts products_;
 };
 
 /// Reads a whole record, part by part. The same for parts of any size.
-JudgedRecord read_record(const RecordFile& file, const std::string& path,
+Record read_record(const RecordFile& file, const std::string& path,
                          const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

@@ -20,7 +20,7 @@ using hdf5::Handle;
 std::vector<std::size_t> figure_columns(const ScenarioResults& results) {
     std::vector<std::size_t> figures;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
-        if (is_figure(results.columns[c])) figures.push_back(c);
+        if (is_reported(results.columns[c])) figures.push_back(c);
     return figures;
 }
 

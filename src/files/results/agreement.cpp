@@ -11,41 +11,41 @@ namespace credence {
 
 namespace {
 
-/// Which steps of a figure a column is the sum of, over `per` of the figure's values.
+/// Which steps of a series a column is the sum of, over `per` of the series's values.
 enum class Steps { all, last };
 
-/// A column that says of each trial what the totals of a figure say of all trials.
+/// A column that says of each trial what the totals of a series say of all trials.
 struct Relation {
-    std::size_t column, figure;
+    std::size_t column, series;
     Steps steps;
-    double per;  ///< the column times this is the sum of the figure over those steps
+    double per;  ///< the column times this is the sum of the series over those steps
 };
 
-std::optional<std::size_t> figure_of(const ScenarioResults& results, FigureRole role, const std::string& part) {
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].role == role && results.figures[f].part == part) return f;
+std::optional<std::size_t> series_of(const ScenarioResults& results, SeriesRole role, const std::string& part) {
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].role == role && results.all_series[f].part == part) return f;
     return std::nullopt;
 }
 
-std::optional<std::size_t> figure_named(const ScenarioResults& results, const std::string& name) {
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (results.figures[f].name == name) return f;
+std::optional<std::size_t> column_named(const ScenarioResults& results, const std::string& name) {
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].name == name) return f;
     return std::nullopt;
 }
 
-/// Those of the columns and figures that worlds have in common, and that this one has.
+/// Those of the columns and series that worlds have in common, and that this one has.
 std::vector<Relation> relations(const ScenarioResults& results) {
     std::vector<Relation> all;
-    const auto add = [&](const std::string& name, std::optional<std::size_t> figure, Steps steps, double per) {
-        for (std::size_t c = 0; c < results.columns.size() && figure; ++c)
-            if (results.columns[c].name == name) all.push_back({c, *figure, steps, per});
+    const auto add = [&](const std::string& name, std::optional<std::size_t> series, Steps steps, double per) {
+        for (std::size_t c = 0; c < results.columns.size() && series; ++c)
+            if (results.columns[c].name == name) all.push_back({c, *series, steps, per});
     };
-    const std::optional<std::size_t> variance = figure_of(results, FigureRole::variance, "all");
+    const std::optional<std::size_t> variance = series_of(results, SeriesRole::variance, "all");
     add("nees_ratio", 0, Steps::all, static_cast<double>(results.steps()) * results.state_size());
     add("mean_trace_P", variance, Steps::all, results.steps());
     add("trace_P", variance, Steps::last, 1);
-    add("unseen", figure_named(results, "unseen_features"), Steps::all, 1);
-    add("squared_error", figure_of(results, FigureRole::squared_error, "all"), Steps::all, 1);
+    add("unseen", column_named(results, "unseen_features"), Steps::all, 1);
+    add("squared_error", series_of(results, SeriesRole::squared_error, "all"), Steps::all, 1);
     return all;
 }
 
@@ -78,8 +78,8 @@ Sums sums_of_column(const ScenarioResults& results, const ArmResults& arm, std::
     return sums;
 }
 
-/// The same of the figure; `square` only where the column is its sum over all steps.
-Sums sums_of_figure(const FigureTotals& totals, Steps steps) {
+/// The same of the series; `square` only where the column is its sum over all steps.
+Sums sums_of_series(const SeriesTotals& totals, Steps steps) {
     if (steps == Steps::last) return {totals.sum.back().rounded(), totals.square_sum.back().rounded()};
     ExactSum sum;
     for (const ExactSum& step : totals.sum) sum.add(step);
@@ -87,20 +87,20 @@ Sums sums_of_figure(const FigureTotals& totals, Steps steps) {
 }
 
 /// The columns were rounded, and their sums are. What is not finite says nothing.
-bool agree(double column, double figure) {
+bool agree(double column, double series) {
     constexpr double tolerance = 1e-9;
-    return !std::isfinite(column) || !std::isfinite(figure) || std::abs(column - figure) <= tolerance * std::abs(column);
+    return !std::isfinite(column) || !std::isfinite(series) || std::abs(column - series) <= tolerance * std::abs(column);
 }
 
 void check_arm(const ScenarioResults& results, const ArmResults& arm, const std::string& path) {
     for (const Relation& relation : relations(results)) {
         const Sums column = sums_of_column(results, arm, relation.column),
-                   figure = sums_of_figure(arm.totals[relation.figure], relation.steps);
-        if (agree(column.value * relation.per, figure.value) &&
-            agree(column.square * relation.per * relation.per, figure.square))
+                   series = sums_of_series(arm.totals[relation.series], relation.steps);
+        if (agree(column.value * relation.per, series.value) &&
+            agree(column.square * relation.per * relation.per, series.square))
             continue;
         throw InputError(path + ": /" + results.scenario.name + "/" + arm.name + ": the totals of " +
-                         results.figures[relation.figure].name + " are not those of the trials' " +
+                         results.all_series[relation.series].name + " are not those of the trials' " +
                          results.columns[relation.column].name + ". Run the study again, or give an undamaged copy.");
     }
 }

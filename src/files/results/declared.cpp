@@ -2,7 +2,7 @@
 #include "files/results/declared.hpp"
 
 #include <credence/ini.hpp>
-#include "scenario/state_figures.hpp"
+#include "scenario/state_series.hpp"
 #include <credence/text.hpp>
 
 #include "files/record/file.hpp"
@@ -69,7 +69,7 @@ std::vector<Column> read_columns(const Handle& arm) {
     return columns;
 }
 
-/// The figures of trials that an arm has totals of, as columns; nothing but their names and units is told of them.
+/// The series of trials that an arm has totals of, as columns; nothing but their names and units is told of them.
 std::vector<Column> read_aggregated_columns(const Handle& arm) {
     const hdf5::Dataset scale(arm, "column");
     const std::vector<std::string> names = words(hdf5::read_text(scale.object(), "column_names")),
@@ -88,7 +88,7 @@ std::vector<Column> read_aggregated_columns(const Handle& arm) {
 ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>& settings, Keep keep) {
     ScenarioResults results;
     results.keep = keep;
-    Declaration& scenario = results.scenario;
+    Scenario& scenario = results.scenario;
     for (const Setting& setting : settings)
         if (setting.key == "sweep.of") scenario.sweep.of = printable(setting.value);
         else if (setting.key == "sweep.at") scenario.sweep.at = parse_coordinates(printable(setting.value, setting.value.size()));
@@ -110,7 +110,7 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
     scenario.blocks = parse_blocks(hdf5::read_text(group, "blocks"), static_cast<int>(scenario.components.size()),
                                    hdf5::attribute_place(group, "blocks"));
     results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
-    results.figures = StateFigures(scenario.components, scenario.blocks,
+    results.all_series = StateSeries(scenario.components, scenario.blocks,
                                    hdf5::has_link(arm, "nis_total") ? Innovations::given : Innovations::none)
                           .list;
     return results;
@@ -124,9 +124,9 @@ ScenarioResults read_declared(const Handle& group, const std::string& file, Keep
     const std::vector<Setting> settings = read_settings(text, origin);
     const Setting* named = find_setting(settings, world_key);
     if (named != nullptr && find_world(named->value) == nullptr) return declared_by_file(group, settings, keep);
-    const Declaration scenario = read_declaration_text(text, origin, "scenario");
+    const Scenario scenario = read_declaration_text(text, origin, "scenario");
     const World& world = world_of(scenario);
-    return {scenario, world.columns(scenario), world.figures(scenario), {}, 0, {}, keep};
+    return {scenario, world.columns(scenario), world.all_series(scenario), {}, 0, {}, keep};
 }
 
 }  // namespace credence

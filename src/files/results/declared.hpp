@@ -10,7 +10,7 @@
 
 namespace credence {
 
-/// Scenario, columns and figures of a scenario's group, without arms. `file` names it in messages. Throws hdf5::Error,
+/// Scenario, columns and series of a scenario's group, without arms. `file` names it in messages. Throws hdf5::Error,
 /// and InputError for a broken scenario.
 ScenarioResults read_declared(const hdf5::Handle& group, const std::string& file, Keep keep);
 

@@ -19,9 +19,9 @@ const std::vector<double> levels(std::begin(coverage_levels), std::end(coverage_
 
 std::size_t lags(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
 
-const std::string& first_nees(const ScenarioResults& results) { return results.figures.front().name; }
+const std::string& first_nees(const ScenarioResults& results) { return results.all_series.front().name; }
 
-std::string coverage_name(const Figure& figure) { return figure.name + "_covered"; }
+std::string coverage_name(const Series& series) { return series.name + "_covered"; }
 std::string cells_name(const ScenarioResults& results) { return first_nees(results) + "_cells"; }
 
 /// They were rounded to single precision when they were kept. NaNs come with different bits from different processors.
@@ -42,10 +42,10 @@ void write_coverage(const Handle& group, const hdf5::Dimension& step, const Scen
                     const ArmResults& arm) {
     const auto level =
         hdf5::new_dimension(group, "level", levels, {"share of chi-square below the coverage bound", "1"});
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        if (const Figure& figure = results.figures[f]; figure.role == FigureRole::nees)
-            hdf5::new_variable(group, coverage_name(figure), arm.totals[f].covered, {&step, &level},
-                               {figure.long_name + ": counted trials below that quantile of chi-square", "1"});
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (const Series& series = results.all_series[f]; series.role == SeriesRole::nees)
+            hdf5::new_variable(group, coverage_name(series), arm.totals[f].covered, {&step, &level},
+                               {series.long_name + ": counted trials below that quantile of chi-square", "1"});
 }
 
 void write_products(const Handle& group, const hdf5::Dimension& part, const ScenarioResults& results,
@@ -80,9 +80,9 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
 void read_coverage(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     if (read_as<double>(group, "level", {levels.size()}) != levels)
         throw Error(hdf5::place_of(group, "level"), "does not hold the levels of this version");
-    for (std::size_t f = 0; f < results.figures.size(); ++f) {
-        if (results.figures[f].role != FigureRole::nees) continue;
-        const std::string name = coverage_name(results.figures[f]);
+    for (std::size_t f = 0; f < results.all_series.size(); ++f) {
+        if (results.all_series[f].role != SeriesRole::nees) continue;
+        const std::string name = coverage_name(results.all_series[f]);
         auto& covered = arm.totals[f].covered;
         covered = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), levels.size()});
         for (std::size_t i = 0; i < covered.size(); ++i)
@@ -93,10 +93,10 @@ void read_coverage(const Handle& group, const ScenarioResults& results, ArmResul
 
 void read_cells(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const std::string name = cells_name(results);
-    arm.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), shape_cells});
-    for (auto row = arm.cells.begin(); row != arm.cells.end(); row += shape_cells) {
+    arm.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), distribution_cells});
+    for (auto row = arm.cells.begin(); row != arm.cells.end(); row += distribution_cells) {
         std::int64_t left = arm.counted;
-        for (auto count = row; count != row + shape_cells; ++count) {
+        for (auto count = row; count != row + distribution_cells; ++count) {
             if (*count < 0 || *count > left) throw Error(hdf5::place_of(group, name), "its counts do not add up");
             left -= *count;
         }
@@ -118,9 +118,9 @@ void read_products(const Handle& group, const ScenarioResults& results, hsize_t 
 
 std::vector<std::string> evidence_links(const ScenarioResults& results) {
     std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
-    if (shape_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
-    for (const Figure& figure : results.figures)
-        if (figure.role == FigureRole::nees) names.push_back(coverage_name(figure));
+    if (distribution_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
+    for (const Series& series : results.all_series)
+        if (series.role == SeriesRole::nees) names.push_back(coverage_name(series));
     if (lags(results) > 0)
         names.insert(names.end(), {"lag", "whiteness_total", "whiteness_square_total", "whiteness_count"});
     return names;
@@ -129,11 +129,11 @@ std::vector<std::string> evidence_links(const ScenarioResults& results) {
 void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm) {
     write_coverage(group, dimensions.step, results, arm);
-    if (shape_counted(results.steps())) {
-        const auto cell = numbered<std::int32_t>(group, "cell", 0, shape_cells,
+    if (distribution_counted(results.steps())) {
+        const auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
                                                  "cell of chi-square; every one is as probable as any other");
         hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
-                           {results.figures.front().long_name + ": counted trials by cell", "1"});
+                           {results.all_series.front().long_name + ": counted trials by cell", "1"});
     }
     write_products(group, dimensions.part, results, arm);
     write_errors(group, dimensions.step, results, arm);
@@ -143,8 +143,8 @@ void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t 
     const auto steps = static_cast<hsize_t>(results.steps()), size = static_cast<hsize_t>(results.state_size()),
                detailed = static_cast<hsize_t>(results.detailed());
     read_coverage(group, results, arm);
-    if (shape_counted(results.steps())) {
-        check_numbered<std::int32_t>(group, "cell", 0, shape_cells);
+    if (distribution_counted(results.steps())) {
+        check_numbered<std::int32_t>(group, "cell", 0, distribution_cells);
         read_cells(group, results, arm);
     }
     if (lags(results) > 0) check_numbered<std::int32_t>(group, "lag", 1, lags(results));

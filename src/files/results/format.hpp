@@ -26,7 +26,7 @@ inline const std::string computed_by_fact = "computed_by", version_fact = "crede
 inline double one_nan(double value) { return value == value ? value : nan; }
 
 /// The group /run would be mistaken for a scenario, and the other way round.
-inline void refuse_reserved_name(const Declaration& scenario) {
+inline void refuse_reserved_name(const Scenario& scenario) {
     if (scenario.name == run_group)
         throw invalid_value("scenario.name", scenario.name, "the file keeps that group for facts of the machine",
                             "Give another name");
@@ -39,16 +39,16 @@ inline void write_header(const hdf5::Handle& root, const std::string& format, co
 }
 
 /// Blocks of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the whole state.
-inline std::string blocks_text(const std::vector<StateBlock>& blocks) {
+inline std::string blocks_text(const std::vector<ComponentGroup>& blocks) {
     std::vector<std::string> texts;
-    for (const StateBlock& block : blocks)
+    for (const ComponentGroup& block : blocks)
         if (block.name != "all")
             texts.push_back(block.name + " " + std::to_string(block.first) + ":" +
                             std::to_string(block.first + block.count));
     return joined(texts);
 }
 
-inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Declaration& scenario) {
+inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario& scenario) {
     hdf5::Handle group = hdf5::new_group(root, scenario.name);
     hdf5::write_text(group, "title", scenario.title);
     hdf5::write_text(group, "length_unit", scenario.length_unit);

@@ -56,10 +56,10 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
         const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
         names.insert(names.end(), aggregates.begin(), aggregates.end());
     }
-    for (const Figure& figure : results.figures) {
-        names.push_back(figure.name + "_total");
-        if (!figure.integer) names.push_back(figure.name + "_square_total");
-        names.push_back(figure.name + "_run_square_total");
+    for (const Series& series : results.all_series) {
+        names.push_back(series.name + "_total");
+        if (!series.integer) names.push_back(series.name + "_square_total");
+        names.push_back(series.name + "_run_square_total");
     }
     const std::vector<std::string> evidence = evidence_links(results);
     names.insert(names.end(), evidence.begin(), evidence.end());
@@ -90,12 +90,12 @@ struct Opened {
     std::optional<std::int64_t> most_totals;  ///< bytes of them that are in memory; nothing: they are not looked at
 };
 
-FigureTotals read_figure(const Handle& group, const Figure& figure, hsize_t steps, hsize_t parts) {
-    const std::string total = figure.name + "_total", square = figure.name + "_square_total";
-    FigureTotals totals;
-    totals.sum = figure.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
-    if (!figure.integer) totals.square_sum = read_sums(group, square, {steps, parts});
-    totals.run_square_sum = read_sums(group, figure.name + "_run_square_total", {parts}).front();
+SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts) {
+    const std::string total = series.name + "_total", square = series.name + "_square_total";
+    SeriesTotals totals;
+    totals.sum = series.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
+    if (!series.integer) totals.square_sum = read_sums(group, square, {steps, parts});
+    totals.run_square_sum = read_sums(group, series.name + "_run_square_total", {parts}).front();
     return totals;
 }
 
@@ -109,8 +109,8 @@ hsize_t read_parts(const Handle& group) {
 /// Totals, but those of the columns, and details.
 void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const hsize_t parts = read_parts(group);
-    for (const Figure& figure : results.figures)
-        arm.totals.push_back(read_figure(group, figure, static_cast<hsize_t>(results.steps()), parts));
+    for (const Series& series : results.all_series)
+        arm.totals.push_back(read_series(group, series, static_cast<hsize_t>(results.steps()), parts));
     read_evidence(group, results, parts, arm);
 }
 
@@ -176,7 +176,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
 ScenarioResults read_scenario_results(const std::string& name, const Opened& source) {
     const Handle group = hdf5::open_group(*source.file, name);
     ScenarioResults results = read_declared(group, source.path, source.keep);
-    const Declaration& scenario = results.scenario;
+    const Scenario& scenario = results.scenario;
     const auto agree = [&](const std::string& attribute, const std::string& found, const std::string& expected) {
         if (found != expected)
             throw Error(hdf5::attribute_place(group, attribute), "does not agree with the group's name and attributes");

@@ -16,7 +16,7 @@ std::vector<double> parts_of(const std::vector<ExactSum>& sums, std::size_t widt
 /// Rows of exact parts as sums. A sum has one form only: anything else was not written by this program.
 std::vector<ExactSum> read_sums(const hdf5::Handle& group, const std::string& name, const hdf5::Extents& extents);
 
-/// A sum of whole numbers as one; throws Error naming the figure where it is none.
+/// A sum of whole numbers as one; throws Error naming the series where it is none.
 std::int64_t whole_number(const ExactSum& sum, const std::string& name);
 std::vector<ExactSum> read_whole_sums(const hdf5::Handle& group, const std::string& name, hsize_t steps);
 

@@ -53,37 +53,37 @@ void write_column(const Handle& group, const Dimension& trial, const ScenarioRes
     write_status_flags(variable);
 }
 
-std::string role_name(FigureRole role) {
+std::string role_name(SeriesRole role) {
     switch (role) {
-        case FigureRole::nees: return "nees";
-        case FigureRole::standardised_error: return "standardised_error";
-        case FigureRole::nis: return "nis";
-        case FigureRole::rows: return "rows";
-        case FigureRole::squared_error: return "squared_error";
-        case FigureRole::variance: return "variance";
-        case FigureRole::nees_in_chart: return "nees_in_chart";
-        case FigureRole::other: break;
+        case SeriesRole::nees: return "nees";
+        case SeriesRole::standardised_error: return "standardised_error";
+        case SeriesRole::nis: return "nis";
+        case SeriesRole::rows: return "rows";
+        case SeriesRole::squared_error: return "squared_error";
+        case SeriesRole::variance: return "variance";
+        case SeriesRole::nees_in_chart: return "nees_in_chart";
+        case SeriesRole::other: break;
     }
     return "other";
 }
 
 std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : "(" + unit + ")^2"; }
 
-/// What a reader needs to know of a figure beside its total.
-void write_role(const Handle& variable, const Figure& figure) {
-    hdf5::write_text(variable, "figure", figure.name);
-    hdf5::write_text(variable, "role", role_name(figure.role));
-    if (!figure.part.empty()) hdf5::write_text(variable, "part_of", figure.part);
-    if (figure.dimension > 0) hdf5::write_number<std::int32_t>(variable, "dimension", figure.dimension);
-    if (figure.role != FigureRole::nis) return;
-    hdf5::write_text(variable, "rows", figure.rows);
-    hdf5::write_number<std::int32_t>(variable, "more_rows", figure.more_rows);
+/// What a reader needs to know of a series beside its total.
+void write_role(const Handle& variable, const Series& series) {
+    hdf5::write_text(variable, "figure", series.name);
+    hdf5::write_text(variable, "role", role_name(series.role));
+    if (!series.part.empty()) hdf5::write_text(variable, "part_of", series.part);
+    if (series.dimension > 0) hdf5::write_number<std::int32_t>(variable, "dimension", series.dimension);
+    if (series.role != SeriesRole::nis) return;
+    hdf5::write_text(variable, "rows", series.rows);
+    hdf5::write_number<std::int32_t>(variable, "more_rows", series.more_rows);
 }
 
 std::size_t largest_part_count(const ArmResults& arm) {
     std::size_t largest = largest_part_count(arm.aggregates);
     const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
-    for (const FigureTotals& totals : arm.totals) {
+    for (const SeriesTotals& totals : arm.totals) {
         std::for_each(totals.sum.begin(), totals.sum.end(), note);
         std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
         note(totals.run_square_sum);
@@ -93,21 +93,21 @@ std::size_t largest_part_count(const ArmResults& arm) {
     return largest;
 }
 
-void write_figure(const Handle& group, const Dimension& step, const Dimension& part, const Figure& figure,
-                  const FigureTotals& totals) {
-    const std::string total = figure.long_name + ": total over the counted trials", square = squared_unit(figure.unit);
+void write_series(const Handle& group, const Dimension& step, const Dimension& part, const Series& series,
+                  const SeriesTotals& totals) {
+    const std::string total = series.long_name + ": total over the counted trials", square = squared_unit(series.unit);
     const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
                                  const hdf5::Dimensions& dimensions, const hdf5::Description& description) {
-        write_role(hdf5::new_variable(group, figure.name + suffix, parts_of(sums, part.size), dimensions, description),
-                   figure);
+        write_role(hdf5::new_variable(group, series.name + suffix, parts_of(sums, part.size), dimensions, description),
+                   series);
     };
-    if (figure.integer) {
+    if (series.integer) {
         std::vector<std::int64_t> sums;
-        for (const ExactSum& sum : totals.sum) sums.push_back(whole_number(sum, figure.name));
-        write_role(hdf5::new_variable(group, figure.name + "_total", sums, {&step}, {total, figure.unit}),
-                   figure);
+        for (const ExactSum& sum : totals.sum) sums.push_back(whole_number(sum, series.name));
+        write_role(hdf5::new_variable(group, series.name + "_total", sums, {&step}, {total, series.unit}),
+                   series);
     } else {
-        write_parts("_total", totals.sum, {&step, &part}, {total, figure.unit});
+        write_parts("_total", totals.sum, {&step, &part}, {total, series.unit});
         write_parts("_square_total", totals.square_sum, {&step, &part}, {total + " of its square", square});
     }
     write_parts("_run_square_total", {totals.run_square_sum}, {&part},
@@ -138,8 +138,8 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
         for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
     else
         write_aggregates(group, part, results, arm);
-    for (std::size_t f = 0; f < results.figures.size(); ++f)
-        write_figure(group, step, part, results.figures[f], arm.totals[f]);
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        write_series(group, step, part, results.all_series[f], arm.totals[f]);
     write_evidence(group, {step, part}, results, arm);
 }
 

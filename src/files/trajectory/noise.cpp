@@ -2,7 +2,7 @@
 
 #include <credence/text.hpp>
 
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include "files/hdf5/read.hpp"
 

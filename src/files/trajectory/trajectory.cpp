@@ -148,13 +148,13 @@ void write_trajectory(const Handle& scenario_group, const Trajectory& trajectory
 }  // namespace
 
 void write_trajectories(const Output& output, const std::vector<Trajectory>& trajectories, const RunFacts& run) {
-    for (const Trajectory& trajectory : trajectories) refuse_reserved_name(declaration_of(trajectory.scenario));
+    for (const Trajectory& trajectory : trajectories) refuse_reserved_name(scenario_of(trajectory.scenario));
     write_file(output, [&](const Handle& root) {
         write_header(root, trajectories_format, "Single trials of EKF-SLAM with everything that happened in them");
         std::map<std::string, Handle> groups;
         for (const Trajectory& trajectory : trajectories) {
             const std::string& name = trajectory.scenario.name;
-            if (groups.count(name) == 0) groups.emplace(name, new_scenario_group(root, declaration_of(trajectory.scenario)));
+            if (groups.count(name) == 0) groups.emplace(name, new_scenario_group(root, scenario_of(trajectory.scenario)));
             write_trajectory(groups.at(name), trajectory);
         }
         write_run_facts(root, run);

@@ -29,6 +29,6 @@ void check_same_draws(const std::vector<StudyFile>& files);
 void check_same_world(const ChosenPair& pair);
 
 /// The keys in which two resolved scenarios differ, but for titles and published figures.
-std::vector<KeyDifference> shown_differences(const Declaration& a, const Declaration& b);
+std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b);
 
 }  // namespace credence

@@ -29,8 +29,8 @@ ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& fi
                       aggregates.statuses[static_cast<std::size_t>(Status::diverged)], {}};
     std::size_t f = 0;
     for (std::size_t c = 0; c < compared.results.columns.size(); ++c) {
-        if (!is_figure(compared.results.columns[c])) continue;
-        const bool all_paired = aggregates.columns[c].count == comparison.figures[f++].paired.pairs;
+        if (!is_reported(compared.results.columns[c])) continue;
+        const bool all_paired = aggregates.columns[c].count == comparison.columns[f++].paired.pairs;
         side.mean.push_back(all_paired ? moments_of(aggregates.columns[c]).mean : std::nan(""));
     }
     return side;
@@ -40,7 +40,7 @@ ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& fi
 void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials& common) {
     const std::vector<Column>& columns = chosen.a.results.columns;
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (!is_figure(columns[c])) continue;
+        if (!is_reported(columns[c])) continue;
         std::vector<double> a = common.of_a(figure_values(chosen.a.results, chosen.a.arm, c)),
                             b = common.of_b(figure_values(chosen.b.results, chosen.b.arm, c));
         for (std::size_t i = 0; i < a.size(); ++i)
@@ -90,7 +90,7 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
 
 /// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 % where there is one.
 Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
-    const PairedComparison& paired = pair.comparison.figures.front().paired;
+    const PairedComparison& paired = pair.comparison.columns.front().paired;
     if (pair.not_run()) return Conclusion::not_run;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
     if (paired.pairs < 2) return Conclusion::not_shown;

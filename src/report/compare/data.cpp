@@ -27,10 +27,10 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
               {"pairs", pair.pairs()},
               {"conclusion", conclusion_name(pair.conclusion)}};
     json.update(comparison_json(pair.comparison));
-    for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
-        Json& figure = json[pair.comparison.figures[f].name];
-        figure["mean_a"] = pair.a.mean[f];
-        figure["mean_b"] = pair.b.mean[f];
+    for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
+        Json& column = json[pair.comparison.columns[f].name];
+        column["mean_a"] = pair.a.mean[f];
+        column["mean_b"] = pair.b.mean[f];
     }
     json["differences"] = Json::object();
     for (const KeyDifference& key : pair.differences) json["differences"][key.key] = Json::array({key.a, key.b});
@@ -49,15 +49,15 @@ std::string csv_text(const std::string& text) {
     return quoted + "\"";
 }
 
-std::string csv_row(const ComparedPair& pair, std::size_t figure) {
-    const ComparedFigure& compared = pair.comparison.figures[figure];
+std::string csv_row(const ComparedPair& pair, std::size_t column) {
+    const ComparedColumn& compared = pair.comparison.columns[column];
     const PairedComparison& paired = compared.paired;
     const Summary& difference = paired.difference;
     std::string text = csv_text(pair.comparison.scenario) + "," + csv_text(pair.comparison.a) + "," +
                        csv_text(pair.comparison.b) + "," + csv_text(compared.name) + "," + csv_text(compared.unit) +
                        "," + std::to_string(paired.pairs);
     for (const double value :
-         {pair.a.mean[figure], pair.b.mean[figure], difference.mean, difference.standard_error, difference.ci95.low,
+         {pair.a.mean[column], pair.b.mean[column], difference.mean, difference.standard_error, difference.ci95.low,
           difference.ci95.high, paired.bootstrap95.low, paired.bootstrap95.high, difference.median,
           difference.standard_deviation, paired.wins_a, paired.wins_b, paired.ties, paired.wilcoxon_z,
           paired.wilcoxon_p, compared.holm_p, paired.effect_size, paired.variance_reduction})
@@ -79,7 +79,7 @@ std::string compare_csv(const CompareReport& report) {
         "scenario,a,b,figure,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
         "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
     for (const ComparedPair& pair : report.pairs)
-        for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) text += csv_row(pair, f);
+        for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) text += csv_row(pair, f);
     return text;
 }
 

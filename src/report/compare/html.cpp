@@ -34,12 +34,12 @@ Html conclusion_list(const CompareReport& report) {
 Html means_table(const ComparedPair& pair) {
     HtmlTable table(pair.comparison.scenario + ": means over the pairs",
                     {"figure", "A = " + pair.comparison.a, "B = " + pair.comparison.b});
-    for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
-        const ComparedFigure& one = pair.comparison.figures[f];
+    for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
+        const ComparedColumn& one = pair.comparison.columns[f];
         const Interval& interval = one.paired.difference.ci95;
         const int digits = decimals_for(half_width(interval));
         table.row(escaped(figure_words(one.name, one.unit)),
-                  {figure(pair.a.mean[f], digits), figure(pair.b.mean[f], digits)});
+                  {number_html(pair.a.mean[f], digits), number_html(pair.b.mean[f], digits)});
     }
     return table.html();
 }

@@ -39,12 +39,12 @@ std::string not_run_text(const ComparedPair& pair) {
 
 /// How the ranks stand to a mean difference that is not shown.
 std::string despite(const Comparison& comparison) {
-    const PairedComparison& paired = comparison.figures.front().paired;
-    if (!(comparison.figures.front().holm_p <= 0.05)) return "";
+    const PairedComparison& paired = comparison.columns.front().paired;
+    if (!(comparison.columns.front().holm_p <= 0.05)) return "";
     const bool below = paired.wilcoxon_z < 0;
     return "; yet " + comparison.a + " is " + (below ? "lower" : "higher") + " in " +
            percent(below ? paired.wins_a : paired.wins_b) + " of trials (p " +
-           p_text(comparison.figures.front().holm_p) + ")";
+           p_text(comparison.columns.front().holm_p) + ")";
 }
 
 std::string conclusions(const CompareReport& report) {
@@ -57,19 +57,19 @@ std::string conclusions(const CompareReport& report) {
     return text;
 }
 
-std::string row_label(const ComparedFigure& figure) {
-    return "    " + padded(figure.unit == "1" ? figure.name : figure.name + " [" + figure.unit + "]", 30, false);
+std::string row_label(const ComparedColumn& column) {
+    return "    " + padded(column.unit == "1" ? column.name : column.name + " [" + column.unit + "]", 30, false);
 }
 
 /// How large the differences are.
 std::string sizes(const ComparedPair& pair) {
     std::string text = "  " + padded("how much", 32, false) + padded("A", 11) + padded("B", 11) +
                        padded("A - B ± 95 %", 22) + padded("bootstrap 95 %", 24) + padded("median", 12) + "\n";
-    for (std::size_t f = 0; f < pair.comparison.figures.size(); ++f) {
-        const ComparedFigure& figure = pair.comparison.figures[f];
-        const PairedComparison& paired = figure.paired;
+    for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
+        const ComparedColumn& column = pair.comparison.columns[f];
+        const PairedComparison& paired = column.paired;
         const int digits = decimals_of(paired);
-        text += row_label(figure) + padded(number(pair.a.mean[f], digits), 11) +
+        text += row_label(column) + padded(number(pair.a.mean[f], digits), 11) +
                 padded(number(pair.b.mean[f], digits), 11) +
                 padded(with_interval(paired.difference.mean, paired.difference.ci95), 22) +
                 padded(bracketed(paired.bootstrap95, digits), 24) +
@@ -84,11 +84,11 @@ std::string tests(const ComparedPair& pair) {
     std::string text = "  " + padded("how surely", 32, false) + padded("A below", 11) + padded("A above", 11) +
                        padded("equal", 10) + padded("Wilcoxon z", 12) + padded("p (Holm)", 12) + padded("d_z", 9) +
                        padded("reduction", 15) + "\n";
-    for (const ComparedFigure& figure : pair.comparison.figures) {
-        const PairedComparison& paired = figure.paired;
-        text += row_label(figure) + padded(percent(paired.wins_a), 11) + padded(percent(paired.wins_b), 11) +
+    for (const ComparedColumn& column : pair.comparison.columns) {
+        const PairedComparison& paired = column.paired;
+        text += row_label(column) + padded(percent(paired.wins_a), 11) + padded(percent(paired.wins_b), 11) +
                 padded(percent(paired.ties), 10) + padded(number(paired.wilcoxon_z, 2), 12) +
-                padded(p_text(figure.holm_p), 12) + padded(number(paired.effect_size, 3), 9) +
+                padded(p_text(column.holm_p), 12) + padded(number(paired.effect_size, 3), 9) +
                 padded(number(paired.variance_reduction, 2), 15) + "\n";
     }
     return text;
@@ -113,11 +113,11 @@ std::string compare_head(const CompareReport& report) {
 
 std::string conclusion_text(const ComparedPair& pair) {
     const Comparison& comparison = pair.comparison;
-    const PairedComparison& paired = comparison.figures.front().paired;
+    const PairedComparison& paired = comparison.columns.front().paired;
     const int digits = decimals_of(paired);
     const double mean = paired.difference.mean;
     const Interval& interval = paired.difference.ci95;
-    const std::string text = comparison.figures.front().name + ": ", both = comparison.a + " and " + comparison.b;
+    const std::string text = comparison.columns.front().name + ": ", both = comparison.a + " and " + comparison.b;
     if (pair.not_run()) return text + not_run_text(pair);
     if (paired.pairs == 0) return text + "no pairs, nothing to compare";
     if (pair.conclusion == Conclusion::not_shown && !std::isfinite(mean))

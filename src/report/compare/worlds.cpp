@@ -35,7 +35,7 @@ void check_same_world(const ChosenPair& pair) {
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " trial by trial (" +
                              file->path + " keeps aggregates: no trials, and differences of its own arms only). Run it " +
                              "with --keep trials, or compare arms of one file.");
-    const Declaration &a = pair.a.results.scenario, &b = pair.b.results.scenario;
+    const Scenario &a = pair.a.results.scenario, &b = pair.b.results.scenario;
     for (const KeyDifference& difference : key_differences(a, b))
         if (!may_differ(difference.key))
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
@@ -44,7 +44,7 @@ void check_same_world(const ChosenPair& pair) {
                              "). Compare runs that differ in filter, control, planner or arms only.");
 }
 
-std::vector<KeyDifference> shown_differences(const Declaration& a, const Declaration& b) {
+std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b) {
     std::vector<KeyDifference> differences = key_differences(a, b);
     std::erase_if(differences, [](const KeyDifference& difference) {
         return difference.key == "scenario.title" || difference.key.starts_with("published.");

@@ -24,14 +24,14 @@ Json summary_json(const Summary& summary) {
             {"n", summary.count}};
 }
 
-Json figure_json(const FigureReport& figure) {
-    Json json = summary_json(figure.summary);
-    json["unit"] = figure.unit;
-    for (std::size_t q = 0; q < figure.quantiles.size(); ++q)
-        json["quantiles"][to_text(reported_quantiles[q])] = figure.quantiles[q];
-    if (figure.bootstrap95) json["bootstrap95"] = interval_json(*figure.bootstrap95);
-    if (figure.published)
-        json["published"] = {{"value", figure.published->value}, {"percentile", figure.published->percentile}};
+Json figure_json(const ColumnReport& column) {
+    Json json = summary_json(column.summary);
+    json["unit"] = column.unit;
+    for (std::size_t q = 0; q < column.quantiles.size(); ++q)
+        json["quantiles"][to_text(reported_quantiles[q])] = column.quantiles[q];
+    if (column.bootstrap95) json["bootstrap95"] = interval_json(*column.bootstrap95);
+    if (column.published)
+        json["published"] = {{"value", column.published->value}, {"percentile", column.published->percentile}};
     return json;
 }
 
@@ -47,9 +47,9 @@ Json findings_json(const std::vector<Finding>& findings) {
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
               {"diverged", arm.diverged}, {"failed_trials", arm.failed_trials()}};
-    for (const Declaration& scenario : report.scenarios)
+    for (const Scenario& scenario : report.scenarios)
         if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
-    for (const FigureReport& figure : arm.figures) json[figure.name] = figure_json(figure);
+    for (const ColumnReport& column : arm.columns) json[column.name] = figure_json(column);
     json["verdict"] = verdict_name(arm.consistency.verdict);
     if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;
     json["margin"] = arm.consistency.limits.margin;
@@ -112,17 +112,17 @@ public:
 private:
     static constexpr Interval none{nan, nan};
 
-    void add(const std::string& figure, double mean, double se, const Interval& interval, double sd = nan) {
-        text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), figure, "1"},
+    void add(const std::string& column, double mean, double se, const Interval& interval, double sd = nan) {
+        text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), column, "1"},
                          {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt, end_);
     }
-    void add_moments(const std::string& figure, const Moments& moments) {
-        add(figure, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
+    void add_moments(const std::string& column, const Moments& moments) {
+        add(column, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
     }
     /// For NIS at a step the interval is its joint chi-square band: there is no spread of trials to take one from.
-    void add_steps(const std::string& figure, const std::vector<double>& values, const std::vector<Interval>& intervals) {
+    void add_steps(const std::string& column, const std::vector<double>& values, const std::vector<Interval>& intervals) {
         for (std::size_t k = 0; k < values.size(); ++k)
-            add(figure + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
+            add(column + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
     }
     void add_block(const BlockEvidence& block) {
         add_moments("nees_per_dimension:" + block.block, block.run);
@@ -155,16 +155,16 @@ std::string report_csv(const Report& report) {
     for (const ArmReport& arm : report.arms) {
         const std::string end =
             verdict_word(arm) + sweep.cells(arm.scenario) + "," + std::to_string(arm.failed_trials());
-        for (const FigureReport& figure : arm.figures)
-            text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), figure.name,
-                             figure.unit},
-                            figure.summary, figure.bootstrap95, figure.published, end);
+        for (const ColumnReport& column : arm.columns)
+            text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), column.name,
+                             column.unit},
+                            column.summary, column.bootstrap95, column.published, end);
         text += EvidenceRows(arm, end).text();
     }
     for (const Comparison& pair : report.pairs)
-        for (const ComparedFigure& figure : pair.figures)
-            text += csv_row({pair.scenario, pair.name(), std::to_string(figure.paired.pairs), "", figure.name, figure.unit},
-                            figure.paired.difference, figure.paired.bootstrap95, std::nullopt,
+        for (const ComparedColumn& column : pair.columns)
+            text += csv_row({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
+                            column.paired.difference, column.paired.bootstrap95, std::nullopt,
                             sweep.cells(pair.scenario) + ",");
     return text;
 }

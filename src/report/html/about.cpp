@@ -29,7 +29,7 @@ std::string limits_options(const Limits& limits) {
 /// The command that makes a study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
     std::string line = "credence run";
-    for (const Declaration& scenario : report.scenarios) line += " " + scenario.name + ".ini";
+    for (const Scenario& scenario : report.scenarios) line += " " + scenario.name + ".ini";
     return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
            (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
 }
@@ -136,7 +136,7 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
         html += "<p>The file was made by</p>\n"_html + command(line);
     const bool all_shown = std::all_of(report.scenarios.begin(), report.scenarios.end(),
-                                       [&](const Declaration& one) { return has_section(report, one.name); });
+                                       [&](const Scenario& one) { return has_section(report, one.name); });
     html += all_shown
                 ? "<p>Without the scenario files: save the scenarios of this page, each under its name, and run the same "
                   "trials. Any number of threads gives the same bits, which the second command checks.</p>\n"_html +

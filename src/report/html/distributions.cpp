@@ -20,7 +20,7 @@ constexpr double width = 360, left = 14, right = width - 14, top = 20, row = 74,
 struct Sample {
     std::string arm;
     std::size_t number;
-    const FigureReport* figure;
+    const ColumnReport* column;
 };
 
 double share_of(const Histogram& histogram, std::size_t bin) {
@@ -66,34 +66,34 @@ Scale scale_over(Range edges, BinWidths widths, std::size_t bins) {
     return {ratio ? ScaleKind::logarithmic : ScaleKind::linear, edges.low, edges.high, left, right};
 }
 
-void draw_published(Svg& svg, const Scale& x, const FigureReport& figure, double foot) {
-    if (!figure.published) return;
-    const std::string says = "published " + to_text(figure.published->value) + " (" +
-                             number(figure.published->percentile, 1) + " % of the trials are lower)";
-    const double at = x(figure.published->value);
+void draw_published(Svg& svg, const Scale& x, const ColumnReport& column, double foot) {
+    if (!column.published) return;
+    const std::string says = "published " + to_text(column.published->value) + " (" +
+                             number(column.published->percentile, 1) + " % of the trials are lower)";
+    const double at = x(column.published->value);
     svg.line({at, foot}, {at, foot - bar - 2}, "published", says);
     const bool right_half = at > (x.from + x.to) / 2;
     svg.text({at + (right_half ? -4 : 4), foot - bar + 7}, right_half ? Anchor::end : Anchor::start,
-             "published " + to_text(figure.published->value) + " (" + number(figure.published->percentile, 1) + " %)",
+             "published " + to_text(column.published->value) + " (" + number(column.published->percentile, 1) + " %)",
              "label halo");
 }
 
 std::string draw_sample(Svg& svg, const Scale& x, const Sample& sample, double foot) {
-    const FigureReport& figure = *sample.figure;
-    const Summary& s = figure.summary;
+    const ColumnReport& column = *sample.column;
+    const Summary& s = column.summary;
     svg.text({left, foot - bar - 5}, Anchor::start, sample.arm, "label row");
-    draw_bars(svg, x, *figure.histogram, foot, "bar " + series_class(sample.number), sample.arm);
-    svg.text({x.to, foot - bar - 5}, Anchor::end, "highest bar " + percent_text(largest_share(*figure.histogram)));
-    draw_published(svg, x, figure, foot);
+    draw_bars(svg, x, *column.histogram, foot, "bar " + series_class(sample.number), sample.arm);
+    svg.text({x.to, foot - bar - 5}, Anchor::end, "highest bar " + percent_text(largest_share(*column.histogram)));
+    draw_published(svg, x, column, foot);
     svg.line({x(s.median), foot + 1}, {x(s.median), foot - 9}, "median",
              sample.arm + ": median " + short_number(s.median));
     svg.mark({x(s.mean), foot + 5}, sample.number,
              sample.arm + ": mean " + short_number(s.mean) + ", 95 % " + short_number(s.ci95.low) + " to " +
                  short_number(s.ci95.high));
-    const std::int64_t beyond = figure.histogram->below + figure.histogram->above;
+    const std::int64_t beyond = column.histogram->below + column.histogram->above;
     return sample.arm + ": mean " + short_number(s.mean) + ", median " + short_number(s.median) +
-           (figure.published ? ", published " + to_text(figure.published->value) + " at " +
-                                   number(figure.published->percentile, 1) + " %"
+           (column.published ? ", published " + to_text(column.published->value) + " at " +
+                                   number(column.published->percentile, 1) + " %"
                              : "") +
            (beyond > 0 ? ", " + std::to_string(beyond) + " trials beyond the axis" : "") + ". ";
 }
@@ -102,13 +102,13 @@ Html distribution(const Part& part, const std::string& name, const std::vector<S
     Range edges;
     std::size_t bins = 0;
     for (const Sample& sample : samples) {
-        bins = std::max(bins, sample.figure->histogram->counts.size());
-        edges.include(sample.figure->histogram->edges.front());
-        edges.include(sample.figure->histogram->edges.back());
-        if (sample.figure->published) edges.include(sample.figure->published->value);
+        bins = std::max(bins, sample.column->histogram->counts.size());
+        edges.include(sample.column->histogram->edges.front());
+        edges.include(sample.column->histogram->edges.back());
+        if (sample.column->published) edges.include(sample.column->published->value);
     }
-    const std::string title = figure_words(name, samples.front().figure->unit);
-    const Scale x = scale_over(edges, samples.front().figure->histogram->widths, bins);
+    const std::string title = figure_words(name, samples.front().column->unit);
+    const Scale x = scale_over(edges, samples.front().column->histogram->widths, bins);
     const double foot = top + row * static_cast<double>(samples.size()) - 14;
     Svg svg(width, foot + 48);
     std::string described;
@@ -118,8 +118,8 @@ Html distribution(const Part& part, const std::string& name, const std::vector<S
     return chart(title, svg.html(part.id(name), part.scenario.name + ": distribution of " + title, described));
 }
 
-Html difference(const Comparison& pair, const ComparedFigure& figure, const std::string& id) {
-    const PairedComparison& paired = figure.paired;
+Html difference(const Comparison& pair, const ComparedColumn& column, const std::string& id) {
+    const PairedComparison& paired = column.paired;
     const Summary& s = paired.difference;
     Range edges;
     for (const double value : {paired.histogram.edges.front(), paired.histogram.edges.back(), 0.0})
@@ -136,8 +136,8 @@ Html difference(const Comparison& pair, const ComparedFigure& figure, const std:
         "mean " + short_number(s.mean) + ", 95 % " + short_number(s.ci95.low) + " to " + short_number(s.ci95.high);
     svg.line({x(s.ci95.low), foot + 7}, {x(s.ci95.high), foot + 7}, "whisker", says);
     svg.mark({x(s.mean), foot + 7}, 1, pair.name() + ": " + says, "pair");
-    const std::string title = figure_words(figure.name, figure.unit);
-    const std::string axis = "difference" + (figure.unit == "1" ? "" : " [" + with_powers(figure.unit) + "]");
+    const std::string title = figure_words(column.name, column.unit);
+    const std::string axis = "difference" + (column.unit == "1" ? "" : " [" + with_powers(column.unit) + "]");
     Axes{x, {ScaleKind::linear, 0, 1, foot + 16, top}, axis, "", 6, 0}.draw(svg);
     return chart(title, svg.html(id, pair.scenario + ": " + pair.name() + " of " + title, says + "; " + shares + ". "));
 }
@@ -147,12 +147,12 @@ Html difference(const Comparison& pair, const ComparedFigure& figure, const std:
 Html distribution_charts(const Part& part) {
     Html html;
     if (part.arms.empty()) return html;
-    for (const FigureReport& first : part.arms.front()->figures) {
+    for (const ColumnReport& first : part.arms.front()->columns) {
         std::vector<Sample> samples;
         for (std::size_t i = 0; i < part.arms.size(); ++i)
-            if (const FigureReport& figure = figure_named(part.arms[i]->figures, first.name);
-                figure.histogram && !figure.histogram->counts.empty())
-                samples.push_back({part.arms[i]->arm, i, &figure});
+            if (const ColumnReport& column = column_named(part.arms[i]->columns, first.name);
+                column.histogram && !column.histogram->counts.empty())
+                samples.push_back({part.arms[i]->arm, i, &column});
         if (!samples.empty()) html += distribution(part, first.name, samples);
     }
     return html;
@@ -160,9 +160,9 @@ Html distribution_charts(const Part& part) {
 
 Html difference_charts(const Comparison& pair, std::size_t number) {
     Html html;
-    for (const ComparedFigure& figure : pair.figures)
-        if (!figure.paired.histogram.counts.empty())
-            html += difference(pair, figure, pair.scenario + ".pair" + std::to_string(number) + "-" + figure.name);
+    for (const ComparedColumn& column : pair.columns)
+        if (!column.paired.histogram.counts.empty())
+            html += difference(pair, column, pair.scenario + ".pair" + std::to_string(number) + "-" + column.name);
     return html;
 }
 

@@ -40,13 +40,13 @@ Html blocks_table(const Part& part) {
                       ratio_digits = decimals_for(half_width(block->accuracy.ratio_ci95));
             rows.row(
                 escaped(block->block),
-                {figure_count(block->dimension), figure(block->run.mean, digits), figure_interval(over_steps, digits),
-                 figure_within(block->run.standard_error, block->run.standard_error),
+                {count_html(block->dimension), number_html(block->run.mean, digits), interval_html(over_steps, digits),
+                 number_html_within(block->run.standard_error, block->run.standard_error),
                  escaped(of_steps(block->anees.outside_simultaneous, block->anees.observed)),
                  escaped(of_steps(block->anees.outside, block->anees.observed)),
-                 escaped(number(mean_of(block->variance_ratio), 2)), figure(block->accuracy.over_steps, 4),
-                 figure(block->accuracy.ratio, ratio_digits),
-                 figure_interval(block->accuracy.ratio_ci95, ratio_digits)});
+                 escaped(number(mean_of(block->variance_ratio), 2)), number_html(block->accuracy.over_steps, 4),
+                 number_html(block->accuracy.ratio, ratio_digits),
+                 interval_html(block->accuracy.ratio_ci95, ratio_digits)});
         }
     });
 }
@@ -70,8 +70,8 @@ Html charts_table(const Part& part) {
             const Interval over_steps = t_interval(chart.run);
             const int digits = decimals_for(half_width(over_steps));
             rows.row(escaped(chart.block),
-                     {escaped(chart.chart), figure(chart.run.mean, digits), figure_interval(over_steps, digits),
-                      figure_within(chart.run.standard_error, chart.run.standard_error),
+                     {escaped(chart.chart), number_html(chart.run.mean, digits), interval_html(over_steps, digits),
+                      number_html_within(chart.run.standard_error, chart.run.standard_error),
                       escaped(of_steps(chart.anees.outside_simultaneous, chart.anees.observed)),
                       escaped(of_steps(chart.anees.outside, chart.anees.observed))});
         }
@@ -89,7 +89,7 @@ Html coverage_table(const Part& part) {
         for (const BlockEvidence* block : shown_blocks(evidence)) {
             std::vector<Html> cells;
             for (const Coverage& level : block->coverage)
-                cells.push_back(figure_as(level.over_steps, number(100 * level.over_steps, 1) + " %"));
+                cells.push_back(number_html_as(level.over_steps, number(100 * level.over_steps, 1) + " %"));
             rows.row(escaped(block->block), cells);
         }
     });
@@ -104,8 +104,8 @@ Html nis_table(const Part& part) {
         for (const NisEvidence& nis : evidence.nis) {
             const double half = half_width(std::isnan(nis.ratio95.low) ? nis.scale95 : nis.ratio95);
             const int digits = decimals_for(half);
-            rows.row(escaped(nis.part), {figure_count(nis.degrees), figure(nis.ratio, digits),
-                                         figure_interval(nis.ratio95, digits), figure_interval(nis.scale95, digits + 1),
+            rows.row(escaped(nis.part), {count_html(nis.degrees), number_html(nis.ratio, digits),
+                                         interval_html(nis.ratio95, digits), interval_html(nis.scale95, digits + 1),
                                          escaped(of_steps(nis.nis.outside_simultaneous, nis.nis.observed)),
                                          escaped(of_steps(nis.nis.outside, nis.nis.observed))});
         }
@@ -119,27 +119,27 @@ Html whiteness_table(const Part& part) {
         for (const Whiteness& lag : evidence.whiteness) {
             const int digits = decimals_for(lag.bound);
             rows.row(
-                figure_count(lag.lag),
-                {figure(lag.correlation, digits), figure(lag.scaled, digits), "± "_html + figure(lag.bound, digits),
-                 "± "_html + figure(lag.simultaneous_bound, digits), figure_count(static_cast<double>(lag.count))});
+                count_html(lag.lag),
+                {number_html(lag.correlation, digits), number_html(lag.scaled, digits), "± "_html + number_html(lag.bound, digits),
+                 "± "_html + number_html(lag.simultaneous_bound, digits), count_html(static_cast<double>(lag.count))});
         }
     });
 }
 
-Html shape_table(const Part& part) {
+Html distribution_table(const Part& part) {
     HtmlTable table(part.scenario.name + ": shape of the NEES and credibility",
                     {"arm", "distance from chi-square", "at step", "p over all steps", "NCI", "I²", "of these trials"});
     for (const ArmReport* arm : part.arms) {
-        const WorstShape worst = worst_shape(arm->evidence.shape);
+        const WorstDistribution worst = worst_distribution(arm->evidence.shape);
         const CredibilityEvidence& credibility = arm->evidence.credibility;
         if (worst.known == 0 && std::isnan(credibility.nci)) continue;
         std::int64_t trials = 0;
         for (const Credibility& step : credibility.step) trials = std::max(trials, step.count);
         const bool known = worst.known > 0;
         table.row(escaped(arm->arm),
-                  {known ? figure(worst.distance, 4) : "-"_html, known ? figure_count(worst.step) : "-"_html,
-                   known ? escaped(p_text(worst.p)) : "-"_html, figure(credibility.nci, 3),
-                   figure(credibility.inclination, 3), figure_count(static_cast<double>(trials))});
+                  {known ? number_html(worst.distance, 4) : "-"_html, known ? count_html(worst.step) : "-"_html,
+                   known ? escaped(p_text(worst.p)) : "-"_html, number_html(credibility.nci, 3),
+                   number_html(credibility.inclination, 3), count_html(static_cast<double>(trials))});
     }
     return table.html();
 }
@@ -148,7 +148,7 @@ Html shape_table(const Part& part) {
 
 Html evidence_tables(const Part& part) {
     const Html html = blocks_table(part) + omitted_blocks(part) + charts_table(part) + coverage_table(part) + nis_table(part) +
-                      shape_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part));
+                      distribution_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part));
     return html.empty() ? html : "<h3>Is the covariance right?</h3>\n"_html + html;
 }
 

@@ -53,27 +53,27 @@ Html element(std::string_view name, const Html& content, const Html& attributes)
     return Html::trusted(text + ">" + content.text() + "</" + std::string(name) + ">");
 }
 
-Html figure_as(double value, const std::string& text) {
+Html number_html_as(double value, const std::string& text) {
     if (!std::isfinite(value)) return dash();
     return element("data", escaped(text), "value=\""_html + escaped(to_text(value)) + "\""_html);
 }
 
-Html figure(double value, int digits) { return figure_as(value, number(value, digits)); }
+Html number_html(double value, int digits) { return number_html_as(value, number(value, digits)); }
 
-Html figure_count(double value) { return figure_as(value, short_number(value)); }
+Html count_html(double value) { return number_html_as(value, short_number(value)); }
 
-Html figure_within(double value, double uncertainty) { return figure(value, decimals_for(uncertainty)); }
+Html number_html_within(double value, double uncertainty) { return number_html(value, decimals_for(uncertainty)); }
 
-Html figure_interval(const Interval& interval, int digits) {
+Html interval_html(const Interval& interval, int digits) {
     if (!std::isfinite(half_width(interval))) return dash();
-    return "["_html + figure(interval.low, digits) + ", "_html + figure(interval.high, digits) + "]"_html;
+    return "["_html + number_html(interval.low, digits) + ", "_html + number_html(interval.high, digits) + "]"_html;
 }
 
-Html figure_with_interval(double mean, const Interval& interval) {
+Html mean_html(double mean, const Interval& interval) {
     const double half = half_width(interval);
     const int digits = decimals_for(half);
-    if (!std::isfinite(mean) || !std::isfinite(half)) return figure(mean, digits);
-    return figure(mean, digits) + " ± "_html + escaped(number(half, digits));
+    if (!std::isfinite(mean) || !std::isfinite(half)) return number_html(mean, digits);
+    return number_html(mean, digits) + " ± "_html + escaped(number(half, digits));
 }
 
 std::string short_number(double value) {

@@ -36,17 +36,17 @@ Html element(std::string_view name, const Html& content, const Html& attributes 
 
 /// A number as people read it, with the exact one (`to_text`) in the attribute `value` of a `data` element. `-` for
 /// what is not finite.
-Html figure(double value, int digits);
+Html number_html(double value, int digits);
 /// The same with a text of one's own, such as `71 %`.
-Html figure_as(double value, const std::string& text);
+Html number_html_as(double value, const std::string& text);
 /// A count, however large, in full.
-Html figure_count(double value);
-/// `figure` with the decimals that show two digits of `uncertainty` [report_format.hpp].
-Html figure_within(double value, double uncertainty);
-/// `[low, high]`, both of them figures; `-` where there is none.
-Html figure_interval(const Interval& interval, int digits);
-/// `mean ± half-width`, as in the text report; the mean is a figure.
-Html figure_with_interval(double mean, const Interval& interval);
+Html count_html(double value);
+/// `number_html` with the decimals that show two digits of `uncertainty` [report_format.hpp].
+Html number_html_within(double value, double uncertainty);
+/// `[low, high]`, both of them `data` elements; `-` where there is none.
+Html interval_html(const Interval& interval, int digits);
+/// `mean ± half-width`, as in the text report; the mean is a `data` element.
+Html mean_html(double mean, const Interval& interval);
 
 /// Five significant digits, whole numbers as they are; `-` for what is not finite. The same in every locale.
 std::string short_number(double value);

@@ -17,7 +17,7 @@ namespace {
 
 Html paragraph(const std::string& text) { return element("p", escaped(text)) + "\n"_html; }
 
-Part part_of(const Report& report, const Declaration& scenario) {
+Part part_of(const Report& report, const Scenario& scenario) {
     Part part{report, scenario, {}, {}};
     for (const ArmReport& arm : report.arms)
         if (arm.scenario == scenario.name) part.arms.push_back(&arm);
@@ -50,7 +50,7 @@ Html intro(const Report& report, const PageOrigin& origin) {
 Html contents(const Report& report) {
     if (report.scenarios.size() < 2) return {};
     Html items;
-    for (const Declaration& scenario : report.scenarios) {
+    for (const Scenario& scenario : report.scenarios) {
         if (!has_section(report, scenario.name)) continue;
         std::set<std::string> shown;  // each badge once
         Html badges;
@@ -97,7 +97,7 @@ std::string document(const std::string& title, const Html& header, const Html& m
 std::string report_html(const Report& report, const PageOrigin& origin) {
     using namespace page;
     Html body = verdicts(report) + contents(report) + sweeps(report);
-    for (const Declaration& scenario : report.scenarios)
+    for (const Scenario& scenario : report.scenarios)
         if (has_section(report, scenario.name)) body += scenario_section(part_of(report, scenario));
     body += provenance(report, origin) + reproduction(report, origin) + terms();
     return document("credence: " + origin.file, intro(report, origin), body);

@@ -13,7 +13,7 @@ namespace credence::page {
 /// What the page says of one scenario.
 struct Part {
     const Report& report;
-    const Declaration& scenario;
+    const Scenario& scenario;
     std::vector<const ArmReport*> arms;
     std::vector<const Comparison*> pairs;
 

@@ -95,7 +95,7 @@ Html bias_table(const ArmReport& arm) {
                    });
 }
 
-Html shape_table(const ArmReport& arm) {
+Html distribution_table(const ArmReport& arm) {
     const Evidence& evidence = arm.evidence;
     return by_step(name_of(arm) + ": distance of the NEES from chi-square, and credibility, by step", evidence.steps,
                    {"distance", "p", "NCI", "I²"}, [&](std::size_t k) -> std::vector<Html> {
@@ -116,7 +116,7 @@ Html step_tables(const Part& part) {
         for (const BlockEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
         for (const ChartEvidence& chart : arm->evidence.charts) tables += chart_table(*arm, chart);
         for (const NisEvidence& nis : arm->evidence.nis) tables += nis_table(*arm, nis);
-        html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + shape_table(*arm));
+        html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + distribution_table(*arm));
     }
     return html.empty() ? html : element("div", "<h3>By step</h3>\n"_html + html, "class=\"screen\""_html) + "\n"_html;
 }

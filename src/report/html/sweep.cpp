@@ -19,7 +19,7 @@ namespace {
 template <class Part>
 std::optional<Summary> summary_of(const Part* part, const std::string& figure) {
     if (part != nullptr)
-        for (const SweptFigure& one : swept_figures(*part))
+        for (const SweptColumn& one : swept_columns(*part))
             if (one.name == figure && one.summary.count > 0) return one.summary;
     return std::nullopt;
 }
@@ -55,26 +55,26 @@ private:
 
     /// The shown figures that some point has of these arms or pairs.
     template <class Find>
-    std::vector<SweptFigure> figures_of(const std::vector<std::string>& names, const Find& find) const {
+    std::vector<SweptColumn> figures_of(const std::vector<std::string>& names, const Find& find) const {
         for (const GridPoint& point : grid_.points)
             for (const std::string& name : names)
-                if (const auto* part = find(point, name)) return swept_figures(*part);
+                if (const auto* part = find(point, name)) return swept_columns(*part);
         return {};
     }
 
     Html arm_table(const std::string& name) const {
         const auto find = [&](const GridPoint& point, const std::string& arm) { return swept_.arm(point, arm); };
-        const std::vector<SweptFigure> figures = figures_of({name}, find);
+        const std::vector<SweptColumn> figures = figures_of({name}, find);
         std::vector<std::string> heads{keys_, "verdict"};
-        for (const SweptFigure& one : figures) heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
+        for (const SweptColumn& one : figures) heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
         heads.push_back("failed");
         HtmlTable table(grid_.of + ", " + name + " by point", heads);
         for (const GridPoint& point : grid_.points) {
             const ArmReport* arm = swept_.arm(point, name);
             if (arm == nullptr) continue;
             std::vector<Html> cells{badge(*arm)};
-            for (const SweptFigure& one : swept_figures(*arm))
-                cells.push_back(figure_with_interval(one.summary.mean, one.summary.ci95));
+            for (const SweptColumn& one : swept_columns(*arm))
+                cells.push_back(mean_html(one.summary.mean, one.summary.ci95));
             cells.push_back(failed_count(*arm));
             table.row(head_of(point), cells);
         }
@@ -84,7 +84,7 @@ private:
     Html pair_table(const std::string& name) const {
         const auto find = [&](const GridPoint& point, const std::string& pair) { return swept_.pair(point, pair); };
         std::vector<std::string> heads{keys_};
-        for (const SweptFigure& one : figures_of({name}, find))
+        for (const SweptColumn& one : figures_of({name}, find))
             heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
         HtmlTable table(grid_.of + ", " + name + " by point, trial by trial", heads);
         for (const GridPoint& point : grid_.points) {
@@ -92,8 +92,8 @@ private:
             if (pair == nullptr) continue;
             const bool run = has_run(report_, swept_.scenario(point));
             std::vector<Html> cells;
-            for (const SweptFigure& one : swept_figures(*pair))
-                cells.push_back(run ? figure_with_interval(one.summary.mean, one.summary.ci95) : "not run yet"_html);
+            for (const SweptColumn& one : swept_columns(*pair))
+                cells.push_back(run ? mean_html(one.summary.mean, one.summary.ci95) : "not run yet"_html);
             table.row(head_of(point), cells);
         }
         return table.html();
@@ -104,7 +104,7 @@ private:
         const auto pair = [&](const GridPoint& point, const std::string& name) { return swept_.pair(point, name); };
         Html of_arms, of_pairs;
         std::size_t number = 0;
-        for (const SweptFigure& one : figures_of(arms_, arm)) {
+        for (const SweptColumn& one : figures_of(arms_, arm)) {
             const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
             constexpr double spread = 20;  // beyond it the small ones could not be told from 0
             const SweptCurves drawn{grid_, curve_axis(grid_), arms_, figure_words(one.name, one.unit),
@@ -114,7 +114,7 @@ private:
                                     }};
             of_arms += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
         }
-        for (const SweptFigure& one : figures_of(pairs_, pair)) {
+        for (const SweptColumn& one : figures_of(pairs_, pair)) {
             const SweptCurves drawn{grid_, curve_axis(grid_), pairs_,
                                     "difference of " + figure_words(one.name, one.unit), 0, 0, INFINITY,
                                     [&](const GridPoint& point, const std::string& name) {
@@ -138,8 +138,8 @@ private:
 
 bool has_section(const Report& report, const std::string& scenario) {
     constexpr std::ptrdiff_t most = 12;
-    const auto swept = [](const Declaration& one) { return SweptReport::swept(one); };
-    const auto same = [&](const Declaration& one) { return one.name == scenario && swept(one); };
+    const auto swept = [](const Scenario& one) { return SweptReport::swept(one); };
+    const auto same = [&](const Scenario& one) { return one.name == scenario && swept(one); };
     return std::count_if(report.scenarios.begin(), report.scenarios.end(), swept) <= most ||
            std::none_of(report.scenarios.begin(), report.scenarios.end(), same);
 }

@@ -46,13 +46,13 @@ std::string why(const ArmReport& arm) {
 /// NEES and NIS of an arm, and how many of its trials failed.
 Html numbers_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
-    const Summary& nees = figure_named(arm.figures, "nees_ratio").summary;
-    const Summary& nis = figure_named(arm.figures, "nis_ratio").summary;
-    return "NEES/n "_html + figure_with_interval(nees.mean, nees.ci95) +
-           (nis.count > 0 ? ", NIS/m "_html + figure_with_interval(nis.mean, nis.ci95) : Html()) + "; "_html +
-           failed_count(arm) + " of "_html + figure_count(static_cast<double>(arm.trials)) + " trials failed"_html +
+    const Summary& nees = column_named(arm.columns, "nees_ratio").summary;
+    const Summary& nis = column_named(arm.columns, "nis_ratio").summary;
+    return "NEES/n "_html + mean_html(nees.mean, nees.ci95) +
+           (nis.count > 0 ? ", NIS/m "_html + mean_html(nis.mean, nis.ci95) : Html()) + "; "_html +
+           failed_count(arm) + " of "_html + count_html(static_cast<double>(arm.trials)) + " trials failed"_html +
            (arm.diverged > 0
-                ? ", "_html + figure_count(static_cast<double>(arm.diverged)) + " of them diverged"_html
+                ? ", "_html + count_html(static_cast<double>(arm.diverged)) + " of them diverged"_html
                 : Html());
 }
 
@@ -69,8 +69,8 @@ HtmlTable findings_table(const std::string& caption, const std::vector<Finding>&
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
         table.row(escaped(finding.what),
-                  {escaped(finding.where), escaped(finding.when), figure_within(finding.value, half),
-                   figure_interval(finding.interval, decimals_for(half))});
+                  {escaped(finding.where), escaped(finding.when), number_html_within(finding.value, half),
+                   interval_html(finding.interval, decimals_for(half))});
     }
     return table;
 }
@@ -104,7 +104,7 @@ Html badge(const ArmReport& arm) {
 }
 
 Html failed_count(const ArmReport& arm) {
-    return figure_count(arm.not_run() ? std::nan("") : static_cast<double>(arm.failed_trials()));
+    return count_html(arm.not_run() ? std::nan("") : static_cast<double>(arm.failed_trials()));
 }
 
 std::string figure_words(const std::string& name, const std::string& unit) {

@@ -24,8 +24,8 @@ std::string figure_row(const std::string& label, const Summary& s, const std::op
            padded(number(s.standard_deviation, digits), 12) + (last.empty() ? "" : padded(last, 20)) + "\n";
 }
 
-std::string paired_row(const Comparison& pair, const ComparedFigure& figure) {
-    const PairedComparison& paired = figure.paired;
+std::string paired_row(const Comparison& pair, const ComparedColumn& column) {
+    const PairedComparison& paired = column.paired;
     if (paired.pairs == 0) return {};
     const std::string less = number(100 * paired.wins_a, 0) + " % below";
     return figure_row(controller_of(pair.a) + " - " + controller_of(pair.b), paired.difference, paired.bootstrap95, less);
@@ -36,16 +36,16 @@ std::string figure_part(const Report& report, const std::string& scenario, const
     std::string text;
     for (const ArmReport& arm : report.arms) {
         if (arm.scenario != scenario) continue;
-        const FigureReport& figure = figure_named(arm.figures, name);
-        if (figure.summary.count == 0) continue;
-        if (text.empty()) text = "  " + figure_title(name, figure.unit) + "\n";
-        text += figure_row(arm.arm, figure.summary, figure.bootstrap95,
-                           figure.published ? published_text(*figure.published) : "");
+        const ColumnReport& column = column_named(arm.columns, name);
+        if (column.summary.count == 0) continue;
+        if (text.empty()) text = "  " + figure_title(name, column.unit) + "\n";
+        text += figure_row(arm.arm, column.summary, column.bootstrap95,
+                           column.published ? published_text(*column.published) : "");
     }
     for (const Comparison& pair : report.pairs) {
         if (pair.scenario != scenario) continue;
-        for (const ComparedFigure& figure : pair.figures)
-            if (figure.name == name) text += paired_row(pair, figure);
+        for (const ComparedColumn& column : pair.columns)
+            if (column.name == name) text += paired_row(pair, column);
     }
     return text;
 }
@@ -86,7 +86,7 @@ std::string innovations_part(const Evidence& evidence) {
 
 std::string distribution_part(const Evidence& evidence) {
     std::string text;
-    if (const WorstShape worst = worst_shape(evidence.shape); worst.known > 0)
+    if (const WorstDistribution worst = worst_distribution(evidence.shape); worst.known > 0)
         text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +
                 std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) + " over all " +
                 std::to_string(worst.known) + " steps)\n";
@@ -111,8 +111,8 @@ std::string consistency_part(const ArmReport& arm) {
 
 bool has_published(const Report& report, const std::string& scenario) {
     for (const ArmReport& arm : report.arms)
-        for (const FigureReport& figure : arm.figures)
-            if (arm.scenario == scenario && figure.published) return true;
+        for (const ColumnReport& column : arm.columns)
+            if (arm.scenario == scenario && column.published) return true;
     return false;
 }
 
@@ -120,16 +120,16 @@ bool has_published(const Report& report, const std::string& scenario) {
 std::vector<std::string> detailed_figures(const Report& report, const std::string& scenario) {
     std::vector<std::string> names{"trace_P", "mean_trace_P"};
     for (const ArmReport& arm : report.arms)
-        for (const FigureReport& figure : arm.figures)
-            if (arm.scenario == scenario && figure.name != "nees_ratio" && figure.name != "nis_ratio" &&
-                std::find(names.begin(), names.end(), figure.name) == names.end())
-                names.push_back(figure.name);
+        for (const ColumnReport& column : arm.columns)
+            if (arm.scenario == scenario && column.name != "nees_ratio" && column.name != "nis_ratio" &&
+                std::find(names.begin(), names.end(), column.name) == names.end())
+                names.push_back(column.name);
     return names;
 }
 
 }  // namespace
 
-std::string scenario_detail(const Report& report, const Declaration& scenario) {
+std::string scenario_detail(const Report& report, const Scenario& scenario) {
     std::string text = "\n" + wrapped(scenario.name + (scenario.title.empty() ? "" : ": " + scenario.title)) + "\n";
     if (!has_run(report, scenario.name)) return text + "  not run yet\n";
     text += padded("mean ± 95 %", 50) + padded("bootstrap 95 %", 22) + padded("median", 12) + padded("sd", 12) +

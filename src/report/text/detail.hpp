@@ -8,6 +8,6 @@
 namespace credence {
 
 /// Figures of the arms and their paired differences, and where each arm's filter is off.
-std::string scenario_detail(const Report& report, const Declaration& scenario);
+std::string scenario_detail(const Report& report, const Scenario& scenario);
 
 }  // namespace credence

@@ -27,7 +27,7 @@ std::string why(const ArmReport& arm) {
 /// Arms of scenarios that are in no grid: a grid has a table of its own.
 std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
     std::set<std::string> swept;
-    for (const Declaration& scenario : report.scenarios)
+    for (const Scenario& scenario : report.scenarios)
         if (SweptReport::swept(scenario)) swept.insert(scenario.name);
     std::vector<const ArmReport*> arms;
     for (const ArmReport& arm : report.arms)
@@ -48,8 +48,8 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
         const bool fits = static_cast<int>(name.size()) < width;
         text += (fits ? "" : "  " + name + "\n") + "  " + padded(fits ? name : "", width, false) +
                 padded(verdict_word(*arm), 12, false);
-        for (const char* figure : {"nees_ratio", "nis_ratio"}) {
-            const Summary& summary = figure_named(arm->figures, figure).summary;
+        for (const char* column : {"nees_ratio", "nis_ratio"}) {
+            const Summary& summary = column_named(arm->columns, column).summary;
             text += padded(with_interval(summary.mean, summary.ci95), 19);
         }
         text += padded(arm->not_run() ? "-" : std::to_string(arm->failed_trials()), 9) + "\n" + why(*arm);
@@ -67,7 +67,7 @@ std::string report_text(const Report& report) {
             "them\nagainst 1 ± " + to_text(report.limits.margin) + ". Intervals are two-sided 95 %.\n\n";
     const std::vector<const ArmReport*> arms = arms_by_themselves(report);
     text += verdicts_part(arms);
-    for (const Declaration& scenario : report.scenarios)
+    for (const Scenario& scenario : report.scenarios)
         if (!SweptReport::swept(scenario)) text += scenario_detail(report, scenario);
     const std::string sweeps = sweep_text(report);
     return text + (sweeps.empty() || arms.empty() ? "" : "\n") + sweeps;

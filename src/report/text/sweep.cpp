@@ -65,22 +65,22 @@ std::string table_text(const Grid& grid, const Cells& heads, const std::vector<P
     return table.fits() ? table.text() : with_key_lines(grid, heads, rows, alignment).text();
 }
 
-std::string figure_head(const SweptFigure& figure) {
-    if (figure.name == "nees_ratio") return "NEES/n";
-    if (figure.name == "nis_ratio") return "NIS/m";
-    return figure.name + (figure.unit == "1" ? "" : " [" + figure.unit + "]");
+std::string figure_head(const SweptColumn& column) {
+    if (column.name == "nees_ratio") return "NEES/n";
+    if (column.name == "nis_ratio") return "NIS/m";
+    return column.name + (column.unit == "1" ? "" : " [" + column.unit + "]");
 }
 
-Cells figure_cells(const std::vector<SweptFigure>& figures) {
+Cells figure_cells(const std::vector<SweptColumn>& columns) {
     Cells cells;
-    for (const SweptFigure& figure : figures)
-        cells.push_back(with_interval(figure.summary.mean, figure.summary.ci95));
+    for (const SweptColumn& column : columns)
+        cells.push_back(with_interval(column.summary.mean, column.summary.ci95));
     return cells;
 }
 
-Cells heads_of(const std::vector<SweptFigure>& figures) {
+Cells heads_of(const std::vector<SweptColumn>& columns) {
     Cells heads;
-    for (const SweptFigure& figure : figures) heads.push_back(figure_head(figure));
+    for (const SweptColumn& column : columns) heads.push_back(figure_head(column));
     return heads;
 }
 
@@ -90,10 +90,10 @@ std::string arm_table(const SweptReport& swept, const Grid& grid, const std::str
     for (const GridPoint& point : grid.points) {
         const ArmReport* arm = swept.arm(point, name);
         if (arm == nullptr) continue;
-        const std::vector<SweptFigure> figures = swept_figures(*arm);
-        if (heads.empty()) heads = joined_cells(joined_cells({"verdict"}, heads_of(figures)), {"failed"});
+        const std::vector<SweptColumn> columns = swept_columns(*arm);
+        if (heads.empty()) heads = joined_cells(joined_cells({"verdict"}, heads_of(columns)), {"failed"});
         const Cells verdict{verdict_word(*arm)}, failed{arm->not_run() ? "-" : std::to_string(arm->failed_trials())};
-        rows.push_back({&point, joined_cells(joined_cells(verdict, figure_cells(figures)), failed)});
+        rows.push_back({&point, joined_cells(joined_cells(verdict, figure_cells(columns)), failed)});
     }
     return "  " + name + "\n" + table_text(grid, heads, rows, "lr");
 }
@@ -104,9 +104,9 @@ std::string pair_table(const SweptReport& swept, const Grid& grid, const std::st
     for (const GridPoint& point : grid.points) {
         const Comparison* pair = swept.pair(point, name);
         if (pair == nullptr) continue;
-        const std::vector<SweptFigure> figures = swept_figures(*pair);
-        if (heads.empty()) heads = heads_of(figures);
-        Cells cells = figure_cells(figures);
+        const std::vector<SweptColumn> columns = swept_columns(*pair);
+        if (heads.empty()) heads = heads_of(columns);
+        Cells cells = figure_cells(columns);
         if (!has_run(swept.report(), swept.scenario(point)) && !cells.empty()) {
             cells.assign(cells.size(), "");
             cells.front() = "not run yet";

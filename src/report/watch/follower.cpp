@@ -22,7 +22,7 @@ std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const Watch
         const ArmSums nothing{std::vector<RunningMoments>(watched_columns(results.columns).size()), {}, 0, 0};
         const ArmSums& of_arm = a < sums.arms.size() ? sums.arms[a] : nothing;
         WatchedArm arm{results.arms[a].name, of_arm.failed, of_arm.diverged, {}, {}, of_arm.difference.moments()};
-        for (const RunningMoments& figure : of_arm.figures) arm.figures.push_back(figure.moments());
+        for (const RunningMoments& column : of_arm.columns) arm.columns.push_back(column.moments());
         if (const ArmResults* fixed = partner_of(results, results.arms[a])) arm.other = fixed->name;
         arms.push_back(std::move(arm));
     }
@@ -56,7 +56,7 @@ void JournalFollower::read_file(const std::string& path) {
 }
 
 std::string JournalFollower::seal_of(const JournalBytes& journal) const {
-    return journal.read(position_ - static_cast<std::int64_t>(record_tail_size), record_tail_size);
+    return journal.read(position_ - static_cast<std::int64_t>(commit_tail_size), commit_tail_size);
 }
 
 bool JournalFollower::goes_on_with(const JournalBytes& journal) const {
@@ -66,7 +66,7 @@ bool JournalFollower::goes_on_with(const JournalBytes& journal) const {
            seal_of(journal) == seal_;
 }
 
-void JournalFollower::take(const JournalBytes& journal, const FoundRecord& record) {
+void JournalFollower::take(const JournalBytes& journal, const FoundCommit& record) {
     Followed& followed = followed_[record.scenario];
     const ScenarioResults& results = study_.scenarios[record.scenario];
     const BlockLayout& layout = layouts_[record.scenario];
@@ -118,12 +118,12 @@ void JournalFollower::check(std::size_t scenario) {
 }
 
 void JournalFollower::read(const JournalBytes& journal) {
-    position_ = scan_records(journal, position_, layouts_, [&](const FoundRecord& record) { take(journal, record); });
+    position_ = scan_commits(journal, position_, layouts_, [&](const FoundCommit& record) { take(journal, record); });
     seal_ = seal_of(journal);
     for (std::size_t s = 0; s < followed_.size(); ++s) check(s);
 }
 
-void JournalFollower::tell(WatchLook& look) const {
+void JournalFollower::tell(Snapshot& look) const {
     look.state = RunState::running;
     look.trials = asked_;
     look.shard = shard_;

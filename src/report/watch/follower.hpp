@@ -24,7 +24,7 @@ public:
     bool goes_on_with(const JournalBytes& journal) const;
     /// Reads what was appended. Throws BadBytes.
     void read(const JournalBytes& journal);
-    void tell(WatchLook& look) const;
+    void tell(Snapshot& look) const;
 
 private:
     /// What is there of a scenario.
@@ -39,7 +39,7 @@ private:
     };
 
     void read_file(const std::string& path);
-    void take(const JournalBytes& journal, const FoundRecord& record);
+    void take(const JournalBytes& journal, const FoundCommit& record);
     void check(std::size_t scenario);
     WatchedSums sums(std::size_t scenario) const;
     /// The checksum of what was read last.

@@ -43,7 +43,7 @@ RunningMoments running(const ExactMoments& exact) {
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
     std::vector<std::size_t> watched;
     for (std::size_t c = 0; c < columns.size(); ++c)
-        if (is_figure(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
     return watched;
 }
 
@@ -52,8 +52,8 @@ void WatchedSums::add(const WatchedSums& other) {
     arms.resize(std::max(arms.size(), other.arms.size()));
     for (std::size_t a = 0; a < other.arms.size(); ++a) {
         const ArmSums& from = other.arms[a];
-        arms[a].figures.resize(from.figures.size());
-        for (std::size_t f = 0; f < from.figures.size(); ++f) arms[a].figures[f].add(from.figures[f]);
+        arms[a].columns.resize(from.columns.size());
+        for (std::size_t f = 0; f < from.columns.size(); ++f) arms[a].columns[f].add(from.columns[f]);
         arms[a].difference.add(from.difference);
         arms[a].failed += from.failed;
         arms[a].diverged += from.diverged;
@@ -72,7 +72,7 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
         }
         for (const std::size_t index : watched_columns(results.columns)) {
             const std::vector<double> values = figure_of(column, a, index, status);
-            arm.figures.push_back(RunningMoments::of(values));
+            arm.columns.push_back(RunningMoments::of(values));
             if (index == 0) trace[a] = values;
         }
     }
@@ -91,7 +91,7 @@ WatchedSums sums_of_aggregates(const ScenarioResults& results) {
         sums.arms[a].failed = arm.aggregates.trials() - arm.aggregates.counted();
         sums.arms[a].diverged = arm.aggregates.statuses[static_cast<std::size_t>(Status::diverged)];
         for (const std::size_t index : watched_columns(results.columns))
-            sums.arms[a].figures.push_back(running(arm.aggregates.columns[index]));
+            sums.arms[a].columns.push_back(running(arm.aggregates.columns[index]));
         if (const ArmResults* fixed = partner_of(results, arm))
             sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, 0).difference);
     }

@@ -12,7 +12,7 @@
 namespace credence {
 
 struct ArmSums {
-    std::vector<RunningMoments> figures;  ///< of the watched columns
+    std::vector<RunningMoments> columns;  ///< of the watched columns
     RunningMoments difference;            ///< trace_P - that of the fixed partner, where there is one
     std::int64_t failed = 0, diverged = 0;
 };

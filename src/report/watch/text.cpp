@@ -17,14 +17,14 @@ std::string of_text(std::int64_t done, std::int64_t asked) {
     return std::to_string(done) + (done == asked ? "" : " of " + std::to_string(asked));
 }
 
-std::string shard_text(const WatchLook& look) {
+std::string shard_text(const Snapshot& look) {
     if (look.shard.count == 1) return "";
     return ", shard " + std::to_string(look.shard.index) + "/" + std::to_string(look.shard.count) + " of " +
            std::to_string(look.trials) + " trials a scenario";
 }
 
 /// What the run is at.
-std::string state_text(const WatchLook& look) {
+std::string state_text(const Snapshot& look) {
     const std::string trials = of_text(look.trials_done(), look.trials_asked()) + " trials";
     switch (look.state) {
         case RunState::begun: return "begun, nothing committed yet";
@@ -42,7 +42,7 @@ std::string state_text(const WatchLook& look) {
 }
 
 /// What to do where the run may have ended without an end.
-std::string advice(const WatchLook& look) {
+std::string advice(const Snapshot& look) {
     constexpr double long_time = 60;
     if (look.state == RunState::incomplete && look.shard.count == 1)
         return "A run that was stopped goes on with --resume; parts are joined by `credence merge`.\n";
@@ -70,7 +70,7 @@ void add_scenario(TextTable& table, const WatchedScenario& scenario) {
                        of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario)));
     for (const WatchedArm& arm : scenario.arms) {
         std::vector<std::string> cells{arm.name};
-        for (const Moments& figure : arm.figures) cells.push_back(figure_text(figure));
+        for (const Moments& column : arm.columns) cells.push_back(figure_text(column));
         cells.push_back(std::to_string(arm.failed + arm.diverged));
         table.row(std::move(cells));
     }
@@ -97,14 +97,14 @@ const char* state_name(RunState state) {
     return "incomplete";
 }
 
-Json arm_json(const WatchLook& look, const WatchedScenario& scenario, const WatchedArm& arm) {
+Json arm_json(const Snapshot& look, const WatchedScenario& scenario, const WatchedArm& arm) {
     Json json{{"scenario", scenario.name},       {"arm", arm.name},
               {"state", state_name(look.state)}, {"trials", scenario.trials},
               {"trials_asked", scenario.trials_asked}, {"blocks", scenario.blocks},
               {"blocks_asked", scenario.blocks_asked}, {"failed", arm.failed},
               {"diverged", arm.diverged},        {"failed_trials", arm.failed + arm.diverged}};
-    for (std::size_t f = 0; f < arm.figures.size(); ++f) {
-        json[scenario.columns[f].name] = moments_json(arm.figures[f]);
+    for (std::size_t f = 0; f < arm.columns.size(); ++f) {
+        json[scenario.columns[f].name] = moments_json(arm.columns[f]);
         json[scenario.columns[f].name]["unit"] = scenario.columns[f].unit;
     }
     if (!arm.other.empty())
@@ -115,7 +115,7 @@ Json arm_json(const WatchLook& look, const WatchedScenario& scenario, const Watc
 
 }  // namespace
 
-std::string watch_text(const WatchLook& look) {
+std::string watch_text(const Snapshot& look) {
     std::string text = wrapped(printable(look.path) + ": " + state_text(look)) + "\n" + advice(look);
     if (look.scenarios.empty()) return text;
     TextTable table("lr");
@@ -127,7 +127,7 @@ std::string watch_text(const WatchLook& look) {
     return text + table.text();
 }
 
-std::string watch_json(const WatchLook& look) {
+std::string watch_json(const Snapshot& look) {
     Json array = Json::array();
     for (const WatchedScenario& scenario : look.scenarios)
         for (const WatchedArm& arm : scenario.arms) array.push_back(arm_json(look, scenario, arm));

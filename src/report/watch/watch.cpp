@@ -29,19 +29,19 @@ Shard shard_of(const ScenarioResults& results, std::int64_t trials) {
 
 }  // namespace
 
-std::int64_t WatchLook::trials_done() const {
+std::int64_t Snapshot::trials_done() const {
     std::int64_t trials = 0;
     for (const WatchedScenario& scenario : scenarios) trials += scenario.trials;
     return trials;
 }
 
-std::int64_t WatchLook::trials_asked() const {
+std::int64_t Snapshot::trials_asked() const {
     std::int64_t trials = 0;
     for (const WatchedScenario& scenario : scenarios) trials += scenario.trials_asked;
     return trials;
 }
 
-std::optional<double> WatchLook::time_left() const {
+std::optional<double> Snapshot::time_left() const {
     if (!trials_per_second || !(*trials_per_second > 0)) return std::nullopt;
     return static_cast<double>(trials_asked() - trials_done()) / *trials_per_second;
 }
@@ -51,14 +51,14 @@ RunWatch::RunWatch(RunWatch&&) noexcept = default;
 RunWatch::~RunWatch() = default;
 
 /// Nothing where there is no journal.
-std::optional<WatchLook> RunWatch::look_at_journal() {
+std::optional<Snapshot> RunWatch::look_at_journal() {
     const std::string path = journal_path_of(path_);
     for (int attempt = 0;; ++attempt) {
         const std::optional<JournalBytes> journal = JournalBytes::open(path);
         if (!journal) return std::nullopt;
         try {
             if (follower_ && !follower_->goes_on_with(*journal)) follower_.reset();
-            WatchLook look{path_, RunState::begun, 0, {}, {}, journal->seconds_since_change(), {}};
+            Snapshot look{path_, RunState::begun, 0, {}, {}, journal->seconds_since_change(), {}};
             if (!follower_) {
                 const std::optional<FoundHeader> found = find_header(*journal);
                 if (!found) return look;
@@ -78,13 +78,13 @@ std::optional<WatchLook> RunWatch::look_at_journal() {
     }
 }
 
-WatchLook RunWatch::look_at_results() const {
+Snapshot RunWatch::look_at_results() const {
     std::error_code none;
     if (!std::filesystem::exists(path_, none))
         throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
                          " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
     const Study study = read_results(path_, 0).study;
-    WatchLook look{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
+    Snapshot look{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
     if (!study.complete && !study.scenarios.empty()) look.shard = shard_of(study.scenarios.front(), study.trials);
     for (const ScenarioResults& results : study.scenarios) {
         if (results.blocks != study.scenarios.front().blocks) look.shard = {};
@@ -103,7 +103,7 @@ WatchLook RunWatch::look_at_results() const {
     return look;
 }
 
-void RunWatch::time(WatchLook& look) {
+void RunWatch::time(Snapshot& look) {
     constexpr double longest = 60;
     using namespace std::chrono;
     const Moment now{duration<double>(steady_clock::now().time_since_epoch()).count(), look.trials_done()};
@@ -115,8 +115,8 @@ void RunWatch::time(WatchLook& look) {
         look.trials_per_second = static_cast<double>(now.trials - first.trials) / (now.seconds - first.seconds);
 }
 
-WatchLook RunWatch::look() {
-    std::optional<WatchLook> look = look_at_journal();
+Snapshot RunWatch::look() {
+    std::optional<Snapshot> look = look_at_journal();
     if (!look) return look_at_results();
     time(*look);
     return std::move(*look);

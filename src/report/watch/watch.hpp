@@ -21,7 +21,7 @@ std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 struct WatchedArm {
     std::string name;
     std::int64_t failed = 0, diverged = 0;  ///< trials
-    std::vector<Moments> figures;           ///< of the watched columns
+    std::vector<Moments> columns;           ///< of the watched columns
     std::string other;                      ///< the arm's partner, such as `fixed.X` beside `greedy.X`; empty: none
     Moments difference;                     ///< of trace_P of this arm - that of `other`, by trial, where there is one
 };
@@ -42,7 +42,7 @@ enum class RunState {
 };
 
 /// A look at a run.
-struct WatchLook {
+struct Snapshot {
     std::string path;                        ///< of the results file
     RunState state = RunState::begun;
     std::int64_t trials = 0;                 ///< of each scenario that the study was asked for
@@ -70,7 +70,7 @@ public:
     ~RunWatch();
 
     /// Throws InputError where there is neither a journal nor a results file, or what is there is damaged.
-    WatchLook look();
+    Snapshot look();
 
 private:
     std::string path_;
@@ -82,14 +82,14 @@ private:
     };
     std::vector<Moment> moments_;
 
-    std::optional<WatchLook> look_at_journal();
-    WatchLook look_at_results() const;
-    void time(WatchLook& look);
+    std::optional<Snapshot> look_at_journal();
+    Snapshot look_at_results() const;
+    void time(Snapshot& look);
 };
 
 /// For people: a table, its lines some 120 characters wide.
-std::string watch_text(const WatchLook& look);
+std::string watch_text(const Snapshot& look);
 /// An array with an object per scenario and arm; NaN is null.
-std::string watch_json(const WatchLook& look);
+std::string watch_json(const Snapshot& look);
 
 }  // namespace credence

@@ -30,7 +30,7 @@
 #include <type_traits>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The extended Kalman filter, and in the translation model the Kalman filter [model.md, Filter].
 template <class Layout, class Real>
@@ -98,5 +98,5 @@ constexpr bool meets_the_contract() {
     return true;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -15,7 +15,7 @@ struct EstimatorTag {
     using type = Type<Layout, Real>;
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The process model's own estimator, which alone runs where features are written out.
 constexpr Estimator own_estimator(Process process) {
@@ -36,5 +36,5 @@ auto with_estimator(Estimator estimator, const Use& use) {
     return use(EstimatorTag<KalmanFilter>{});
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

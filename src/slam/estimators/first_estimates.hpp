@@ -5,7 +5,7 @@
 #include "slam/estimators/estimator.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Linearises sightings at the predicted pose and the features' first estimates.
 template <class Layout, class Real>
@@ -69,5 +69,5 @@ private:
     Vector2<Real> first_[Layout::feature_capacity];  ///< first estimates of the features, of this pose
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

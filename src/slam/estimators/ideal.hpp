@@ -6,7 +6,7 @@
 #include "slam/estimators/estimator.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Linearises sightings at the true state x: rows in the frame of the true heading, innovation about the mean.
 template <class Layout, class Real>
@@ -58,5 +58,5 @@ private:
     Vector2<Real> position_{};  ///< true, of the pose before
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

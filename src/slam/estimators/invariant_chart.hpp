@@ -8,7 +8,7 @@
 
 namespace credence {
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The error in the invariant chart: V(-a)^-1 = V(a) / |V(a)|^2, V being a rotation times a factor. Shape [n].
 template <class Layout, class Real>
@@ -50,5 +50,5 @@ template <class Layout, class Real, int capacity>
     return nees;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

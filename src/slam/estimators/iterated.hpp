@@ -5,7 +5,7 @@
 #include "slam/estimators/estimator.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Passes of an update. For a heading noise up to 0.05 the last one changes the mean by less than 3e-4 in the document's
 /// world.
@@ -75,5 +75,5 @@ private:
 template <class Layout, class Real>
 struct IteratedFilter : FilterOfPasses<Layout, Real, iterated_passes> {};
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -7,7 +7,7 @@
 #include "slam/estimators/estimator.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// V(a) = [sin a, -(1 - cos a); 1 - cos a, sin a] / a, V(0) = I: a point's path under a turn by a.
 template <class Real>
@@ -60,5 +60,5 @@ struct RightInvariantFilter : KalmanFilter<Layout, Real> {
     }
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -16,7 +16,7 @@ struct ControlParameters {
     int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <class Real>
 Command<Real> command_from(const Control& control) {
@@ -111,5 +111,5 @@ Choice<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlPar
     return choice;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

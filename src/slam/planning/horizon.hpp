@@ -7,7 +7,7 @@
 #include "slam/planning/planner.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// The beliefs along a sequence, before the robot moves on: one for each step but the last, and room for the next one.
 template <class Layout, class Real>
@@ -91,5 +91,5 @@ void price_candidates(const Belief<Real, capacity>& belief, const ControlParamet
                without_limit<Real>, [&](int i, const Command<Real>&, Real sum) { told(i, sum); });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

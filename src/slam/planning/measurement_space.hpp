@@ -15,7 +15,7 @@
 #include <type_traits>
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <class Real>
 Vector2<Real> scaled(Real factor, const Vector2<Real>& v) {
@@ -221,5 +221,5 @@ CREDENCE_FLAT Real cost_in_measurement_space(const MeasurementSpace<Layout, Real
     });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -5,7 +5,7 @@
 #include "slam/planning/visible_sets.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 template <class Layout, class Real>
 struct PlannerWorkspace {
@@ -156,5 +156,5 @@ Command<Real> plan(const Belief<Real, capacity>& belief, const ControlParameters
     return choose(belief, control, filter, sensor, layout, k, without_limit<Real>(), work).command;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -12,7 +12,7 @@
 #include "slam/planning/turned_trace.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Candidates screened at a time.
 inline constexpr int screening_chunk = 128;
@@ -251,5 +251,5 @@ Mask<Real> take_queued(const ControlParameters& control, int first, ScreeningWor
     return mask_of_bits<Real>(offered);
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -6,7 +6,7 @@
 #include "numeric/lane.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// constant + a . linear + |a|^2 quadratic. In the translation model there is only the constant.
 template <class Real>
@@ -58,5 +58,5 @@ Command<Real> fetch_each(const ControlParameters& control, const Real& candidate
     return command;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

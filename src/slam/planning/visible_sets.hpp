@@ -5,7 +5,7 @@
 #include "slam/planning/measurement_space.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Up to this many features, every set of them has a place in a table.
 inline constexpr int largest_tabled_count = 6;
@@ -178,5 +178,5 @@ Real last_of_best(Real best, const Belief<Real, capacity>& still, const ControlP
     return winner;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

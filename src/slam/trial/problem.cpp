@@ -31,9 +31,9 @@ double greatest_square(double range) {
 double squared(double x) { return x * x; }
 
 /// phi_k = delta/2 + k delta, the direction in which the features leave pose k on the circle.
-double circle_direction(const Scenario& s, int k) { return s.features.turn / 2 + k * s.features.turn; }
+double circle_direction(const DeformableSettings& s, int k) { return s.features.turn / 2 + k * s.features.turn; }
 
-Point sway_offset(const Scenario& s, int k, int j) {
+Point sway_offset(const DeformableSettings& s, int k, int j) {
     if (s.features.sway_amplitude == 0) return {};
     const double M = static_cast<double>(s.features.positions.size());
     const double start = 2 * pi * j / M;
@@ -42,7 +42,7 @@ Point sway_offset(const Scenario& s, int k, int j) {
     return {now.y - first.y, now.x - first.x};  // A (sin psi, cos psi) - A (sin psi_0, cos psi_0)
 }
 
-Control fixed_control(const Scenario& s, int k) {
+Control fixed_control(const DeformableSettings& s, int k) {
     const double d = s.features.step, delta = s.features.turn;
     const bool heading = s.process == Process::heading;
     switch (robot_path(s)) {
@@ -68,14 +68,14 @@ void set_range(SensorParameters& sensor, double range_min, double range_max) {
     sensor.squared_range_max = greatest_square(range_max);
 }
 
-std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks) {
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& blocks) {
     std::vector<double> bounds;
-    for (const StateBlock& block : blocks)
+    for (const ComponentGroup& block : blocks)
         for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, block.count));
     return bounds;
 }
 
-std::vector<Point> feature_translations(const Scenario& s) {
+std::vector<Point> feature_translations(const DeformableSettings& s) {
     std::vector<Point> translations;
     for (int k = 0; k + 1 < s.poses; ++k) switch (s.features.path) {
             case Path::straight: translations.push_back({s.features.step, 0}); break;
@@ -85,7 +85,7 @@ std::vector<Point> feature_translations(const Scenario& s) {
     return translations;
 }
 
-std::vector<Point> sway_offsets(const Scenario& s) {
+std::vector<Point> sway_offsets(const DeformableSettings& s) {
     const int features = static_cast<int>(s.features.positions.size());
     std::vector<Point> offsets;
     for (int k = 0; k < s.poses; ++k)
@@ -93,13 +93,13 @@ std::vector<Point> sway_offsets(const Scenario& s) {
     return offsets;
 }
 
-std::vector<Control> fixed_controls(const Scenario& s) {
+std::vector<Control> fixed_controls(const DeformableSettings& s) {
     std::vector<Control> controls;
     for (int k = 0; k + 1 < s.poses; ++k) controls.push_back(fixed_control(s, k));
     return controls;
 }
 
-std::vector<Control> planner_candidates(const Scenario& s) {
+std::vector<Control> planner_candidates(const DeformableSettings& s) {
     const int half_width = *s.planner.speeds;
     const auto speed = [&](int i) { return i / 5.0 * s.features.step; };
     std::vector<Control> candidates;
@@ -115,7 +115,7 @@ std::vector<Control> planner_candidates(const Scenario& s) {
     return candidates;
 }
 
-Problem::Problem(const Scenario& resolved_scenario)
+Problem::Problem(const DeformableSettings& resolved_scenario)
     : scenario_(resolved_scenario),
       translation_(feature_translations(scenario_)),
       sway_(sway_offsets(scenario_)),
@@ -131,11 +131,11 @@ Problem::Problem(const Scenario& resolved_scenario)
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
-    const std::vector<StateBlock> blocks = state_blocks(scenario_);
+    const std::vector<ComponentGroup> blocks = state_blocks(scenario_);
     view_.block_count = static_cast<int>(blocks.size());
     coverage_bounds_ = coverage_bounds(blocks);
     view_.coverage_bounds = coverage_bounds_.data();
-    view_.figure_count = static_cast<int>(step_figures(scenario_).size());
+    view_.series_count = static_cast<int>(step_series(scenario_).size());
     view_.charts = charts_of(scenario_);
     fill_world();
     fill_filter();

@@ -13,7 +13,7 @@ Point polar(double s, double angle);
 void set_range(SensorParameters& sensor, double range_min, double range_max);
 
 /// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
-std::vector<double> coverage_bounds(const std::vector<StateBlock>& blocks);
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& blocks);
 
 /// What a trial of any world of ours reads: plain numbers and pointers into its problem.
 struct CommonView {
@@ -21,7 +21,7 @@ struct CommonView {
     SensorParameters sensor;
     FilterParameters filter;
     int block_count = 0;
-    int figure_count = 0;
+    int series_count = 0;
     Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
 };
@@ -43,11 +43,11 @@ struct ProblemView : CommonView {
 /// truth is the same bits everywhere.
 class Problem {
 public:
-    explicit Problem(const Scenario& resolved_scenario);
+    explicit Problem(const DeformableSettings& resolved_scenario);
     Problem(const Problem&) = delete;
     Problem& operator=(const Problem&) = delete;
 
-    const Scenario& scenario() const { return scenario_; }
+    const DeformableSettings& scenario() const { return scenario_; }
     const ProblemView& view() const { return view_; }
 
 private:
@@ -56,7 +56,7 @@ private:
     void fill_filter();
     void fill_control();
 
-    Scenario scenario_;
+    DeformableSettings scenario_;
     std::vector<Point> translation_, sway_, sway_increment_;
     std::vector<Edge> edges_;
     std::vector<Control> fixed_, candidates_;
@@ -67,12 +67,12 @@ private:
 };
 
 /// Translation t_k of the features, k = 0 ... K - 2 [model.md, Truth].
-std::vector<Point> feature_translations(const Scenario& scenario);
+std::vector<Point> feature_translations(const DeformableSettings& scenario);
 /// Known local deformation o_{k,j}, [K, M] row-major [model.md, Truth].
-std::vector<Point> sway_offsets(const Scenario& scenario);
+std::vector<Point> sway_offsets(const DeformableSettings& scenario);
 /// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
-std::vector<Control> fixed_controls(const Scenario& scenario);
+std::vector<Control> fixed_controls(const DeformableSettings& scenario);
 /// The planners' candidates in the order that decides ties [model.md, Controllers].
-std::vector<Control> planner_candidates(const Scenario& scenario);
+std::vector<Control> planner_candidates(const DeformableSettings& scenario);
 
 }  // namespace credence

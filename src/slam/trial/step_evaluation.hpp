@@ -7,7 +7,7 @@
 #include "slam/trial/problem.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// A trial's status and the pose where it happened. Failures are final; a diverged trial may still fail.
 template <class Real>
@@ -86,14 +86,14 @@ bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real sq
 
 /// A belief's errors, judged: NEES of every block, in the order of Layout's, with each block's own P; e_i/sqrt(P_ii).
 template <class Layout, class Real>
-struct Judgement {
+struct StepEvaluation {
     Real nees[Layout::largest_block_count], standardised_error[Layout::capacity];
     Mask<Real> positive_definite{};
 };
 
 template <class Layout, class Real, int capacity>
 CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const Layout& layout, const Real* error,
-                                  Elimination<Real, capacity>& work, Judgement<Layout, Real>& judgement) {
+                                  Elimination<Real, capacity>& work, StepEvaluation<Layout, Real>& judgement) {
     const auto n = layout.size();
     const auto& P = belief.covariance;
     Real* nees = judgement.nees;
@@ -152,20 +152,20 @@ CREDENCE_INLINE void add_by_block(const Layout& layout, const Square& square, To
     each(zero, layout.features(), [&](auto j) { told(of_feature(j)); });
 }
 
-/// Judges the belief at pose k against the truth: writes the step's figures (in the order of step_figures) and sums.
+/// Judges the belief at pose k against the truth: writes the step's series (in the order of step_series) and sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
-CREDENCE_FLAT void judge_step(const CommonView& problem, const Layout& layout,
+CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout,
                               const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
                               const Update<Real, state_capacity>& update, int k,
                               Elimination<Real, state_capacity>& work, Sums<Real>& sums, Outcome<Real>& outcome,
-                              Real* figures) {
+                              Real* all_series) {
     const int steps = problem.poses - 1;
     const auto n = layout.size();
-    Real* next = figures + (k - 1);
+    Real* next = all_series + (k - 1);
     const auto write = [&](Real value) { *next = value, next += steps; };
 
     Real error[state_capacity];
-    Judgement<Layout, Real> judgement;
+    StepEvaluation<Layout, Real> judgement;
     estimation_error(belief, truth, layout, error);
     near_at_hand(layout, work, [&](auto& left) CREDENCE_INLINE_LAMBDA {
         judge_blocks(belief, layout, error, left, judgement);
@@ -217,5 +217,5 @@ void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int n, 
     columns[column_status_pose] = outcome.pose;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -7,7 +7,7 @@
 #include "slam/trial/workspace.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 // An observer watches a trial without touching it: the engine's (detail.hpp), replay's, which writes the trajectory, and
 // those of the tests. Its face: started, planned, predicted and updated, as called below.
@@ -19,10 +19,10 @@ struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
     HorizonWorkspace<Layout, Real> horizon;
 };
 
-/// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
+/// One trial of one arm. `columns` [column_count]; `series` [series_count, K - 1]; both are written whole.
 template <class Layout, class Real, class Estimating, class Noise, class Observer>
 void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
-               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
+               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* all_series) {
     const Layout layout(problem.features);
     const auto features = layout.features();
     auto& truth = work.truth;
@@ -73,11 +73,11 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
 
         // Update, and compare with the truth.
         estimator.update(belief, problem.filter, layout, sightings, edge_measurement, linearised, work.update);
-        judge_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, figures);
-        observer.updated(k, layout, belief, figures);
+        evaluate_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, all_series);
+        observer.updated(k, layout, belief, all_series);
     }
     write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

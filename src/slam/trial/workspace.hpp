@@ -5,7 +5,7 @@
 #include "slam/trial/step_evaluation.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// One trial's. Sixty-four features in lanes would not fit a thread's stack.
 template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
@@ -19,5 +19,5 @@ struct CommonWorkspace {
     Estimating estimator;
 };
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

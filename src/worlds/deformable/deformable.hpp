@@ -13,29 +13,29 @@ std::unique_ptr<const World> deformable_world();
 
 /// A resolved scenario as everything from the block up knows it, and back. The second throws InputError where the
 /// settings are not those of the deformable world.
-Declaration declaration_of(const Scenario& scenario);
-Scenario scenario_of(const Declaration& declared);
+Scenario scenario_of(const DeformableSettings& scenario);
+DeformableSettings settings_of(const Scenario& declared);
 
 /// The scenario as text [declaration.hpp].
-std::string scenario_text(const Scenario& scenario);
+std::string scenario_text(const DeformableSettings& scenario);
 
 /// The trials of a problem, which must outlive it, on a unit.
 class DeformableSimulation : public Simulation {
 public:
-    explicit DeformableSimulation(const Problem& problem, Unit unit = best_unit());
+    explicit DeformableSimulation(const Problem& problem, Target target = best_target());
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
 
 private:
     const Problem& problem_;
-    Unit unit_;
+    Target target_;
     std::vector<Arm> arms_;
     SimulationShape shape_;
 };
 
 /// A block of a problem's trials, on a unit [block.hpp].
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
-                const Unit& unit = best_unit());
+                const Target& target = best_target());
 
 }  // namespace credence

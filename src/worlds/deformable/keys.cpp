@@ -9,7 +9,7 @@ namespace credence {
 
 namespace {
 
-using Keys = std::vector<ScenarioKey>;
+using Keys = std::vector<DeformableKey>;
 
 void add_scenario_keys(Keys& keys) {
     add_common_keys(keys);
@@ -19,8 +19,8 @@ void add_scenario_keys(Keys& keys) {
 
 void add_feature_keys(Keys& keys) {
     keys.push_back({"features.positions", "f_0 as `x y, x y`, 1 to 64 of them (length)",
-                    [](Scenario& s, const std::string& v) { s.features.positions = parse_positions(v); },
-                    [](const Scenario& s) { return positions_text(s.features.positions); }});
+                    [](DeformableSettings& s, const std::string& v) { s.features.positions = parse_positions(v); },
+                    [](const DeformableSettings& s) { return positions_text(s.features.positions); }});
     keys.push_back(choice_key<Path>("features.path", {"straight", "circle", "static"},
                                     [](auto& s) -> auto& { return s.features.path; }));
     keys.push_back(real_key("features.step", "d, what features and robot move a step (length)", above(0),
@@ -64,8 +64,8 @@ void add_noise_keys(Keys& keys) {
     keys.push_back(real_key("noise.initial_position", "sigma of the first position, known to the filter (length)",
                             from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
     keys.push_back({"noise.truncate", "none, or the multiple of sigma beyond which a draw is redrawn (0.1 to 8)",
-                    [](Scenario& s, const std::string& v) { s.noise.truncate = parse_truncate(v); },
-                    [](const Scenario& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; },
+                    [](DeformableSettings& s, const std::string& v) { s.noise.truncate = parse_truncate(v); },
+                    [](const DeformableSettings& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; },
                     {"none"}});
 }
 
@@ -75,8 +75,8 @@ void add_rule_keys(Keys& keys) {
     keys.push_back(choice_key<EdgeNoise>("truth.edge_noise", {"none", "independent"},
                                          [](auto& s) -> auto& { return s.truth.edge_noise; }));
     keys.push_back({"edges.graph", "all, chain, none, or a list of pairs `0-1, 1-2`",
-                    [](Scenario& s, const std::string& v) { s.edges = parse_graph(v); },
-                    [](const Scenario& s) { return graph_text(s.edges); }, {"all", "chain", "none"}});
+                    [](DeformableSettings& s, const std::string& v) { s.edges = parse_graph(v); },
+                    [](const DeformableSettings& s) { return graph_text(s.edges); }, {"all", "chain", "none"}});
 }
 
 void add_filter_keys(Keys& keys) {
@@ -106,34 +106,34 @@ void add_control_keys(Keys& keys) {
                                          [](auto& s) -> auto& { return s.fixed_path; }));
     keys.push_back(
         {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
-         [](Scenario& s, const std::string& v) {
+         [](DeformableSettings& s, const std::string& v) {
              s.planner.speeds.reset();
              if (v != "default") s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
          },
-         [](const Scenario& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; },
+         [](const DeformableSettings& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; },
          {"default"}});
     keys.push_back({"planner.turns",
                     "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
-                    [](Scenario& s, const std::string& v) { s.planner.turns = parse_turns(v); },
-                    [](const Scenario& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
+                    [](DeformableSettings& s, const std::string& v) { s.planner.turns = parse_turns(v); },
+                    [](const DeformableSettings& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
     keys.push_back(
         {"planner.horizon",
          "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
-         [](Scenario& s, const std::string& v) {
+         [](DeformableSettings& s, const std::string& v) {
              s.planner.horizon.reset();
              if (v != "default")
                  s.planner.horizon = static_cast<int>(parse_integer("planner.horizon", v, 1, largest_horizon));
          },
-         [](const Scenario& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
+         [](const DeformableSettings& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
          {"default"}});
     keys.push_back({"arms.controllers", "any of " + joined(controller_names()),
-                    [](Scenario& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
-                    [](const Scenario& s) { return names_text(s.arms.controllers, controller_names()); },
+                    [](DeformableSettings& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
+                    [](const DeformableSettings& s) { return names_text(s.arms.controllers, controller_names()); },
                     controller_names()});
     keys.push_back({"arms.estimators",
                     "any of " + joined(estimator_names()) + " (kf: translation, the others: heading); default: ekf or kf",
-                    [](Scenario& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
-                    [](const Scenario& s) {
+                    [](DeformableSettings& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
+                    [](const DeformableSettings& s) {
                         return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";
                     },
                     estimators_to_offer()});
@@ -142,8 +142,8 @@ void add_control_keys(Keys& keys) {
 void add_published_keys(Keys& keys) {
     const auto published = [&](const char* name, auto field) {
         keys.push_back({name, "published figures to show in our distribution, as `arm value, arm value`",
-                        [=](Scenario& s, const std::string& v) { field(s) = parse_published(name, v); },
-                        [=](const Scenario& s) { return published_text(field(s)); }});
+                        [=](DeformableSettings& s, const std::string& v) { field(s) = parse_published(name, v); },
+                        [=](const DeformableSettings& s) { return published_text(field(s)); }});
     };
     published("published.trace_P", [](auto& s) -> auto& { return s.published.trace_P; });
     published("published.unseen", [](auto& s) -> auto& { return s.published.unseen; });
@@ -165,12 +165,12 @@ Keys all_keys() {
 
 }  // namespace
 
-const std::vector<ScenarioKey>& scenario_keys() {
+const std::vector<DeformableKey>& scenario_keys() {
     static const Keys keys = all_keys();
     return keys;
 }
 
-void set_key(Scenario& scenario, const std::string& name, const std::string& value) {
+void set_key(DeformableSettings& scenario, const std::string& name, const std::string& value) {
     set_one_of(scenario_keys(), scenario, name, value);
 }
 

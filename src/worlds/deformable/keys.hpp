@@ -2,7 +2,7 @@
 // The scenario as text. One table of keys serves the scenario files, `--set`, `credence show`, the stored
 // scenario, the study's hash and the documentation.
 
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <functional>
 #include <string>
@@ -19,13 +19,13 @@ struct KeyOf {
     std::function<std::string(const Settings&)> get;         ///< text that `set` reads back to the same value
     std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
 };
-using ScenarioKey = KeyOf<Scenario>;
+using DeformableKey = KeyOf<DeformableSettings>;
 
 /// All keys, grouped by section, in the order in which they are shown.
-const std::vector<ScenarioKey>& scenario_keys();
+const std::vector<DeformableKey>& scenario_keys();
 
 /// Sets `section.key` to a value without its outer blanks; throws InputError for an unknown key (with the closest known
 /// one) or a value out of range.
-void set_key(Scenario& scenario, const std::string& name, const std::string& value);
+void set_key(DeformableSettings& scenario, const std::string& name, const std::string& value);
 
 }  // namespace credence

@@ -60,13 +60,13 @@ public:
     }
 
     template <class Layout, class Belief>
-    void updated(int k, const Layout& layout, const Belief& belief, const double* figures) {
+    void updated(int k, const Layout& layout, const Belief& belief, const double* all_series) {
         TrajectoryStep& step = at(k);
         note_belief(layout, belief, step);
-        const auto figure = [&](int f) { return figures[f * (problem_.poses - 1) + k - 1]; };
-        step.nees = figure(0);
-        step.nis = figure(problem_.block_count);
-        step.rows = static_cast<int>(figure(problem_.block_count + 1));
+        const auto series = [&](int f) { return all_series[f * (problem_.poses - 1) + k - 1]; };
+        step.nees = series(0);
+        step.nis = series(problem_.block_count);
+        step.rows = static_cast<int>(series(problem_.block_count + 1));
     }
 
 private:
@@ -153,20 +153,20 @@ private:
 template <class Noise>
 Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source) {
     const ProblemView& view = problem.view();
-    const Scenario& scenario = problem.scenario();
+    const DeformableSettings& scenario = problem.scenario();
     Trajectory trajectory;
     trajectory.scenario = scenario;
     trajectory.source = source;
     trajectory.arm = arm;
     trajectory.columns.resize(column_count);
     if (arm.controller != Controller::fixed) trajectory.candidates = planner_candidates(scenario);
-    std::vector<double> figures(static_cast<std::size_t>(view.figure_count) * static_cast<std::size_t>(view.poses - 1));
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, arm.controller, trajectory);
     const auto run = [&](auto process, auto estimator) {
         using StateLayout = Layout<process(), any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
         const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-        run_trial(view, arm.controller, noise, recorder, *work, trajectory.columns.data(), figures.data());
+        run_trial(view, arm.controller, noise, recorder, *work, trajectory.columns.data(), all_series.data());
     };
     const auto run_process = [&](auto process) {
         with_estimator<process()>(arm.estimator, [&](auto estimator) { run(process, estimator); });
@@ -181,7 +181,7 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
 
 }  // namespace
 
-void check_covers(const NoiseRecord& record, const Scenario& scenario, const std::string& file) {
+void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file) {
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
         throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " +
                          remedy + ".");

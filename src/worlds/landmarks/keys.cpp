@@ -21,10 +21,10 @@ std::vector<LandmarkKey> all_keys() {
     std::vector<LandmarkKey> keys;
     add_common_keys(keys);
     const auto real = [&](const char* name, const char* help, const ValueRange& range, auto field) {
-        keys.push_back(real_key<LandmarkScenario>(name, help, range, field));
+        keys.push_back(real_key<LandmarkSettings>(name, help, range, field));
     };
     const auto integer = [&](const char* name, const char* help, int low, int high, auto field) {
-        keys.push_back(integer_key<LandmarkScenario>(name, help, low, high, field));
+        keys.push_back(integer_key<LandmarkSettings>(name, help, low, high, field));
     };
     integer("loop.sides", "sides of the regular polygon that the robot walks", 3, largest_pose_count,
             [](auto& s) -> auto& { return s.loop.sides; });
@@ -45,10 +45,10 @@ std::vector<LandmarkKey> all_keys() {
     real("noise.odometry", "sigma_odom of the move that the filter is told, a step and axis (length)", above(0),
          [](auto& s) -> auto& { return s.noise.odometry; });
     keys.push_back({"arms.estimators", "any of " + joined(estimators_with_heading()),
-                    [](LandmarkScenario& s, const std::string& v) {
-                        s.estimators = parse_estimators(v).value_or(LandmarkScenario().estimators);
+                    [](LandmarkSettings& s, const std::string& v) {
+                        s.estimators = parse_estimators(v).value_or(LandmarkSettings().estimators);
                     },
-                    [](const LandmarkScenario& s) { return names_text(s.estimators, estimator_names()); },
+                    [](const LandmarkSettings& s) { return names_text(s.estimators, estimator_names()); },
                     estimators_with_heading()});
     return keys;
 }
@@ -65,7 +65,7 @@ const std::vector<LandmarkKey>& landmark_keys() {
     return keys;
 }
 
-void validate(const LandmarkScenario& s) {
+void validate(const LandmarkSettings& s) {
     const double radius = s.loop.step / 2 / std::sin(std::numbers::pi / s.loop.sides);
     if (!(s.landmarks.offset < radius))
         throw invalid_value("landmarks.offset", to_text(s.landmarks.offset),

@@ -1,12 +1,12 @@
 #pragma once
 // The keys of the world of landmarks [docs/landmarks.md].
 
-#include "worlds/landmarks/scenario.hpp"
+#include "worlds/landmarks/settings.hpp"
 #include "worlds/deformable/keys.hpp"
 
 namespace credence {
 
-using LandmarkKey = KeyOf<LandmarkScenario>;
+using LandmarkKey = KeyOf<LandmarkSettings>;
 
 /// All keys but scenario.world, grouped by section, in the order in which they are shown.
 const std::vector<LandmarkKey>& landmark_keys();

@@ -14,13 +14,13 @@ public:
     void set(const std::string& key, const std::string& value) override {
         set_one_of(landmark_keys(), scenario_, key, value);
     }
-    Declaration declare() const override {
+    Scenario declare() const override {
         validate(scenario_);
-        return declaration_of(scenario_);
+        return scenario_of(scenario_);
     }
 
 private:
-    LandmarkScenario scenario_;
+    LandmarkSettings scenario_;
 };
 
 class LandmarkWorld : public World {
@@ -28,19 +28,19 @@ public:
     std::string name() const override { return landmark_world_name; }
     std::vector<DescribedKey> keys() const override {
         std::vector<DescribedKey> described;
-        const LandmarkScenario defaults;
+        const LandmarkSettings defaults;
         for (const LandmarkKey& key : landmark_keys())
             described.push_back({key.name, key.get(defaults), key.help, key.choices});
         return described;
     }
     std::unique_ptr<Draft> draft() const override { return std::make_unique<LandmarkDraft>(); }
-    std::vector<Column> columns(const Declaration& scenario) const override {
+    std::vector<Column> columns(const Scenario& scenario) const override {
         return trial_columns(reported_as(landmark_scenario_of(scenario)));
     }
-    std::vector<Figure> figures(const Declaration& scenario) const override {
-        return landmark_figures(landmark_scenario_of(scenario));
+    std::vector<Series> all_series(const Scenario& scenario) const override {
+        return landmark_series(landmark_scenario_of(scenario));
     }
-    std::unique_ptr<const Simulation> simulation(const Declaration& scenario) const override {
+    std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const override {
         return std::make_unique<LandmarkSimulation>(landmark_scenario_of(scenario));
     }
 };
@@ -49,35 +49,35 @@ public:
 
 std::unique_ptr<const World> landmark_world() { return std::make_unique<LandmarkWorld>(); }
 
-Declaration declaration_of(const LandmarkScenario& scenario) {
-    const Scenario slam = reported_as(scenario);
-    Declaration declared{landmark_world_name, scenario.name, scenario.title, scenario.length_unit, scenario.poses,
+Scenario scenario_of(const LandmarkSettings& scenario) {
+    const DeformableSettings slam = reported_as(scenario);
+    Scenario declared{landmark_world_name, scenario.name, scenario.title, scenario.length_unit, scenario.poses,
                          {{world_key, landmark_world_name}}, state_components(slam), state_blocks(slam), {}};
     for (const LandmarkKey& key : landmark_keys()) declared.settings.push_back({key.name, key.get(scenario)});
     for (const Estimator estimator : scenario.estimators) declared.arms.push_back(arm_name({Controller::fixed, estimator}));
     return declared;
 }
 
-LandmarkScenario landmark_scenario_of(const Declaration& declared) {
-    LandmarkScenario scenario;
+LandmarkSettings landmark_scenario_of(const Scenario& declared) {
+    LandmarkSettings scenario;
     for (const Setting& setting : declared.settings)
         if (setting.key != world_key) set_one_of(landmark_keys(), scenario, setting.key, setting.value);
     validate(scenario);
     return scenario;
 }
 
-LandmarkSimulation::LandmarkSimulation(const LandmarkScenario& scenario, Unit unit)
-    : problem_(scenario), unit_(std::move(unit)), arms_(scenario.estimators) {
+LandmarkSimulation::LandmarkSimulation(const LandmarkSettings& scenario, Target target)
+    : problem_(scenario), target_(std::move(target)), arms_(scenario.estimators) {
     const LandmarkView& view = problem_.view();
-    shape_ = {view.poses, view.state_size, column_count, view.figure_count, view.block_count};
+    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.block_count};
 }
 
 std::size_t LandmarkSimulation::workspace_size(std::size_t arm) const {
-    return unit_.landmarks_workspace_size(problem_.view(), arms_[arm]);
+    return target_.landmarks_workspace_size(problem_.view(), arms_[arm]);
 }
 
 void LandmarkSimulation::simulate(std::size_t arm, const Batch& batch) const {
-    unit_.simulate_landmarks(problem_.view(), arms_[arm], batch);
+    target_.simulate_landmarks(problem_.view(), arms_[arm], batch);
 }
 
 }  // namespace credence

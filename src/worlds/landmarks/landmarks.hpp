@@ -16,20 +16,20 @@ std::unique_ptr<const World> landmark_world();
 
 /// A valid scenario as everything from the block up knows it, and back. The second throws InputError where the settings
 /// are not those of the world of landmarks.
-Declaration declaration_of(const LandmarkScenario& scenario);
-LandmarkScenario landmark_scenario_of(const Declaration& declared);
+Scenario scenario_of(const LandmarkSettings& scenario);
+LandmarkSettings landmark_scenario_of(const Scenario& declared);
 
 /// The trials of a valid scenario, on a unit.
 class LandmarkSimulation : public Simulation {
 public:
-    explicit LandmarkSimulation(const LandmarkScenario& scenario, Unit unit = best_unit());
+    explicit LandmarkSimulation(const LandmarkSettings& scenario, Target target = best_target());
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
 
 private:
     LandmarkProblem problem_;
-    Unit unit_;
+    Target target_;
     std::vector<Estimator> arms_;
     SimulationShape shape_;
 };

@@ -4,8 +4,8 @@
 
 namespace credence {
 
-Scenario reported_as(const LandmarkScenario& scenario) {
-    Scenario slam;
+DeformableSettings reported_as(const LandmarkSettings& scenario) {
+    DeformableSettings slam;
     slam.length_unit = scenario.length_unit;
     slam.features.positions.resize(static_cast<std::size_t>(scenario.landmarks.count));
     slam.edges.graph = EdgeGraph::none;
@@ -13,31 +13,31 @@ Scenario reported_as(const LandmarkScenario& scenario) {
     return slam;
 }
 
-std::vector<Figure> landmark_figures(const LandmarkScenario& scenario) {
-    std::vector<Figure> figures = step_figures(reported_as(scenario));
-    figures.push_back({"unsettled_updates", "iterated updates whose last pass still moved the mean", "1",
-                       FigureRole::other, 0, true, "", "", 0});
-    return figures;
+std::vector<Series> landmark_series(const LandmarkSettings& scenario) {
+    std::vector<Series> all_series = step_series(reported_as(scenario));
+    all_series.push_back({"unsettled_updates", "iterated updates whose last pass still moved the mean", "1",
+                       SeriesRole::other, 0, true, "", "", 0});
+    return all_series;
 }
 
-LandmarkProblem::LandmarkProblem(const LandmarkScenario& scenario) {
-    const Scenario slam = reported_as(scenario);
+LandmarkProblem::LandmarkProblem(const LandmarkSettings& scenario) {
+    const DeformableSettings slam = reported_as(scenario);
     view_.poses = scenario.poses;
     view_.features = scenario.landmarks.count;
     view_.state_size = state_size(slam);
-    const std::vector<StateBlock> blocks = state_blocks(slam);
+    const std::vector<ComponentGroup> blocks = state_blocks(slam);
     coverage_bounds_ = coverage_bounds(blocks);
     view_.block_count = static_cast<int>(blocks.size());
     view_.coverage_bounds = coverage_bounds_.data();
     view_.charts = charts_of(slam);
-    view_.figure_count = static_cast<int>(landmark_figures(scenario).size());
+    view_.series_count = static_cast<int>(landmark_series(scenario).size());
     fill_loop(scenario);
     fill_world(scenario);
     fill_filter(scenario);
 }
 
 /// theta_k = theta_{k-1} + omega, r_k = r_{k-1} + R(theta_{k-1}) v.
-void LandmarkProblem::fill_loop(const LandmarkScenario& scenario) {
+void LandmarkProblem::fill_loop(const LandmarkSettings& scenario) {
     const double turn = 2 * pi / scenario.loop.sides;
     const std::size_t steps = static_cast<std::size_t>(scenario.poses - 1);
     motion_.assign(steps, {turn, {scenario.loop.step, 0}});
@@ -49,7 +49,7 @@ void LandmarkProblem::fill_loop(const LandmarkScenario& scenario) {
     }
 }
 
-void LandmarkProblem::fill_world(const LandmarkScenario& scenario) {
+void LandmarkProblem::fill_world(const LandmarkSettings& scenario) {
     const Rotation<double> half_turn = rotation(pi / scenario.loop.sides);
     const double radius = scenario.loop.step / (2 * half_turn.sine);
     const Point centre{scenario.loop.step / 2, radius * half_turn.cosine};
@@ -70,7 +70,7 @@ void LandmarkProblem::fill_world(const LandmarkScenario& scenario) {
                    scenario.noise.odometry, scenario.landmarks.prior};
 }
 
-void LandmarkProblem::fill_filter(const LandmarkScenario& scenario) {
+void LandmarkProblem::fill_filter(const LandmarkSettings& scenario) {
     still_.resize(pose_.size() * landmark_.size());
     FilterParameters& filter = view_.filter;
     filter.features = view_.features;

@@ -1,7 +1,7 @@
 #pragma once
 // A scenario of the world of landmarks made ready: the tables that its equations read, computed once.
 
-#include "worlds/landmarks/scenario.hpp"
+#include "worlds/landmarks/settings.hpp"
 #include "worlds/landmarks/world.hpp"
 #include "slam/trial/problem.hpp"
 
@@ -14,26 +14,26 @@ struct LandmarkView : CommonView {
 
 /// The SLAM scenario whose trials report what these do: one with a heading, as many features, the same estimators and no
 /// edges.
-Scenario reported_as(const LandmarkScenario& scenario);
+DeformableSettings reported_as(const LandmarkSettings& scenario);
 
-/// The per-step figures, in the order in which landmark_trial.hpp writes them: those of a SLAM scenario, and whether an
+/// The per-step series, in the order in which landmark_trial.hpp writes them: those of a SLAM scenario, and whether an
 /// iterated update had come to rest.
-std::vector<Figure> landmark_figures(const LandmarkScenario& scenario);
+std::vector<Series> landmark_series(const LandmarkSettings& scenario);
 
 /// Owns the tables of one validated scenario. The truth is the same bits everywhere: its geometry uses the project's own
 /// sincos, and what is in sight is found as a trial finds it.
 class LandmarkProblem {
 public:
-    explicit LandmarkProblem(const LandmarkScenario& scenario);
+    explicit LandmarkProblem(const LandmarkSettings& scenario);
     LandmarkProblem(const LandmarkProblem&) = delete;
     LandmarkProblem& operator=(const LandmarkProblem&) = delete;
 
     const LandmarkView& view() const { return view_; }
 
 private:
-    void fill_loop(const LandmarkScenario& scenario);
-    void fill_world(const LandmarkScenario& scenario);
-    void fill_filter(const LandmarkScenario& scenario);
+    void fill_loop(const LandmarkSettings& scenario);
+    void fill_world(const LandmarkSettings& scenario);
+    void fill_filter(const LandmarkSettings& scenario);
 
     std::vector<LoopPose> pose_;
     std::vector<Control> motion_;

@@ -6,7 +6,7 @@
 #include "slam/trial/workspace.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// Landmarks that pose k shows for the first time enter the belief.
 template <class Layout, class Real, class Estimating>
@@ -32,10 +32,10 @@ void start_trial(const LandmarkView& problem, const Layout& layout, const Noise&
     initialise_landmarks(problem, layout, 0, work);
 }
 
-/// One trial of one arm. `columns` [column_count]; `figures` [figure_count, K - 1]; both are written whole.
+/// One trial of one arm. `columns` [column_count]; `series` [series_count, K - 1]; both are written whole.
 template <class Layout, class Real, class Estimating, class Noise, class Observer>
 void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observer,
-               CommonWorkspace<Layout, Real, Estimating>& work, Real* columns, Real* figures) {
+               CommonWorkspace<Layout, Real, Estimating>& work, Real* columns, Real* all_series) {
     const Layout layout(problem.features);
     auto& truth = work.truth;
     auto& belief = work.belief;
@@ -67,12 +67,12 @@ void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observ
         estimator.update(belief, problem.filter, layout, sightings, no_edge, linearised, work.update);
         initialise_landmarks(problem, layout, k, work);
         work.update.unseen = work.update.unseen - Real(first_sights);
-        judge_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, figures);
-        figures[(problem.figure_count - 1) * (problem.poses - 1) + k - 1] = work.update.unsettled;
-        observer.updated(k, layout, belief, figures);
+        evaluate_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, all_series);
+        all_series[(problem.series_count - 1) * (problem.poses - 1) + k - 1] = work.update.unsettled;
+        observer.updated(k, layout, belief, all_series);
     }
     write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -26,7 +26,7 @@ struct LandmarkParameters {
     double sigma_prior = 0;              ///< of the belief of a landmark that was not seen yet
 };
 
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 /// What is drawn at a pose of this world.
 template <class Layout, class Real>
@@ -77,5 +77,5 @@ int set_aside_first_sights(const LandmarkParameters& world, int features, int k,
     return count;
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

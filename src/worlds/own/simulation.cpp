@@ -3,7 +3,7 @@
 #include "numeric/chi_square.hpp"
 #include <credence/detail/draws.hpp>
 #include <credence/own_trial.hpp>
-#include "scenario/state_figures.hpp"
+#include "scenario/state_series.hpp"
 
 #include "worlds/own/step.hpp"
 #include "worlds/own/lag_products.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
 
-RecordShape judged_shape(const Declaration& scenario, const OwnReport& report) {
+RecordShape judged_shape(const Scenario& scenario, const OwnReport& report) {
     RecordShape shape;
     shape.steps = scenario.poses - 1;
     shape.n = static_cast<int>(scenario.components.size());
@@ -33,23 +33,23 @@ RecordShape judged_shape(const Declaration& scenario, const OwnReport& report) {
 
 /// What every trial of a scenario reads.
 struct Case {
-    Declaration scenario;
+    Scenario scenario;
     OwnReport report;
     std::vector<Column> columns;
     RecordShape shape;
-    StateFigures figures;
+    StateSeries all_series;
     std::vector<double> coverage_bounds;  ///< [blocks, levels]
     std::function<void(OwnTrial&)> run;
 
-    Case(const Declaration& declared, const OwnReport& reported, std::function<void(OwnTrial&)> one)
+    Case(const Scenario& declared, const OwnReport& reported, std::function<void(OwnTrial&)> one)
         : scenario(declared),
           report(reported),
           columns(own_columns(declared, reported)),
           shape(judged_shape(declared, reported)),
-          figures(declared.components, declared.blocks,
+          all_series(declared.components, declared.blocks,
                   reported.largest_innovation > 0 ? Innovations::given : Innovations::none),
           run(std::move(one)) {
-        for (const StateBlock& block : scenario.blocks)
+        for (const ComponentGroup& block : scenario.blocks)
             for (const double level : coverage_levels)
                 coverage_bounds.push_back(stable_chi_square_quantile(level, block.count));
     }
@@ -60,16 +60,16 @@ struct Case {
 struct TrialEnds {};
 
 /// One trial after the other, judged step by step.
-class JudgedTrial : public OwnTrial {
+class EvaluatedTrial : public OwnTrial {
 public:
-    JudgedTrial(const Case& of, std::size_t arm)
+    EvaluatedTrial(const Case& of, std::size_t arm)
         : case_(of),
           arm_(arm),
-          judge_(of.shape, of.figures),
-          figures_(of.figures.list.size() * of.steps()),
+          judge_(of.shape, of.all_series),
+          all_series_(of.all_series.list.size() * of.steps()),
           errors_(of.steps() * size(of.shape.n)),
           own_(of.report.columns.size()),
-          step_figures_(of.figures.list.size()),
+          step_series_(of.all_series.list.size()),
           products_(size(lag_count(of.scenario.poses)), size(of.shape.m)) {}
 
     void run(std::uint64_t root_seed, std::uint64_t trial) {
@@ -127,8 +127,8 @@ public:
         take(error, P);
     }
 
-    /// [figure_count, K - 1]; steps of a failed trial hold anything.
-    const std::vector<double>& figures() const { return figures_; }
+    /// [series_count, K - 1]; steps of a failed trial hold anything.
+    const std::vector<double>& all_series() const { return all_series_; }
     const std::vector<double>& errors() const { return errors_; }  ///< [K - 1, n]
     const LagProducts& products() const { return products_; }
     bool counts() const { return !failed(status_); }
@@ -136,13 +136,13 @@ public:
     void columns(std::vector<double>& row) const {
         const auto total = [&](std::size_t f) {
             double sum = 0;
-            for (std::size_t k = 0; k < case_.steps(); ++k) sum += figures_[f * case_.steps() + k];
+            for (std::size_t k = 0; k < case_.steps(); ++k) sum += all_series_[f * case_.steps() + k];
             return sum;
         };
-        const StateFigures& at = case_.figures;
+        const StateSeries& at = case_.all_series;
         const double steps = static_cast<double>(case_.steps());
         const bool innovations = case_.shape.has_innovations();
-        row = {figures_[(at.variance + 1) * case_.steps() - 1]};
+        row = {all_series_[(at.variance + 1) * case_.steps() - 1]};
         row.insert(row.end(), own_.begin(), own_.end());
         row.insert(row.end(), {total(at.squared_error), total(0) / steps / case_.shape.n,
                                innovations ? total(at.nis) / total(at.rows) : nan, total(at.variance) / steps,
@@ -180,11 +180,11 @@ private:
         if (!error.allFinite() || !checked_.P.allFinite() ||
             (!checked_.rows.empty() && !(checked_.nu.allFinite() && checked_.S.allFinite())))
             end(Status::non_finite);
-        if (!judge_.judge(checked_, step_figures_.data(), products_.at(step_).data()).empty())
+        if (!judge_.judge(checked_, step_series_.data(), products_.at(step_).data()).empty())
             end(Status::covariance_not_positive_definite);
-        if (!figures_add_up(step_figures_.data(), step_figures_.size())) end(Status::non_finite);
+        if (!figures_add_up(step_series_.data(), step_series_.size())) end(Status::non_finite);
         if (status_ == Status::completed && error.cwiseAbs().maxCoeff() > divergence_bound) note(Status::diverged);
-        for (std::size_t f = 0; f < step_figures_.size(); ++f) figures_[f * case_.steps() + step_] = step_figures_[f];
+        for (std::size_t f = 0; f < step_series_.size(); ++f) all_series_[f * case_.steps() + step_] = step_series_[f];
         std::copy(error.begin(), error.end(), errors_.begin() + static_cast<std::ptrdiff_t>(step_) * n);
         products_.correlate(step_);
         ++step_;
@@ -201,13 +201,13 @@ private:
 
     const Case& case_;
     std::size_t arm_;
-    StepJudge judge_;
+    StepEvaluator judge_;
     std::optional<KeyedDraws<double>> draws_;
     CheckedStep checked_;
     Status status_ = Status::completed;
     int status_pose_ = -1;
     std::size_t step_ = 0;
-    std::vector<double> figures_, errors_, own_, step_figures_;
+    std::vector<double> all_series_, errors_, own_, step_series_;
     LagProducts products_;
 };
 
@@ -216,28 +216,28 @@ class BatchSums {
 public:
     BatchSums(const Case& of, const Batch& batch) : case_(of), batch_(batch) {}
 
-    void add(int trial, const JudgedTrial& judged, const std::vector<double>& row) {
+    void add(int trial, const EvaluatedTrial& judged, const std::vector<double>& row) {
         const std::size_t i = size(trial), place = i % octet, steps = case_.steps();
         for (std::size_t c = 0; c < row.size(); ++c)
             batch_.columns[(i / octet * row.size() + c) * octet + place] = row[c];
         const std::size_t padded = size((batch_.trials + octet - 1) / octet * octet);
-        for (std::size_t k = 0; k < steps; ++k) batch_.nees[k * padded + i] = judged.figures()[k];
+        for (std::size_t k = 0; k < steps; ++k) batch_.nees[k * padded + i] = judged.all_series()[k];
         if (batch_.errors != nullptr)
             for (std::size_t c = 0, n = case_.scenario.components.size(); c < n; ++c)
                 for (std::size_t k = 0; k < steps; ++k)
                     batch_.errors[(c * steps + k) * padded + i] = judged.errors()[k * n + c];
         if (!judged.counts()) return;
-        for (std::size_t f = 0; f < case_.figures.list.size(); ++f) add_figure(f, place, judged);
+        for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, judged);
         for (std::size_t b = 0; b < case_.scenario.blocks.size(); ++b) add_coverage(b, judged);
         if (batch_.errors != nullptr) add_products(place, judged.products());
     }
 
 private:
-    void add_figure(std::size_t f, std::size_t place, const JudgedTrial& judged) {
+    void add_figure(std::size_t f, std::size_t place, const EvaluatedTrial& judged) {
         const std::size_t steps = case_.steps();
         double run = 0;
         for (std::size_t cell = f * steps; cell < (f + 1) * steps; ++cell) {
-            const double value = judged.figures()[cell];
+            const double value = judged.all_series()[cell];
             batch_.sums[cell * octet + place] += value;
             batch_.square_sums[cell * octet + place] += value * value;
             run += value;
@@ -245,11 +245,11 @@ private:
         batch_.run_square_sums[f * octet + place] += run * run;
     }
 
-    void add_coverage(std::size_t b, const JudgedTrial& judged) {
+    void add_coverage(std::size_t b, const EvaluatedTrial& judged) {
         for (std::size_t cell = b * case_.steps(); cell < (b + 1) * case_.steps(); ++cell)
             for (std::size_t level = 0; level < coverage_level_count; ++level)
                 batch_.covered[cell * coverage_level_count + level] +=
-                    judged.figures()[cell] < case_.coverage_bounds[b * coverage_level_count + level];
+                    judged.all_series()[cell] < case_.coverage_bounds[b * coverage_level_count + level];
     }
 
     void add_products(std::size_t place, const LagProducts& products) {
@@ -266,15 +266,15 @@ private:
 
 class OwnSimulation : public Simulation {
 public:
-    OwnSimulation(const Declaration& scenario, const OwnReport& report, std::function<void(OwnTrial&)> run)
+    OwnSimulation(const Scenario& scenario, const OwnReport& report, std::function<void(OwnTrial&)> run)
         : case_(scenario, report, std::move(run)),
           shape_{scenario.poses, case_.shape.n, static_cast<int>(case_.columns.size()),
-                 static_cast<int>(case_.figures.list.size()), static_cast<int>(scenario.blocks.size())} {}
+                 static_cast<int>(case_.all_series.list.size()), static_cast<int>(scenario.blocks.size())} {}
 
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t) const override { return 0; }
     void simulate(std::size_t arm, const Batch& batch) const override {
-        JudgedTrial trial(case_, arm);
+        EvaluatedTrial trial(case_, arm);
         BatchSums sums(case_, batch);
         std::vector<double> row;
         for (int i = 0; i < batch.trials; ++i) {
@@ -291,7 +291,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<const Simulation> own_simulation(const Declaration& scenario, const OwnReport& report,
+std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run) {
     return std::make_unique<OwnSimulation>(scenario, report, std::move(run));
 }

@@ -38,50 +38,50 @@ std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, E
 
 }  // namespace
 
-StateFigures record_figures(const RecordShape& shape) {
+StateSeries record_series(const RecordShape& shape) {
     std::vector<Component> components;
     for (int j = 0; j < shape.n; ++j) components.push_back({"x" + std::to_string(j), "1"});
-    StateFigures figures(components, shape.blocks, shape.has_innovations() ? Innovations::given : Innovations::none);
-    for (Figure& figure : figures.list)
-        if (figure.role == FigureRole::squared_error || figure.role == FigureRole::variance)
-            figure.unit = "unit of error squared";
-    return figures;
+    StateSeries all_series(components, shape.blocks, shape.has_innovations() ? Innovations::given : Innovations::none);
+    for (Series& series : all_series.list)
+        if (series.role == SeriesRole::squared_error || series.role == SeriesRole::variance)
+            series.unit = "unit of error squared";
+    return all_series;
 }
 
-bool figures_add_up(const double* figures, std::size_t count) {
+bool figures_add_up(const double* all_series, std::size_t count) {
     constexpr double largest = 1e140;
-    return std::all_of(figures, figures + count, [](double value) { return std::abs(value) <= largest; });
+    return std::all_of(all_series, all_series + count, [](double value) { return std::abs(value) <= largest; });
 }
 
-StepJudge::StepJudge(const RecordShape& shape, const StateFigures& figures)
-    : shape_(shape), places_(figures), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
+StepEvaluator::StepEvaluator(const RecordShape& shape, const StateSeries& all_series)
+    : shape_(shape), places_(all_series), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
 
-std::string StepJudge::judge(const CheckedStep& step, double* figures, double* whitened) {
+std::string StepEvaluator::judge(const CheckedStep& step, double* all_series, double* whitened) {
     for (std::size_t b = 0; b < shape_.blocks.size(); ++b) {
-        const StateBlock& block = shape_.blocks[b];
+        const ComponentGroup& block = shape_.blocks[b];
         const auto P = step.P.block(block.first, block.first, block.count, block.count);
         const auto e = step.e.segment(block.first, block.count);
         const std::string wrong = factor(P, shape_.covariance_epsilon, factors_[b]);
         if (!wrong.empty()) return "covariance " + wrong;
         solved_[b] = e;
         factors_[b].matrixL().solveInPlace(solved_[b]);
-        figures[b] = solved_[b].squaredNorm();
-        figures[places_.squared_error + b] = e.squaredNorm();
-        figures[places_.variance + b] = P.trace();
+        all_series[b] = solved_[b].squaredNorm();
+        all_series[places_.squared_error + b] = e.squaredNorm();
+        all_series[places_.variance + b] = P.trace();
     }
     for (int j = 0; j < shape_.n; ++j)
-        figures[places_.standardised_error + static_cast<std::size_t>(j)] = step.e(j) / std::sqrt(step.P(j, j));
+        all_series[places_.standardised_error + static_cast<std::size_t>(j)] = step.e(j) / std::sqrt(step.P(j, j));
     if (!shape_.has_innovations()) return {};
 
     std::fill(whitened, whitened + shape_.m, nan);
-    figures[places_.nis] = 0;
-    figures[places_.rows] = static_cast<double>(step.rows.size());
+    all_series[places_.nis] = 0;
+    all_series[places_.rows] = static_cast<double>(step.rows.size());
     if (step.rows.empty()) return {};
     const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     white_ = step.nu;
     innovation_factor_.matrixL().solveInPlace(white_);
-    figures[places_.nis] = white_.squaredNorm();
+    all_series[places_.nis] = white_.squaredNorm();
     for (std::size_t i = 0; i < step.rows.size(); ++i)
         whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
     return {};

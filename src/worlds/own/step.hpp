@@ -1,9 +1,9 @@
 #pragma once
-// One step of a record: checked, and turned into figures.
+// One step of a record: checked, and turned into series.
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]; NaN in rows not observed
 
-#include "scenario/state_figures.hpp"
+#include "scenario/state_series.hpp"
 
 #include <Eigen/Dense>
 
@@ -19,7 +19,7 @@ struct RecordShape {
     int steps = 0;
     int n = 0;                       ///< components of the state
     int m = 0;                       ///< rows of an innovation; 0 without innovations
-    std::vector<StateBlock> blocks;  ///< all, and those of the attribute `blocks`
+    std::vector<ComponentGroup> blocks;  ///< all, and those of the attribute `blocks`
     double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
     std::vector<int> declared;       ///< [trials] steps of each trial by the dataset `steps`; empty without it
     int longest = 0;                 ///< steps of the longest trial, by its errors
@@ -69,26 +69,26 @@ Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedSte
 /// Empty where nothing is.
 std::string divergence_of(const CheckedStep& step);
 
-/// The figures of a record, whose components are called x0, x1 ...
-StateFigures record_figures(const RecordShape& shape);
+/// The series of a record, whose components are called x0, x1 ...
+StateSeries record_series(const RecordShape& shape);
 
-/// Whether every figure of a step is a number whose square, over all steps, still adds up.
-bool figures_add_up(const double* figures, std::size_t count);
+/// Whether every series of a step is a number whose square, over all steps, still adds up.
+bool figures_add_up(const double* all_series, std::size_t count);
 
-/// Turns checked steps into figures. Keeps its matrices from step to step.
-class StepJudge {
+/// Turns checked steps into series. Keeps its matrices from step to step.
+class StepEvaluator {
 public:
-    StepJudge(const RecordShape& shape, const StateFigures& figures);
+    StepEvaluator(const RecordShape& shape, const StateSeries& all_series);
 
-    /// Writes the step's figures [figure_count], and L^-1 nu [m], S = LL', NaN in rows not observed; without
+    /// Writes the step's series [series_count], and L^-1 nu [m], S = LL', NaN in rows not observed; without
     /// innovations that is left alone. Returns what is wrong with a covariance; empty where nothing is.
-    std::string judge(const CheckedStep& step, double* figures, double* whitened);
+    std::string judge(const CheckedStep& step, double* all_series, double* whitened);
 
 private:
     using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
     const RecordShape& shape_;
-    const StateFigures& places_;
+    const StateSeries& places_;
     std::vector<Factor> factors_;  ///< by block
     std::vector<Eigen::VectorXd> solved_;
     Factor innovation_factor_;

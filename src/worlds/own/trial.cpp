@@ -3,7 +3,7 @@
 #include <credence/own_trial.hpp>
 
 #include <credence/error.hpp>
-#include "scenario/state_figures.hpp"
+#include "scenario/state_series.hpp"
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"
@@ -35,7 +35,7 @@ void check_names(const std::string& world, const std::string& what, const std::v
 
 }  // namespace
 
-std::vector<Column> own_columns(const Declaration& scenario, const OwnReport& report) {
+std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report) {
     const std::string unit = squared_unit(scenario.components, scenario.blocks.front());
     const auto real = [&](const std::string& name, const std::string& long_name, const std::string& of) {
         return Column{name, long_name, of, ColumnType::real, nan};
@@ -51,16 +51,16 @@ std::vector<Column> own_columns(const Declaration& scenario, const OwnReport& re
     return columns;
 }
 
-std::vector<Figure> own_figures(const Declaration& scenario, const OwnReport& report) {
-    return StateFigures(scenario.components, scenario.blocks,
+std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report) {
+    return StateSeries(scenario.components, scenario.blocks,
                         report.largest_innovation > 0 ? Innovations::given : Innovations::none)
         .list;
 }
 
-void check_declared(const Declaration& scenario) {
+void check_declared(const Scenario& scenario) {
     const auto n = static_cast<int>(scenario.components.size());
     check_names(scenario.world, "components", scenario.components, [](const Component& one) { return one.name; });
-    check_names(scenario.world, "blocks", scenario.blocks, [](const StateBlock& one) { return one.name; });
+    check_names(scenario.world, "blocks", scenario.blocks, [](const ComponentGroup& one) { return one.name; });
     for (const std::string& arm : scenario.arms)
         if (!names_arm(arm))
             throw std::invalid_argument("world " + scenario.world + ": " + printable(arm) + " is no name for an arm.");
@@ -69,7 +69,7 @@ void check_declared(const Declaration& scenario) {
     for (const Component& component : scenario.components)
         if (!is_word(component.unit))
             throw std::invalid_argument("world " + scenario.world + ": a component's unit is one word, such as m/s.");
-    for (const StateBlock& block : scenario.blocks)
+    for (const ComponentGroup& block : scenario.blocks)
         if (block.first < 0 || block.count < 1 || block.first + block.count > n)
             throw std::invalid_argument("world " + scenario.world + ": block " + block.name + " is not in the state.");
 }

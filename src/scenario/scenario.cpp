@@ -1,4 +1,4 @@
-#include <credence/declaration.hpp>
+#include <credence/scenario.hpp>
 
 #include <credence/text.hpp>
 
@@ -12,12 +12,12 @@ const Setting* find_setting(const std::vector<Setting>& settings, const std::str
     return found == settings.end() ? nullptr : &*found;
 }
 
-std::string value_of(const Declaration& scenario, const std::string& key) {
+std::string value_of(const Scenario& scenario, const std::string& key) {
     const Setting* setting = find_setting(scenario.settings, key);
     return setting ? setting->value : "";
 }
 
-std::string scenario_text(const Declaration& scenario) {
+std::string scenario_text(const Scenario& scenario) {
     std::string text, section;
     for (const auto& [key, value] : scenario.settings) {
         const std::size_t dot = key.find('.');
@@ -43,7 +43,7 @@ bool names_arm(const std::string& text) {
 
 std::string controller_of(const std::string& arm) { return arm.substr(0, arm.find('.')); }
 
-std::vector<KeyDifference> key_differences(const Declaration& a, const Declaration& b) {
+std::vector<KeyDifference> key_differences(const Scenario& a, const Scenario& b) {
     std::vector<KeyDifference> differences;
     if (a.world != b.world) differences.push_back({world_key, a.world, b.world});
     const auto note = [&](const std::string& key) {

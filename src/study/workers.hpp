@@ -26,9 +26,9 @@ struct ComputedBlocks {
 
 /// What the engine has for a crew: the tasks of a run that nobody has yet, and a place for what becomes of them. One
 /// thread at a time calls it.
-class BlockDesk {
+class BlockQueue {
 public:
-    virtual ~BlockDesk() = default;
+    virtual ~BlockQueue() = default;
     /// Trials of each scenario that the run was asked for.
     virtual std::int64_t trials() const = 0;
     /// Tasks that were not given to anybody yet.
@@ -42,13 +42,13 @@ public:
 };
 
 /// Processes that compute blocks of a study.
-class Crew {
+class Workers {
 public:
-    virtual ~Crew() = default;
+    virtual ~Workers() = default;
     /// Hands tasks out and takes what comes back, until nothing is left to hand out and all that was is back, or is given
     /// up because the run is to stop. On the thread that called run_study, while others of this process compute blocks
     /// too. Throws Failure where a process is lost.
-    virtual void serve(BlockDesk& desk) = 0;
+    virtual void serve(BlockQueue& queue) = 0;
 };
 
 }  // namespace credence

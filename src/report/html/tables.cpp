@@ -17,37 +17,37 @@ namespace {
 std::vector<std::string> names_of(const Part& part) {
     std::vector<std::string> names;
     if (part.arms.empty()) return names;
-    for (const FigureReport& figure : part.arms.front()->figures)
+    for (const ColumnReport& column : part.arms.front()->columns)
         for (const ArmReport* arm : part.arms)
-            if (figure_named(arm->figures, figure.name).summary.count > 0) {
-                names.push_back(figure.name);
+            if (column_named(arm->columns, column.name).summary.count > 0) {
+                names.push_back(column.name);
                 break;
             }
     return names;
 }
 
-Html published(const FigureReport& figure_report) {
-    if (!figure_report.published) return {};
-    const Html value = figure_as(figure_report.published->value, to_text(figure_report.published->value));
-    if (std::isnan(figure_report.published->percentile)) return value;
-    return value + " ("_html + figure(figure_report.published->percentile, 1) + " %)"_html;
+Html published(const ColumnReport& column_report) {
+    if (!column_report.published) return {};
+    const Html value = number_html_as(column_report.published->value, to_text(column_report.published->value));
+    if (std::isnan(column_report.published->percentile)) return value;
+    return value + " ("_html + number_html(column_report.published->percentile, 1) + " %)"_html;
 }
 
-/// Rows for every arm under a head for every figure.
+/// Rows for every arm under a head for every column.
 template <class Cells>
 void add_rows(const Part& part, HtmlTable& table, const Cells& cells) {
     for (const std::string& name : names_of(part)) {
-        table.group(figure_words(name, figure_named(part.arms.front()->figures, name).unit));
+        table.group(figure_words(name, column_named(part.arms.front()->columns, name).unit));
         for (const ArmReport* arm : part.arms) {
-            const FigureReport& figure_report = figure_named(arm->figures, name);
-            if (figure_report.summary.count > 0) table.row(escaped(arm->arm), cells(figure_report));
+            const ColumnReport& column_report = column_named(arm->columns, name);
+            if (column_report.summary.count > 0) table.row(escaped(arm->arm), cells(column_report));
         }
     }
 }
 
 bool has_published(const Part& part) {
     const auto any = [](const ArmReport* arm) {
-        return std::any_of(arm->figures.begin(), arm->figures.end(),
+        return std::any_of(arm->columns.begin(), arm->columns.end(),
                            [](auto& one) { return one.published.has_value(); });
     };
     return std::any_of(part.arms.begin(), part.arms.end(), any);
@@ -58,12 +58,12 @@ Html arms_table(const Part& part) {
     const bool published_too = has_published(part);
     if (published_too) heads.push_back("published (percentile)");
     HtmlTable table(part.scenario.name + ": figures of a trial", heads);
-    add_rows(part, table, [&](const FigureReport& one) {
+    add_rows(part, table, [&](const ColumnReport& one) {
         const Summary& s = one.summary;
         const int digits = decimals_for(half_width(s.ci95));
-        std::vector<Html> cells{figure(s.mean, digits), figure_interval(s.ci95, digits),
-                                one.bootstrap95 ? figure_interval(*one.bootstrap95, digits) : Html(),
-                                figure(s.median, digits), figure(s.standard_deviation, digits)};
+        std::vector<Html> cells{number_html(s.mean, digits), interval_html(s.ci95, digits),
+                                one.bootstrap95 ? interval_html(*one.bootstrap95, digits) : Html(),
+                                number_html(s.median, digits), number_html(s.standard_deviation, digits)};
         if (published_too) cells.push_back(published(one));
         return cells;
     });
@@ -74,19 +74,19 @@ Html spread_table(const Part& part) {
     std::vector<std::string> heads{"arm", "trials", "standard error"};
     for (const double p : reported_quantiles) heads.push_back(number(100 * p, 0) + " % quantile");
     HtmlTable table(part.scenario.name + ": how the figures are spread", heads);
-    add_rows(part, table, [](const FigureReport& one) {
+    add_rows(part, table, [](const ColumnReport& one) {
         const int digits = decimals_for(half_width(one.summary.ci95));
-        std::vector<Html> cells{figure_count(static_cast<double>(one.summary.count)),
-                                figure_within(one.summary.standard_error, one.summary.standard_error)};
-        for (const double quantile : one.quantiles) cells.push_back(figure(quantile, digits));
+        std::vector<Html> cells{count_html(static_cast<double>(one.summary.count)),
+                                number_html_within(one.summary.standard_error, one.summary.standard_error)};
+        for (const double quantile : one.quantiles) cells.push_back(number_html(quantile, digits));
         return cells;
     });
     return table.html();
 }
 
-Html share(double value) { return figure_as(value, percent(value)); }
+Html share(double value) { return number_html_as(value, percent(value)); }
 
-Html p_value(double p) { return figure_as(p, p_text(p)); }
+Html p_value(double p) { return number_html_as(p, p_text(p)); }
 
 }  // namespace
 
@@ -95,15 +95,15 @@ Html difference_table(const Comparison& pair) {
                         ", trial by trial (both had the same draws; negative: " + pair.a + " is lower)",
                     {"figure", "mean", "95 %, Student", "95 %, bootstrap", "median", "below", "above", "equal",
                      "p (Holm)", "effect size", "reduction"});
-    for (const ComparedFigure& one : pair.figures) {
+    for (const ComparedColumn& one : pair.columns) {
         const PairedComparison& paired = one.paired;
         if (paired.pairs == 0) continue;
         const Summary& s = paired.difference;
         const int digits = decimals_for(half_width(s.ci95));
         table.row(escaped(figure_words(one.name, one.unit)),
-                  {figure(s.mean, digits), figure_interval(s.ci95, digits), figure_interval(paired.bootstrap95, digits),
-                   figure(s.median, digits), share(paired.wins_a), share(paired.wins_b), share(paired.ties),
-                   p_value(one.holm_p), figure(paired.effect_size, 3), figure(paired.variance_reduction, 2)});
+                  {number_html(s.mean, digits), interval_html(s.ci95, digits), interval_html(paired.bootstrap95, digits),
+                   number_html(s.median, digits), share(paired.wins_a), share(paired.wins_b), share(paired.ties),
+                   p_value(one.holm_p), number_html(paired.effect_size, 3), number_html(paired.variance_reduction, 2)});
     }
     return table.html();
 }
@@ -111,13 +111,13 @@ Html difference_table(const Comparison& pair) {
 Html difference_spread_table(const Comparison& pair) {
     HtmlTable table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
                     {"figure", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected"});
-    for (const ComparedFigure& one : pair.figures) {
+    for (const ComparedColumn& one : pair.columns) {
         const Summary& s = one.paired.difference;
         if (one.paired.pairs == 0) continue;
         table.row(
             escaped(figure_words(one.name, one.unit)),
-            {figure_count(static_cast<double>(one.paired.pairs)), figure_within(s.standard_error, s.standard_error),
-             figure(s.standard_deviation, decimals_for(half_width(s.ci95))), figure(one.paired.wilcoxon_z, 2),
+            {count_html(static_cast<double>(one.paired.pairs)), number_html_within(s.standard_error, s.standard_error),
+             number_html(s.standard_deviation, decimals_for(half_width(s.ci95))), number_html(one.paired.wilcoxon_z, 2),
              p_value(one.paired.wilcoxon_p)});
     }
     return table.html();

@@ -1,4 +1,4 @@
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-std::vector<double> default_turns(const Scenario& scenario) {
+std::vector<double> default_turns(const DeformableSettings& scenario) {
     if (scenario.process == Process::translation) return {};
     if (robot_path(scenario) == Path::straight) return {0.0};
     std::vector<double> turns;  // -pi/4 + m pi/10, m = 0 ... 5 [model.md, Controllers]
@@ -22,7 +22,7 @@ std::vector<double> default_turns(const Scenario& scenario) {
     return turns;
 }
 
-bool plans_by_horizon(const Scenario& s) {
+bool plans_by_horizon(const DeformableSettings& s) {
     const std::vector<Controller>& controllers = s.arms.controllers;
     return std::find(controllers.begin(), controllers.end(), Controller::horizon) != controllers.end();
 }
@@ -60,7 +60,7 @@ void check_believed(const char* key, double sigma, double factor, bool harmful, 
     throw invalid_value(name, to_text(factor), why, "Give a factor above 0");
 }
 
-void check_noise(const Scenario& s) {
+void check_noise(const DeformableSettings& s) {
     const bool heading = s.process == Process::heading;
     check_believed("heading", s.noise.heading, s.filter.heading, heading && s.noise.initial_heading == 0,
                    "the heading's variance would stay 0 and P singular");
@@ -77,7 +77,7 @@ void check_noise(const Scenario& s) {
                             "the translation model has no heading", "Set it to 0 or use model.process=heading");
 }
 
-void check_edges(const Scenario& s) {
+void check_edges(const DeformableSettings& s) {
     const int features = static_cast<int>(s.features.positions.size());
     for (const Edge& edge : s.edges.list)
         if (edge.to >= features)
@@ -86,8 +86,8 @@ void check_edges(const Scenario& s) {
                                 "Name features 0 to " + std::to_string(features - 1));
 }
 
-void check_horizon(const Scenario& s) {
-    const Scenario filled = resolved(s);
+void check_horizon(const DeformableSettings& s) {
+    const DeformableSettings filled = resolved(s);
     const int steps = *filled.planner.horizon, candidates = candidate_count(filled);
     if (steps > 1 && !plans_by_horizon(s))
         throw invalid_value("planner.horizon", std::to_string(steps),
@@ -102,7 +102,7 @@ void check_horizon(const Scenario& s) {
                             "Give fewer steps, planner.speeds or planner.turns");
 }
 
-void check_planner(const Scenario& s) {
+void check_planner(const DeformableSettings& s) {
     const bool heading = s.process == Process::heading;
     if (s.planner.turns && s.planner.turns->empty() && heading)
         throw invalid_value("planner.turns", "none", "the heading model needs at least one", "Give turns in radians");
@@ -112,7 +112,7 @@ void check_planner(const Scenario& s) {
     check_horizon(s);
 }
 
-void check_arms(const Scenario& s) {
+void check_arms(const DeformableSettings& s) {
     const std::string process = s.process == Process::heading ? "heading" : "translation";
     std::vector<std::string> fitting;
     for (std::size_t i = 0; i < estimator_names().size(); ++i)
@@ -127,18 +127,18 @@ void check_arms(const Scenario& s) {
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);
-    for (const auto& [key, figures] :
+    for (const auto& [key, all_series] :
          {std::pair{"published.trace_P", &s.published.trace_P}, std::pair{"published.unseen", &s.published.unseen},
           std::pair{"published.pose_error", &s.published.pose_error}})
-        for (const PublishedFigure& figure : *figures)
-            if (std::find(names.begin(), names.end(), figure.arm) == names.end())
-                throw invalid_value(key, published_text(*figures), "'" + figure.arm + "' is not an arm",
+        for (const PublishedNumber& series : *all_series)
+            if (std::find(names.begin(), names.end(), series.arm) == names.end())
+                throw invalid_value(key, published_text(*all_series), "'" + series.arm + "' is not an arm",
                                     "Name arms such as " + joined(names));
 }
 
 }  // namespace
 
-Scenario resolved(Scenario scenario) {
+DeformableSettings resolved(DeformableSettings scenario) {
     const bool heading = scenario.process == Process::heading;
     if (!scenario.planner.speeds) scenario.planner.speeds = heading ? 10 : 5;
     if (!scenario.planner.turns) scenario.planner.turns = default_turns(scenario);
@@ -148,7 +148,7 @@ Scenario resolved(Scenario scenario) {
     return scenario;
 }
 
-void validate(const Scenario& scenario) {
+void validate(const DeformableSettings& scenario) {
     check_sensor(scenario.sensor);
     check_edges(scenario);
     check_noise(scenario);
@@ -156,7 +156,7 @@ void validate(const Scenario& scenario) {
     check_arms(scenario);
 }
 
-std::vector<Arm> arms_of(const Scenario& scenario) {
+std::vector<Arm> arms_of(const DeformableSettings& scenario) {
     std::vector<Arm> arms;
     for (const Controller controller : scenario.arms.controllers)
         for (const Estimator estimator : *scenario.arms.estimators) arms.push_back({controller, estimator});
@@ -168,7 +168,7 @@ std::string arm_name(const Arm& arm) {
            estimator_names()[static_cast<std::size_t>(arm.estimator)];
 }
 
-std::vector<Edge> edge_list(const Scenario& scenario) {
+std::vector<Edge> edge_list(const DeformableSettings& scenario) {
     const int features = static_cast<int>(scenario.features.positions.size());
     std::vector<Edge> edges;
     switch (scenario.edges.graph) {
@@ -185,13 +185,13 @@ std::vector<Edge> edge_list(const Scenario& scenario) {
     return edges;
 }
 
-int candidate_count(const Scenario& scenario) {
+int candidate_count(const DeformableSettings& scenario) {
     const int speeds = 2 * *scenario.planner.speeds + 1;
     if (scenario.process == Process::heading) return static_cast<int>(scenario.planner.turns->size()) * speeds;
     return robot_path(scenario) == Path::straight ? speeds : speeds * speeds;
 }
 
-Path robot_path(const Scenario& scenario) {
+Path robot_path(const DeformableSettings& scenario) {
     switch (scenario.fixed_path) {
         case FixedPath::straight: return Path::straight;
         case FixedPath::circle: return Path::circle;
@@ -200,9 +200,9 @@ Path robot_path(const Scenario& scenario) {
     return scenario.features.path;
 }
 
-int pose_size(const Scenario& scenario) { return scenario.process == Process::heading ? 3 : 2; }
+int pose_size(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 3 : 2; }
 
-int state_size(const Scenario& scenario) {
+int state_size(const DeformableSettings& scenario) {
     return pose_size(scenario) + 2 * static_cast<int>(scenario.features.positions.size());
 }
 

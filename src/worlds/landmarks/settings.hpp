@@ -2,9 +2,9 @@
 // The scenario of the world of landmarks [docs/landmarks.md]. One plain struct per concern; the defaults are the
 // classical loop on which the extended Kalman filter is known to lose its consistency.
 //
-// Units: lengths in `length_unit`, angles in radians; sigma is a standard deviation.
+// Targets: lengths in `length_unit`, angles in radians; sigma is a standard deviation.
 
-#include <credence/scenario.hpp>
+#include <credence/deformable_settings.hpp>
 
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ struct LoopSettings {
 };
 
 /// M landmarks about the polygon's centre, at equal angles, alternately farther out and nearer than its corners.
-struct LandmarkSettings {
+struct LandmarkPlacement {
     int count = 20;
     double offset = 1;                   ///< how much farther, how much nearer
     double prior = 10;                   ///< sigma of what is believed of one that was not seen yet
@@ -35,13 +35,13 @@ struct LandmarkNoiseSettings {
     double odometry = 0.1;
 };
 
-struct LandmarkScenario {
+struct LandmarkSettings {
     std::string name = "scenario";
     std::string title;
     std::string length_unit = "m";
     int poses = 601;                     ///< K, the first included
     LoopSettings loop;
-    LandmarkSettings landmarks;
+    LandmarkPlacement landmarks;
     LandmarkSensorSettings sensor;
     LandmarkNoiseSettings noise;
     std::vector<Estimator> estimators{Estimator::ekf, Estimator::ideal, Estimator::fej, Estimator::riekf,
@@ -49,6 +49,6 @@ struct LandmarkScenario {
 };
 
 /// Throws InputError naming the key where a value makes S or P singular, or an estimator has no heading.
-void validate(const LandmarkScenario& scenario);
+void validate(const LandmarkSettings& scenario);
 
 }  // namespace credence

@@ -1,4 +1,4 @@
-#include "cluster/mpi/mpi_post.hpp"
+#include "cluster/mpi/mpi_transport.hpp"
 
 #include <mpi.h>
 
@@ -12,22 +12,22 @@ namespace credence {
 namespace {
 
 /// MPI's own errors end the job, as its default is.
-class MpiPost : public Post {
+class MpiTransport : public Transport {
 public:
-    MpiPost() {
+    MpiTransport() {
         int provided = 0;
         MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
         if (provided < MPI_THREAD_FUNNELED) throw std::runtime_error("this MPI cannot be used beside threads");
         MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
         MPI_Comm_size(MPI_COMM_WORLD, &size_);
     }
-    ~MpiPost() override {
+    ~MpiTransport() override {
         if (abandoned_) return;  // the launcher ends a job of which a process ended without MPI_Finalize
         for (Sent& sent : on_the_way_) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
         MPI_Finalize();
     }
-    MpiPost(const MpiPost&) = delete;
-    MpiPost& operator=(const MpiPost&) = delete;
+    MpiTransport(const MpiTransport&) = delete;
+    MpiTransport& operator=(const MpiTransport&) = delete;
 
     int rank() const override { return rank_; }
     int size() const override { return size_; }
@@ -80,10 +80,10 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Post> start_mpi() {
+std::unique_ptr<Transport> start_mpi() {
     int before = 0;
     MPI_Initialized(&before);
-    return before == 0 ? std::make_unique<MpiPost>() : nullptr;
+    return before == 0 ? std::make_unique<MpiTransport>() : nullptr;
 }
 
 std::string mpi_library() {

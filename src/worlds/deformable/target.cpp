@@ -1,4 +1,4 @@
-// One unit of the engine. CMake compiles this file once for each instruction set, with CREDENCE_UNIT naming it and
+// One unit of the engine. CMake compiles this file once for each instruction set, with CREDENCE_TARGET naming it and
 // CREDENCE_LANES saying how many trials run at once. Nothing here may emit a symbol outside that namespace: no
 // containers, no library calls.
 
@@ -8,7 +8,7 @@
 #include "slam/trial/trial.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 namespace {
 
@@ -24,8 +24,8 @@ struct DeformableTrial {
 
     static double truncate(const View& problem) { return problem.world.truncate; }
     void run(const View& problem, const KeyedDraws<Real>& draws, Detail<Layout, Real>& detail, Workspace& work,
-             Real* columns, Real* figures) const {
-        run_trial(problem, controller, draws, detail, work, columns, figures);
+             Real* columns, Real* all_series) const {
+        run_trial(problem, controller, draws, detail, work, columns, all_series);
     }
 };
 
@@ -79,5 +79,5 @@ std::size_t workspace_size(const ProblemView& problem, Estimator estimator) {
     });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

@@ -6,7 +6,7 @@
 #include "engine/simulate_batch.hpp"
 
 namespace credence {
-inline namespace CREDENCE_UNIT {
+inline namespace CREDENCE_TARGET {
 
 namespace {
 
@@ -20,8 +20,8 @@ struct LandmarkTrial {
 
     static constexpr double truncate(const View&) { return __builtin_inf(); }
     void run(const View& problem, const KeyedDraws<Real>& draws, Detail<Layout, Real>& detail, Workspace& work,
-             Real* columns, Real* figures) const {
-        run_trial(problem, draws, detail, work, columns, figures);
+             Real* columns, Real* all_series) const {
+        run_trial(problem, draws, detail, work, columns, all_series);
     }
 };
 
@@ -39,5 +39,5 @@ std::size_t landmarks_workspace_size(const LandmarkView& problem, Estimator esti
     });
 }
 
-}  // namespace CREDENCE_UNIT
+}  // namespace CREDENCE_TARGET
 }  // namespace credence
