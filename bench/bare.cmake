@@ -23,19 +23,19 @@ endfunction()
 without(src/slam/trial/step_evaluation.hpp
   "        standardise(i)" "        (void)standardise"
   "(n - i) % 2 == 0) standardise(i + one)" "(n - i) % 2 == 0) (void)0"
-  "judgement.standardised_error[0] * judgement.standardised_error[0]" "error[0] * error[0] / P.entry[0][0]"
+  "evaluation.standardised_error[0] * evaluation.standardised_error[0]" "error[0] * error[0] / P.entry[0][0]"
   "    write(update.nis_features)" "    (void)0"
   "    write(update.nis_edges)" "    (void)0"
   "    write(update.unseen)" "    write(trace_P)"
-  "    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]" "    (void)([&](auto i) { return error[i] * error[i]"
-  "    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]" "    (void)([&](auto i) { return Real(reported) * belief.covariance.entry[i][i]"
-  "    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
+  "    add_by_group<Real>(layout, [&](auto i) { return error[i] * error[i]" "    (void)([&](auto i) { return error[i] * error[i]"
+  "    add_by_group<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]" "    (void)([&](auto i) { return Real(reported) * belief.covariance.entry[i][i]"
+  "    each(zero, n, [&](auto i) { write(evaluation.standardised_error[i] * inverse_root)" "    each(zero, n, [&](auto) { (void)inverse_root")
 without(src/slam/update.hpp
   "return nis_of_edges(belief.covariance, filter, layout, contrasts, work)" "return (void)work, Real(0)"
   "    update.nis_features = update.nis" "    (void)0")
 # What is left: NEES by block, NIS, its rows, trace(P).
 without(src/engine/simulate_batch.hpp
-  "problem.figure_count" "(problem.block_count + 3)"
+  "problem.series_count" "(problem.group_count + 3)"
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
 
 credence_target(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)

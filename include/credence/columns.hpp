@@ -65,11 +65,12 @@ int detailed_trials(int steps, int state_size);
 /// Lags at which innovations are correlated, 1 ... lag_count.
 inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
 
-/// A contiguous part of the state that is judged by itself.
+/// A group of components of the state, contiguous, that is judged by itself.
 struct ComponentGroup {
     std::string name;
     int first = 0, count = 0;
 };
+using StateBlock = ComponentGroup;  ///< its name in earlier releases
 
 /// A component of the state.
 struct Component {

@@ -49,7 +49,7 @@ struct Consistency {
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.
-Interval over_steps95(const BlockEvidence& block);
+Interval over_steps95(const GroupEvidence& block);
 
 /// Judges one arm. Intervals are Student's; those that speak against a block are Bonferroni-corrected over blocks and
 /// steps, those of the bias over components and steps. A single trial is judged by its NIS and the whiteness of its

@@ -39,7 +39,7 @@ struct Accuracy {
 };
 
 /// One block of the state.
-struct BlockEvidence {
+struct GroupEvidence {
     std::string block;
     int dimension = 0;
     Moments run;                               ///< of NEES/dim, averaged over each trial's steps
@@ -105,7 +105,7 @@ struct Evidence {
     std::int64_t left_out = 0;                 ///< trials that failed and are in no figure
     std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are in the figures
     int steps = 0;
-    std::vector<BlockEvidence> blocks;         ///< the whole state first
+    std::vector<GroupEvidence> blocks;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
     std::vector<NisEvidence> nis;              ///< all rows first; groups without rows are left out
     std::vector<Whiteness> whiteness;

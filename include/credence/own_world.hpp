@@ -13,8 +13,9 @@
 //       the keys of the scenario file, see OwnKeys.
 //   static std::vector<Component> W::components(const Settings&)
 //       name and unit of each component of the state, [n], n up to 1000. Names and units have no blanks.
-//   static std::vector<ComponentGroup> W::blocks(const Settings&)
-//       parts of the state that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway.
+//   static std::vector<ComponentGroup> W::groups(const Settings&)
+//       groups of components that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway. A
+//       function of the name `blocks`, as earlier releases called it, serves too.
 //   static std::vector<std::string> W::arms(const Settings&)
 //       the filters that every trial runs under, with the same draws.
 //   static int W::innovation_rows(const Settings&)
@@ -51,8 +52,9 @@ constexpr bool meets_the_world_contract() {
     static_assert(requires(OwnKeys<Settings> keys) { W::keys(keys); }, "a world has static keys(OwnKeys<Settings>&)");
     static_assert(requires(const Settings s) { { W::components(s) } -> std::same_as<std::vector<Component>>; },
                   "a world has static components(const Settings&), a vector of Component");
-    static_assert(requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<ComponentGroup>>; },
-                  "a world has static blocks(const Settings&), a vector of StateBlock");
+    static_assert(requires(const Settings s) { { W::groups(s) } -> std::same_as<std::vector<ComponentGroup>>; } ||
+                      requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<ComponentGroup>>; },
+                  "a world has static groups(const Settings&), a vector of ComponentGroup");
     static_assert(requires(const Settings s) { { W::arms(s) } -> std::same_as<std::vector<std::string>>; },
                   "a world has static arms(const Settings&), a vector of names");
     static_assert(requires(const Settings s) { { W::innovation_rows(s) } -> std::convertible_to<int>; },
@@ -104,11 +106,18 @@ private:
         Scenario scenario{W::name, basics.name, basics.title, basics.length_unit, basics.poses, {}, {}, {}, {}};
         scenario.settings = keys.settings(W::name, basics, settings);
         scenario.components = W::components(settings);
-        scenario.blocks = {{"all", 0, static_cast<int>(scenario.components.size())}};
-        for (ComponentGroup& block : W::blocks(settings)) scenario.blocks.push_back(std::move(block));
+        scenario.groups = {{"all", 0, static_cast<int>(scenario.components.size())}};
+        for (ComponentGroup& group : groups_of(settings)) scenario.groups.push_back(std::move(group));
         scenario.arms = W::arms(settings);
         check_declared(scenario);
         return scenario;
+    }
+
+    static std::vector<ComponentGroup> groups_of(const Settings& settings) {
+        if constexpr (requires { W::groups(settings); })
+            return W::groups(settings);
+        else
+            return W::blocks(settings);
     }
 
     static OwnReport report_of(const Settings& settings) {

@@ -30,7 +30,7 @@ struct Scenario {
     int poses = 20;                      ///< K, the first included: K - 1 steps
     std::vector<Setting> settings;       ///< every key of it, in the order in which they are shown
     std::vector<Component> components;   ///< of the state, [n]
-    std::vector<ComponentGroup> blocks;      ///< that are judged by themselves, the whole state (`all`) first
+    std::vector<ComponentGroup> groups;      ///< that are judged by themselves, the whole state (`all`) first
     std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
     SweepPoint sweep{};                  ///< its place in a grid; empty: in none
 };

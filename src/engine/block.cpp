@@ -69,7 +69,7 @@ struct Octets {
 
     void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
         const auto all_series = static_cast<std::size_t>(shape.series_count);
-        const auto blocks = static_cast<std::size_t>(shape.block_count);
+        const auto blocks = static_cast<std::size_t>(shape.group_count);
         trials = count;
         padded = (count + octet - 1) / octet * octet;
         steps = static_cast<std::size_t>(shape.poses - 1);

@@ -106,7 +106,7 @@ void fold(Unfolded<Real>& unfolded, const CommonView& problem, const Batch& batc
                 fold_series(unfolded, f, start, Known<fold_octets>{}, steps, batch);
             else
                 fold_series(unfolded, f, start, octets, steps, batch);
-    for (int b = 0; b < problem.block_count; ++b)
+    for (int b = 0; b < problem.group_count; ++b)
         fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
     unfolded.packs = 0;
 }

@@ -192,12 +192,12 @@ std::string figure_title(const std::string& column, const std::string& unit) {
     return unit == "1" ? name : name + " [" + unit + "]";
 }
 
-std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence) {
+std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence) {
     constexpr std::size_t most = 10;
-    std::vector<const BlockEvidence*> blocks;
-    for (const BlockEvidence& block : evidence.blocks) blocks.push_back(&block);
+    std::vector<const GroupEvidence*> blocks;
+    for (const GroupEvidence& block : evidence.blocks) blocks.push_back(&block);
     if (blocks.size() <= most) return blocks;
-    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const BlockEvidence* a, const BlockEvidence* b) {
+    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
         return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
     });
     blocks.resize(most);

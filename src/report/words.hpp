@@ -61,7 +61,7 @@ std::string figure_title(const std::string& column, const std::string& unit);
 
 /// The blocks worth a line: those of several parts, and the features (or whatever comes in numbers) that are farthest
 /// off.
-std::vector<const BlockEvidence*> shown_blocks(const Evidence& evidence);
+std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence);
 
 /// Of the values that are known.
 double mean_of(const std::vector<double>& values);

@@ -38,16 +38,16 @@ struct Layout {
     constexpr auto size() const { return feature(features()); }
 
     /// Blocks of the state that are judged by themselves, numbered in the order of state_blocks (record.hpp).
-    static constexpr Known<0> block_all{};
-    static constexpr Known<1> block_pose{};
-    static constexpr Known<2> block_heading{};   ///< heading model only
-    static constexpr Known<3> block_position{};  ///< heading model only
-    static constexpr Known<has_heading ? 4 : 2> block_features{};
+    static constexpr Known<0> group_all{};
+    static constexpr Known<1> group_pose{};
+    static constexpr Known<2> group_heading{};   ///< heading model only
+    static constexpr Known<3> group_position{};  ///< heading model only
+    static constexpr Known<has_heading ? 4 : 2> group_features{};
     template <int j>
-    static constexpr Known<block_features + 1 + j> block_feature(Known<j>) { return {}; }
-    static constexpr int block_feature(int j) { return block_features + 1 + j; }
-    static constexpr int largest_block_count = block_features + 1 + feature_capacity;
-    constexpr auto block_count() const { return block_feature(features()); }
+    static constexpr Known<group_features + 1 + j> group_feature(Known<j>) { return {}; }
+    static constexpr int group_feature(int j) { return group_features + 1 + j; }
+    static constexpr int largest_group_count = group_features + 1 + feature_capacity;
+    constexpr auto group_count() const { return group_feature(features()); }
 
 private:
     int features_;

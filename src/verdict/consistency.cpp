@@ -39,14 +39,14 @@ public:
     }
 
     Consistency run() {
-        for (const BlockEvidence& block : evidence_.blocks) look_at_block(block);
+        for (const GroupEvidence& block : evidence_.blocks) look_at_block(block);
         for (const BiasEvidence& bias : evidence_.bias) examine_bias(bias);
         decide();
         return verdict_;
     }
 
 private:
-    void look_at_block(const BlockEvidence& block) {
+    void look_at_block(const GroupEvidence& block) {
         const double margin = verdict_.limits.margin;
         const Interval time = over_steps95(block);
         all_inside_ = all_inside_ && within(time, margin);
@@ -78,7 +78,7 @@ private:
 
     /// Degrees of freedom of the NEES over all steps, from its spread over the trials: chi-square has 2 mean^2/variance.
     /// Not fewer than wholly correlated steps have, which are as good as one, and not more than independent ones.
-    double degrees_over_steps(const BlockEvidence& block) const {
+    double degrees_over_steps(const GroupEvidence& block) const {
         const double fewest = block.run.count * block.dimension,
                      told = 2 * block.run.count * std::pow(block.run.mean / block.run.standard_deviation, 2);
         return told > fewest ? std::min(told, fewest * evidence_.steps) : fewest;
@@ -169,7 +169,7 @@ const std::string& verdict_name(Verdict verdict) {
     return names[static_cast<int>(verdict)];
 }
 
-Interval over_steps95(const BlockEvidence& block) { return t_interval(block.run); }
+Interval over_steps95(const GroupEvidence& block) { return t_interval(block.run); }
 
 bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
     constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();

@@ -12,7 +12,7 @@ Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
 
 /// The block of the state that the nees series f is of.
-BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
 /// The block and chart that the series f of role nees_in_chart is of.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);

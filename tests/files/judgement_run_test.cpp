@@ -80,7 +80,7 @@ void check_near(const std::vector<double>& ours, const std::vector<double>& reco
 void check_blocks(const Evidence& run, const Evidence& record) {
     REQUIRE(run.blocks.size() == record.blocks.size());
     for (std::size_t b = 0; b < run.blocks.size(); ++b) {
-        const BlockEvidence &ours = run.blocks[b], &theirs = record.blocks[b];
+        const GroupEvidence &ours = run.blocks[b], &theirs = record.blocks[b];
         INFO(ours.block);
         CHECK(ours.block == theirs.block);
         check_near(ours.run.mean, theirs.run.mean);

@@ -38,7 +38,7 @@ void check_mean(const Summary& ours, double theirs, double their_error) {
 }
 
 double block_ratio(const ScenarioResults& results, std::size_t arm, const std::string& name) {
-    for (const BlockEvidence& b : evidence_of(results, results.arms[arm]).blocks)
+    for (const GroupEvidence& b : evidence_of(results, results.arms[arm]).blocks)
         if (b.block == name) return b.run.mean;
     FAIL("no block " << name);
     return 0;

@@ -58,7 +58,7 @@ TEST_CASE("calibration: NEES, coverage and accuracy of NumPy's draws are what Sc
     CHECK(found.trials == trials);
     REQUIRE(found.blocks.size() == expected()["blocks"].size());
     for (std::size_t b = 0; b < found.blocks.size(); ++b) {
-        const BlockEvidence& block = found.blocks[b];
+        const GroupEvidence& block = found.blocks[b];
         const Json& theirs = expected()["blocks"][b];
         CAPTURE(block.block);
         CHECK(block.block == theirs["block"]);

@@ -47,7 +47,7 @@ double least_shape_level() {
 void examine_groups(const Evidence& evidence, Calibration& calibration) {
     static const double coverage_level[] = {wilson_level(0.5), wilson_level(0.9), wilson_level(0.95),
                                             wilson_level(0.99)};
-    for (const BlockEvidence& block : evidence.blocks) {
+    for (const GroupEvidence& block : evidence.blocks) {
         const std::string of = " of " + block.block;
         const BandedRatio& anees = block.anees;
         calibration.exactly("ANEES at a step" + of, 0.05, misses(anees.band[middle], anees.ratio[middle]));
@@ -68,7 +68,7 @@ void examine_groups(const Evidence& evidence, Calibration& calibration) {
 }
 
 void examine_accuracy(const Evidence& evidence, double least_level, Calibration& calibration) {
-    for (const BlockEvidence& block : evidence.blocks)
+    for (const GroupEvidence& block : evidence.blocks)
         calibration.between("RMSE over predicted of " + block.block, least_level, most_t_level,
                             misses(block.accuracy.ratio_ci95, 1));
 }

@@ -29,7 +29,7 @@ Verdicts verdicts(const DeformableSettings& scenario, std::int64_t trials) {
         std::map<std::string, int> found;
         for (const Finding& finding : judged.findings) found[finding.what + " " + finding.where] = 1;
         for (const auto& [finding, one] : found) result.found[finding] += one;
-        for (const BlockEvidence& block : evidence.blocks) {
+        for (const GroupEvidence& block : evidence.blocks) {
             sums[block.block].first += block.run.mean;
             sums[block.block].second += block.run.mean * block.run.mean;
         }

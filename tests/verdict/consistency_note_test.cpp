@@ -26,7 +26,7 @@ Evidence evidence_of_values(const std::vector<double>& nees) {
     Evidence evidence;
     evidence.trials = static_cast<std::int64_t>(nees.size());
     evidence.steps = 1;
-    BlockEvidence block;
+    GroupEvidence block;
     block.block = "all";
     block.dimension = 1;
     block.run = moments_from_sums(evidence.trials, sum, squares);

@@ -28,7 +28,7 @@ Consistency verdict_of(const DeformableSettings& scenario, std::int64_t trials, 
 }
 
 double ratio(const Evidence& evidence, const std::string& block) {
-    for (const BlockEvidence& b : evidence.blocks)
+    for (const GroupEvidence& b : evidence.blocks)
         if (b.block == block) return b.run.mean;
     FAIL("no block " << block);
     return 0;

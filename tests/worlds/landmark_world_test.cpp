@@ -42,7 +42,7 @@ TEST_CASE("landmark world: a scenario names its world, and its text reads back a
     CHECK(declared.length_unit == "km");
     CHECK(declared.arms == std::vector<std::string>{"fixed.riekf", "fixed.ekf"});
     CHECK(declared.components.size() == 3 + 2 * 9);
-    CHECK(declared.blocks.size() == 5 + 9);
+    CHECK(declared.groups.size() == 5 + 9);
     const Scenario again = read_declaration_text(scenario_text(declared), "test", "other");
     CHECK(again.settings == declared.settings);
     CHECK(again.arms == declared.arms);

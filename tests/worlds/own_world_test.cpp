@@ -143,7 +143,7 @@ TEST_CASE("own world: the filter that knows its model is consistent, the calm on
     REQUIRE(kf.blocks.size() == 3);
     CHECK(kf.blocks[2].block == "velocity");
     // Means of 4000 trials, each over 29 correlated steps: five standard errors.
-    for (const BlockEvidence& block : kf.blocks) CHECK(std::abs(block.run.mean - 1) < 5 * block.run.standard_error);
+    for (const GroupEvidence& block : kf.blocks) CHECK(std::abs(block.run.mean - 1) < 5 * block.run.standard_error);
     CHECK(calm.blocks[2].run.mean > 2 * calm.blocks[1].run.mean / 1.5);
     CHECK(kf.nis.front().ratio == Approx(1).margin(0.02));
     CHECK(std::abs(kf.whiteness.front().correlation) < kf.whiteness.front().simultaneous_bound);
@@ -245,7 +245,7 @@ TEST_CASE("own world: what a world does wrong is said, not counted") {
     REQUIRE_THROWS_WITH(run(shorter, 1), "world short: a trial took 18 steps, not 19.");
     REQUIRE_THROWS_AS(add_own_world<Tracker>(), InputError);
     Scenario broken = tracker();
-    broken.blocks.push_back({"beyond", 3, 2});
+    broken.groups.push_back({"beyond", 3, 2});
     REQUIRE_THROWS_WITH(check_declared(broken), "world tracker: block beyond is not in the state.");
     broken = tracker();
     broken.components[0].name = "p x";

@@ -11,7 +11,7 @@ struct SimulationShape {
     int poses = 0;          ///< K
     int state_size = 0;     ///< n
     int column_count = 0, series_count = 0;
-    int block_count = 0;    ///< blocks of the state: the first series are their NEES, the whole state's before all
+    int group_count = 0;    ///< blocks of the state: the first series are their NEES, the whole state's before all
 };
 
 /// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.

@@ -142,7 +142,7 @@ RecordFile::RecordFile(const Handle& root, std::int64_t part_numbers)
     shape_.trials = single_ ? 1 : static_cast<std::int64_t>(extents[0]);
     shape_.steps = static_cast<int>(extents[rank - 2]);
     shape_.n = static_cast<int>(extents[rank - 1]);
-    shape_.blocks = read_blocks(root, shape_.n);
+    shape_.groups = read_blocks(root, shape_.n);
     shape_.covariance_epsilon = covariance_.epsilon();
     if (innovation_) add_innovations();
     if (hdf5::has_link(root, "steps"))

@@ -61,9 +61,9 @@ ArmResults empty_arm(const ScenarioResults& results) {
 }  // namespace
 
 std::size_t pose_block(const RecordShape& shape) {
-    const auto found = std::find_if(shape.blocks.begin(), shape.blocks.end(),
+    const auto found = std::find_if(shape.groups.begin(), shape.groups.end(),
                                     [](const ComponentGroup& block) { return block.name == "pose"; });
-    return found == shape.blocks.end() ? 0 : static_cast<std::size_t>(found - shape.blocks.begin());
+    return found == shape.groups.end() ? 0 : static_cast<std::size_t>(found - shape.groups.begin());
 }
 
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,

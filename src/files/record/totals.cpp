@@ -32,7 +32,7 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values;
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
-    for (const ComponentGroup& block : shape.blocks)
+    for (const ComponentGroup& block : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
 }
@@ -148,7 +148,7 @@ void RecordTotals::add_totals() {
             run += value;
             totals.sum[k].add(value);
             if (!all_series_.list[f].integer) totals.square_sum[k].add(value * value);
-            for (std::size_t l = 0; f < shape_.blocks.size() && l < coverage_level_count; ++l)
+            for (std::size_t l = 0; f < shape_.groups.size() && l < coverage_level_count; ++l)
                 totals.covered[k * coverage_level_count + l] += value < bounds_[f * coverage_level_count + l];
         }
         if (!innovations) run *= steps / count;

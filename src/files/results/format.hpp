@@ -53,7 +53,7 @@ inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario&
     hdf5::write_text(group, "title", scenario.title);
     hdf5::write_text(group, "length_unit", scenario.length_unit);
     hdf5::write_text(group, "scenario", scenario_text(scenario));
-    hdf5::write_text(group, "blocks", blocks_text(scenario.blocks));
+    hdf5::write_text(group, "blocks", blocks_text(scenario.groups));
     write_sweep(group, scenario.sweep);
     return group;
 }

@@ -59,7 +59,7 @@ Json ratios_json(const Ratios& of) {
             {"anees_se", each_json(of.step, [](const Moments& step) { return step.standard_error; })}};
 }
 
-Json block_json(const BlockEvidence& block) {
+Json block_json(const GroupEvidence& block) {
     Json json = ratios_json(block);
     json["variance_ratio"] = block.variance_ratio;
     json["coverage"] = each_json(block.coverage, coverage_json);

@@ -86,7 +86,7 @@ public:
     EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
 
     std::string text() {
-        for (const BlockEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const GroupEvidence& block : arm_.evidence.blocks) add_block(block);
         for (const ChartEvidence& chart : arm_.evidence.charts) {
             const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
             add_moments(name, chart.run);
@@ -124,7 +124,7 @@ private:
         for (std::size_t k = 0; k < values.size(); ++k)
             add(column + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
     }
-    void add_block(const BlockEvidence& block) {
+    void add_block(const GroupEvidence& block) {
         add_moments("nees_per_dimension:" + block.block, block.run);
         for (std::size_t k = 0; k < block.step.size(); ++k)
             add_moments("nees_per_dimension:" + block.block + ":" + std::to_string(k + 1), block.step[k]);

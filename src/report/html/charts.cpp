@@ -38,8 +38,8 @@ struct Rows {
     }
 };
 
-const BlockEvidence* block_named(const ArmReport& arm, const std::string& name) {
-    for (const BlockEvidence& block : arm.evidence.blocks)
+const GroupEvidence* block_named(const ArmReport& arm, const std::string& name) {
+    for (const GroupEvidence& block : arm.evidence.blocks)
         if (block.block == name) return &block;
     return nullptr;
 }
@@ -49,7 +49,7 @@ Rows rows_of(const Part& part) {
     Rows rows{{}, part.arms.size()};
     for (const ArmReport* arm : part.arms) {
         if (!rows.names.empty() || arm->evidence.trials == 0) continue;
-        for (const BlockEvidence* block : shown_blocks(arm->evidence)) rows.names.push_back(block->block);
+        for (const GroupEvidence* block : shown_blocks(arm->evidence)) rows.names.push_back(block->block);
     }
     return rows;
 }
@@ -59,7 +59,7 @@ template <class Visit>
 void each_block(const Part& part, const Rows& rows, const Visit& visit) {
     for (std::size_t row = 0; row < rows.names.size(); ++row)
         for (std::size_t arm = 0; arm < part.arms.size(); ++arm)
-            if (const BlockEvidence* block = block_named(*part.arms[arm], rows.names[row]))
+            if (const GroupEvidence* block = block_named(*part.arms[arm], rows.names[row]))
                 if (!std::isnan(block->run.mean)) visit(row, arm, *block);
 }
 
@@ -117,7 +117,7 @@ Html equivalence_chart(const Part& part) {
     const double margin = part.report.limits.margin;
     Range range;
     for (const double end : {1 - 1.6 * margin, 1 + 1.6 * margin}) range.include(end);
-    each_block(part, rows, [&](std::size_t, std::size_t, const BlockEvidence& block) {
+    each_block(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& block) {
         range.include(block.run.mean);
         if (const Interval interval = over_steps95(block); interval.low > 0)
             range.include(interval.low), range.include(interval.high);
@@ -130,7 +130,7 @@ Html equivalence_chart(const Part& part) {
     Axes{x, {ScaleKind::linear, 0, 1, rows.bottom(), top}, "NEES/dim, mean over the steps, 95 % interval", "", 5, 0}
         .draw(svg);
     std::string described;
-    each_block(part, rows, [&](std::size_t row, std::size_t arm, const BlockEvidence& block) {
+    each_block(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& block) {
         const Interval interval = over_steps95(block);
         const double y = rows.y(row, arm);
         const std::string says = part.arms[arm]->arm + ", " + block.block + ": NEES/dim " +
@@ -148,7 +148,7 @@ Html coverage_chart(const Part& part) {
     const Rows rows = rows_of(part);
     if (rows.names.empty()) return {};
     double least = 0.4;
-    each_block(part, rows, [&](std::size_t, std::size_t, const BlockEvidence& block) {
+    each_block(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& block) {
         for (const Coverage& level : block.coverage) least = std::min(least, level.over_steps);
     });
     const Scale x{ScaleKind::normal, std::max(0.0, least - 0.05), 0.9997, left, right};
@@ -163,7 +163,7 @@ Html coverage_chart(const Part& part) {
     svg.text({left, 12}, Anchor::start, "◀ covers too little");
     svg.text({right, 12}, Anchor::end, "too much ▶");
     std::string described;
-    each_block(part, rows, [&](std::size_t row, std::size_t arm, const BlockEvidence& block) {
+    each_block(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& block) {
         described += part.arms[arm]->arm + ", " + block.block + ": ";
         for (const Coverage& level : block.coverage) {
             const std::string says =

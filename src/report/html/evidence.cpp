@@ -34,7 +34,7 @@ Html blocks_table(const Part& part) {
         {"block", "dimension", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band", "var/2dim",
          "RMSE", "RMSE/sigma", "95 %"});
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
-        for (const BlockEvidence* block : shown_blocks(evidence)) {
+        for (const GroupEvidence* block : shown_blocks(evidence)) {
             const Interval over_steps = over_steps95(*block);
             const int digits = decimals_for(half_width(over_steps)),
                       ratio_digits = decimals_for(half_width(block->accuracy.ratio_ci95));
@@ -86,7 +86,7 @@ Html coverage_table(const Part& part) {
                               "mean over the steps",
                           heads);
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
-        for (const BlockEvidence* block : shown_blocks(evidence)) {
+        for (const GroupEvidence* block : shown_blocks(evidence)) {
             std::vector<Html> cells;
             for (const Coverage& level : block->coverage)
                 cells.push_back(number_html_as(level.over_steps, number(100 * level.over_steps, 1) + " %"));

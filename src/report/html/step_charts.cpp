@@ -155,7 +155,7 @@ Html nees_panels(const Part& part) {
     Panels panels;
     for (std::size_t i = 0; i < part.arms.size(); ++i)
         if (part.arms[i]->evidence.trials > 0)
-            for (const BlockEvidence* block : shown_blocks(part.arms[i]->evidence))
+            for (const GroupEvidence* block : shown_blocks(part.arms[i]->evidence))
                 panels.add(block->block, {part.arms[i]->arm, i, &block->anees});
     return panels_html(part, panels.list(), "NEES/dim", "nees");
 }

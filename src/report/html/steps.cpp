@@ -43,7 +43,7 @@ std::string name_of(const ArmReport& arm) { return arm.scenario + ", " + arm.arm
 /// The value at a step, or NaN where the list has none.
 double at(const std::vector<double>& values, std::size_t k) { return k < values.size() ? values[k] : std::nan(""); }
 
-Html block_table(const ArmReport& arm, const BlockEvidence& block) {
+Html block_table(const ArmReport& arm, const GroupEvidence& block) {
     std::vector<std::string> heads{"NEES/dim",        "standard error", "degrees", "band 95 %",
                                    "joint band 95 %", "var/2dim",       "RMSE",    "predicted"};
     for (const Coverage& level : block.coverage) {
@@ -113,7 +113,7 @@ Html step_tables(const Part& part) {
     for (const ArmReport* arm : part.arms) {
         if (arm->evidence.trials == 0) continue;
         Html tables;
-        for (const BlockEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
+        for (const GroupEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
         for (const ChartEvidence& chart : arm->evidence.charts) tables += chart_table(*arm, chart);
         for (const NisEvidence& nis : arm->evidence.nis) tables += nis_table(*arm, nis);
         html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + distribution_table(*arm));

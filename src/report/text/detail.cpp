@@ -50,7 +50,7 @@ std::string figure_part(const Report& report, const std::string& scenario, const
     return text;
 }
 
-std::string block_row(const BlockEvidence& block) {
+std::string block_row(const GroupEvidence& block) {
     const Coverage& coverage = block.coverage[2];
     return "    " + padded(block.block, 14, false) + padded(with_interval(block.run.mean, over_steps95(block)), 20) +
            padded(of_steps(block.anees.outside_simultaneous, block.anees.observed), 12) +
@@ -102,7 +102,7 @@ std::string consistency_part(const ArmReport& arm) {
     std::string text = "  " + padded(arm.arm, 16, false) + padded("NEES/dim", 20) + padded("steps out", 12) +
                        padded("95 % covers", 12) + padded("var/2dim", 12) + padded("RMSE/sigma", 20) + "\n";
     const auto blocks = shown_blocks(arm.evidence);
-    for (const BlockEvidence* block : blocks) text += block_row(*block);
+    for (const GroupEvidence* block : blocks) text += block_row(*block);
     if (blocks.size() < arm.evidence.blocks.size())
         text += "    (" + std::to_string(arm.evidence.blocks.size() - blocks.size()) +
                 " more blocks are nearer to 1; JSON has all)\n";

@@ -132,7 +132,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
     const std::vector<ComponentGroup> blocks = state_blocks(scenario_);
-    view_.block_count = static_cast<int>(blocks.size());
+    view_.group_count = static_cast<int>(blocks.size());
     coverage_bounds_ = coverage_bounds(blocks);
     view_.coverage_bounds = coverage_bounds_.data();
     view_.series_count = static_cast<int>(step_series(scenario_).size());

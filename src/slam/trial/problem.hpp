@@ -20,10 +20,10 @@ struct CommonView {
     int poses = 0, features = 0, state_size = 0;
     SensorParameters sensor;
     FilterParameters filter;
-    int block_count = 0;
+    int group_count = 0;
     int series_count = 0;
     Charts charts = Charts::euclidean;
-    const double* coverage_bounds = nullptr;  ///< [block_count, coverage_level_count] quantiles of chi-square
+    const double* coverage_bounds = nullptr;  ///< [group_count, coverage_level_count] quantiles of chi-square
 };
 
 /// What a trial in the deforming world reads beside that.

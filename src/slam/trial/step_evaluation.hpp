@@ -87,51 +87,51 @@ bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real sq
 /// A belief's errors, judged: NEES of every block, in the order of Layout's, with each block's own P; e_i/sqrt(P_ii).
 template <class Layout, class Real>
 struct StepEvaluation {
-    Real nees[Layout::largest_block_count], standardised_error[Layout::capacity];
+    Real nees[Layout::largest_group_count], standardised_error[Layout::capacity];
     Mask<Real> positive_definite{};
 };
 
 template <class Layout, class Real, int capacity>
-CREDENCE_INLINE void judge_blocks(const Belief<Real, capacity>& belief, const Layout& layout, const Real* error,
-                                  Elimination<Real, capacity>& work, StepEvaluation<Layout, Real>& judgement) {
+CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const Layout& layout, const Real* error,
+                                  Elimination<Real, capacity>& work, StepEvaluation<Layout, Real>& evaluation) {
     const auto n = layout.size();
     const auto& P = belief.covariance;
-    Real* nees = judgement.nees;
-    judgement.positive_definite = all_lanes<Real>();
+    Real* nees = evaluation.nees;
+    evaluation.positive_definite = all_lanes<Real>();
     const auto judge = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
         nested_squared_errors(P, error, first, last, work, [&](auto i, const SquaredError<Real>& result) {
             keep(i, result.value);
             if (i == first)
-                judgement.positive_definite = both(judgement.positive_definite, result.positive_definite);
+                evaluation.positive_definite = both(evaluation.positive_definite, result.positive_definite);
         });
     };
-    const auto standardise = [&](auto i) { judgement.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
+    const auto standardise = [&](auto i) { evaluation.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
     judge(zero, n, [&](auto i, Real value) {
-        if (i == 0) nees[Layout::block_all] = value;
-        if (i == Layout::pose_size) nees[Layout::block_features] = value;
-        if (i == n - two) nees[Layout::block_feature(layout.features() - one)] = value;
+        if (i == 0) nees[Layout::group_all] = value;
+        if (i == Layout::pose_size) nees[Layout::group_features] = value;
+        if (i == n - two) nees[Layout::group_feature(layout.features() - one)] = value;
         // Done here, the roots fill the time in which the elimination waits for its pivots.
         standardise(i);
         if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
     });
     judge(zero, Layout::pose_size, [&](auto i, Real value) {
-        if (i == 0) nees[Layout::block_pose] = value;
+        if (i == 0) nees[Layout::group_pose] = value;
         if constexpr (Layout::has_heading)
-            if (i == Layout::position) nees[Layout::block_position] = value;
+            if (i == Layout::position) nees[Layout::group_position] = value;
     });
     if constexpr (Layout::has_heading)
-        nees[Layout::block_heading] = judgement.standardised_error[0] * judgement.standardised_error[0];
+        nees[Layout::group_heading] = evaluation.standardised_error[0] * evaluation.standardised_error[0];
     each(zero, layout.features() - one, [&](auto j) {
         const auto f = Layout::feature(j);
         judge(f, f + two, [&](auto i, Real value) {
-            if (i == f) nees[Layout::block_feature(j)] = value;
+            if (i == f) nees[Layout::group_feature(j)] = value;
         });
     });
 }
 
-/// square(i) of a state's components, added up by block: told(sum) in the order of Layout's blocks.
-template <class Real, class Layout, class Square, class Told>
-CREDENCE_INLINE void add_by_block(const Layout& layout, const Square& square, Told&& told) {
+/// square(i) of a state's components, added up by block: reported(sum) in the order of Layout's blocks.
+template <class Real, class Layout, class Square, class Reported>
+CREDENCE_INLINE void add_by_group(const Layout& layout, const Square& square, Reported&& reported) {
     constexpr auto r = Layout::position;
     const auto of_feature = [&](auto j) {
         const auto f = Layout::feature(j);
@@ -142,14 +142,14 @@ CREDENCE_INLINE void add_by_block(const Layout& layout, const Square& square, To
     if constexpr (Layout::has_heading) pose = square(Layout::heading) + position;
     Real features = Real(0);
     each(zero, layout.features(), [&](auto j) { features = features + of_feature(j); });
-    told(pose + features);
-    told(pose);
+    reported(pose + features);
+    reported(pose);
     if constexpr (Layout::has_heading) {
-        told(square(Layout::heading));
-        told(position);
+        reported(square(Layout::heading));
+        reported(position);
     }
-    told(features);
-    each(zero, layout.features(), [&](auto j) { told(of_feature(j)); });
+    reported(features);
+    each(zero, layout.features(), [&](auto j) { reported(of_feature(j)); });
 }
 
 /// Judges the belief at pose k against the truth: writes the step's series (in the order of step_series) and sums.
@@ -165,27 +165,27 @@ CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout
     const auto write = [&](Real value) { *next = value, next += steps; };
 
     Real error[state_capacity];
-    StepEvaluation<Layout, Real> judgement;
+    StepEvaluation<Layout, Real> evaluation;
     estimation_error(belief, truth, layout, error);
     near_at_hand(layout, work, [&](auto& left) CREDENCE_INLINE_LAMBDA {
-        judge_blocks(belief, layout, error, left, judgement);
+        evaluate_groups(belief, layout, error, left, evaluation);
     });
     // What is reported is P times a factor, 1 but for tests of the judge.
     const double reported = problem.filter.covariance_factor;
-    const Mask<Real> positive_definite = both(update.positive_definite, judgement.positive_definite);
-    const Real whole = judgement.nees[Layout::block_all] * Real(1 / reported);
+    const Mask<Real> positive_definite = both(update.positive_definite, evaluation.positive_definite);
+    const Real whole = evaluation.nees[Layout::group_all] * Real(1 / reported);
     const Real trace_P = Real(reported) * trace(belief.covariance, n);
     const Real squared_error = squared_pose_error<Layout>(error);
-    each(zero, layout.block_count(), [&](auto b) { write(judgement.nees[b] * Real(1 / reported)); });
+    each(zero, layout.group_count(), [&](auto b) { write(evaluation.nees[b] * Real(1 / reported)); });
     write(update.nis);
     write(update.rows);
     write(update.nis_features);
     write(update.nis_edges);
     write(update.unseen);
-    add_by_block<Real>(layout, [&](auto i) { return error[i] * error[i]; }, write);
-    add_by_block<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]; }, write);
+    add_by_group<Real>(layout, [&](auto i) { return error[i] * error[i]; }, write);
+    add_by_group<Real>(layout, [&](auto i) { return Real(reported) * belief.covariance.entry[i][i]; }, write);
     const Real inverse_root = Real(1 / __builtin_sqrt(reported));
-    each(zero, n, [&](auto i) { write(judgement.standardised_error[i] * inverse_root); });
+    each(zero, n, [&](auto i) { write(evaluation.standardised_error[i] * inverse_root); });
     if constexpr (Layout::has_heading)
         if (problem.charts == Charts::euclidean_and_invariant) {
             const InvariantNees<Real> nees = nees_in_invariant_chart(belief, layout, error, work);

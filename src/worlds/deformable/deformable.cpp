@@ -60,7 +60,7 @@ std::unique_ptr<const World> deformable_world() { return std::make_unique<Deform
 DeformableSimulation::DeformableSimulation(const Problem& problem, Target target)
     : problem_(problem), target_(std::move(target)), arms_(arms_of(problem.scenario())) {
     const ProblemView& view = problem.view();
-    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.block_count};
+    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.group_count};
 }
 
 std::size_t DeformableSimulation::workspace_size(std::size_t arm) const {

@@ -21,7 +21,7 @@ Scenario with_settings(const DeformableSettings& scenario) {
 Scenario scenario_of(const DeformableSettings& scenario) {
     Scenario declared = with_settings(scenario);
     declared.components = state_components(scenario);
-    declared.blocks = state_blocks(scenario);
+    declared.groups = state_blocks(scenario);
     for (const Arm& arm : arms_of(scenario)) declared.arms.push_back(arm_name(arm));
     return declared;
 }

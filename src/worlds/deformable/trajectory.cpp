@@ -65,8 +65,8 @@ public:
         note_belief(layout, belief, step);
         const auto series = [&](int f) { return all_series[f * (problem_.poses - 1) + k - 1]; };
         step.nees = series(0);
-        step.nis = series(problem_.block_count);
-        step.rows = static_cast<int>(series(problem_.block_count + 1));
+        step.nis = series(problem_.group_count);
+        step.rows = static_cast<int>(series(problem_.group_count + 1));
     }
 
 private:

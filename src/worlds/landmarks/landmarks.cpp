@@ -69,7 +69,7 @@ LandmarkSettings landmark_scenario_of(const Scenario& declared) {
 LandmarkSimulation::LandmarkSimulation(const LandmarkSettings& scenario, Target target)
     : problem_(scenario), target_(std::move(target)), arms_(scenario.estimators) {
     const LandmarkView& view = problem_.view();
-    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.block_count};
+    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.group_count};
 }
 
 std::size_t LandmarkSimulation::workspace_size(std::size_t arm) const {

@@ -27,7 +27,7 @@ LandmarkProblem::LandmarkProblem(const LandmarkSettings& scenario) {
     view_.state_size = state_size(slam);
     const std::vector<ComponentGroup> blocks = state_blocks(slam);
     coverage_bounds_ = coverage_bounds(blocks);
-    view_.block_count = static_cast<int>(blocks.size());
+    view_.group_count = static_cast<int>(blocks.size());
     view_.coverage_bounds = coverage_bounds_.data();
     view_.charts = charts_of(slam);
     view_.series_count = static_cast<int>(landmark_series(scenario).size());

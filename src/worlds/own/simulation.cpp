@@ -26,7 +26,7 @@ RecordShape judged_shape(const Scenario& scenario, const OwnReport& report) {
     shape.steps = scenario.poses - 1;
     shape.n = static_cast<int>(scenario.components.size());
     shape.m = report.largest_innovation;
-    shape.blocks = scenario.blocks;
+    shape.groups = scenario.groups;
     shape.covariance_epsilon = shape.innovation_epsilon = std::numeric_limits<double>::epsilon();
     return shape;
 }
@@ -46,10 +46,10 @@ struct Case {
           report(reported),
           columns(own_columns(declared, reported)),
           shape(judged_shape(declared, reported)),
-          all_series(declared.components, declared.blocks,
+          all_series(declared.components, declared.groups,
                   reported.largest_innovation > 0 ? Innovations::given : Innovations::none),
           run(std::move(one)) {
-        for (const ComponentGroup& block : scenario.blocks)
+        for (const ComponentGroup& block : scenario.groups)
             for (const double level : coverage_levels)
                 coverage_bounds.push_back(stable_chi_square_quantile(level, block.count));
     }
@@ -228,7 +228,7 @@ public:
                     batch_.errors[(c * steps + k) * padded + i] = judged.errors()[k * n + c];
         if (!judged.counts()) return;
         for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, judged);
-        for (std::size_t b = 0; b < case_.scenario.blocks.size(); ++b) add_coverage(b, judged);
+        for (std::size_t b = 0; b < case_.scenario.groups.size(); ++b) add_coverage(b, judged);
         if (batch_.errors != nullptr) add_products(place, judged.products());
     }
 
@@ -269,7 +269,7 @@ public:
     OwnSimulation(const Scenario& scenario, const OwnReport& report, std::function<void(OwnTrial&)> run)
         : case_(scenario, report, std::move(run)),
           shape_{scenario.poses, case_.shape.n, static_cast<int>(case_.columns.size()),
-                 static_cast<int>(case_.all_series.list.size()), static_cast<int>(scenario.blocks.size())} {}
+                 static_cast<int>(case_.all_series.list.size()), static_cast<int>(scenario.groups.size())} {}
 
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t) const override { return 0; }

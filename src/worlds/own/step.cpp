@@ -41,7 +41,7 @@ std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, E
 StateSeries record_series(const RecordShape& shape) {
     std::vector<Component> components;
     for (int j = 0; j < shape.n; ++j) components.push_back({"x" + std::to_string(j), "1"});
-    StateSeries all_series(components, shape.blocks, shape.has_innovations() ? Innovations::given : Innovations::none);
+    StateSeries all_series(components, shape.groups, shape.has_innovations() ? Innovations::given : Innovations::none);
     for (Series& series : all_series.list)
         if (series.role == SeriesRole::squared_error || series.role == SeriesRole::variance)
             series.unit = "unit of error squared";
@@ -54,11 +54,11 @@ bool figures_add_up(const double* all_series, std::size_t count) {
 }
 
 StepEvaluator::StepEvaluator(const RecordShape& shape, const StateSeries& all_series)
-    : shape_(shape), places_(all_series), factors_(shape.blocks.size()), solved_(shape.blocks.size()) {}
+    : shape_(shape), places_(all_series), factors_(shape.groups.size()), solved_(shape.groups.size()) {}
 
 std::string StepEvaluator::judge(const CheckedStep& step, double* all_series, double* whitened) {
-    for (std::size_t b = 0; b < shape_.blocks.size(); ++b) {
-        const ComponentGroup& block = shape_.blocks[b];
+    for (std::size_t b = 0; b < shape_.groups.size(); ++b) {
+        const ComponentGroup& block = shape_.groups[b];
         const auto P = step.P.block(block.first, block.first, block.count, block.count);
         const auto e = step.e.segment(block.first, block.count);
         const std::string wrong = factor(P, shape_.covariance_epsilon, factors_[b]);

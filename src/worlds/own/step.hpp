@@ -19,7 +19,7 @@ struct RecordShape {
     int steps = 0;
     int n = 0;                       ///< components of the state
     int m = 0;                       ///< rows of an innovation; 0 without innovations
-    std::vector<ComponentGroup> blocks;  ///< all, and those of the attribute `blocks`
+    std::vector<ComponentGroup> groups;  ///< all, and those of the attribute `blocks`
     double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
     std::vector<int> declared;       ///< [trials] steps of each trial by the dataset `steps`; empty without it
     int longest = 0;                 ///< steps of the longest trial, by its errors

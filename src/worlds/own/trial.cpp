@@ -36,7 +36,7 @@ void check_names(const std::string& world, const std::string& what, const std::v
 }  // namespace
 
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report) {
-    const std::string unit = squared_unit(scenario.components, scenario.blocks.front());
+    const std::string unit = squared_unit(scenario.components, scenario.groups.front());
     const auto real = [&](const std::string& name, const std::string& long_name, const std::string& of) {
         return Column{name, long_name, of, ColumnType::real, nan};
     };
@@ -52,7 +52,7 @@ std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& repor
 }
 
 std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report) {
-    return StateSeries(scenario.components, scenario.blocks,
+    return StateSeries(scenario.components, scenario.groups,
                         report.largest_innovation > 0 ? Innovations::given : Innovations::none)
         .list;
 }
@@ -60,7 +60,7 @@ std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report
 void check_declared(const Scenario& scenario) {
     const auto n = static_cast<int>(scenario.components.size());
     check_names(scenario.world, "components", scenario.components, [](const Component& one) { return one.name; });
-    check_names(scenario.world, "blocks", scenario.blocks, [](const ComponentGroup& one) { return one.name; });
+    check_names(scenario.world, "blocks", scenario.groups, [](const ComponentGroup& one) { return one.name; });
     for (const std::string& arm : scenario.arms)
         if (!names_arm(arm))
             throw std::invalid_argument("world " + scenario.world + ": " + printable(arm) + " is no name for an arm.");
@@ -69,7 +69,7 @@ void check_declared(const Scenario& scenario) {
     for (const Component& component : scenario.components)
         if (!is_word(component.unit))
             throw std::invalid_argument("world " + scenario.world + ": a component's unit is one word, such as m/s.");
-    for (const ComponentGroup& block : scenario.blocks)
+    for (const ComponentGroup& block : scenario.groups)
         if (block.first < 0 || block.count < 1 || block.first + block.count > n)
             throw std::invalid_argument("world " + scenario.world + ": block " + block.name + " is not in the state.");
 }

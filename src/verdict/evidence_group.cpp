@@ -126,8 +126,8 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
     }
 }
 
-BlockEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
-    BlockEvidence evidence;
+GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+    GroupEvidence evidence;
     fill_ratios(results, arm, f, evidence);
     for (const Moments& step : evidence.step) {
         const double deviation = step.standard_deviation * evidence.dimension;
