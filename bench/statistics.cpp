@@ -8,7 +8,7 @@
 namespace credence {
 
 #ifdef CREDENCE_X86_TARGETS
-CREDENCE_DECLARE_UNIT(bare)
+CREDENCE_DECLARE_TARGET(bare)
 #endif
 
 namespace bench {
@@ -59,7 +59,7 @@ void add_statistics(const std::deque<Row>& rows, const Effort& effort) {
     if (!has_bare_unit()) return;
     for (const Row& row : rows) {
         add_block(row, "all", best_target(), effort);
-        add_block(row, "bare", CREDENCE_LIST_UNIT(bare, 8), effort);
+        add_block(row, "bare", CREDENCE_LIST_TARGET(bare, 8), effort);
         add_cells(row, effort);
     }
 #else

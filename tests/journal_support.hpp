@@ -15,7 +15,7 @@ namespace credence::test {
 
 /// A world of one step, one feature and one arm: few bytes.
 inline DeformableSettings tiny(const std::string& name) {
-    return read_scenario_text("[scenario]\nname = " + name + "\nposes = 2\n[features]\npositions = 0.5 0.5\n" +
+    return read_deformable_text("[scenario]\nname = " + name + "\nposes = 2\n[features]\npositions = 0.5 0.5\n" +
                                   "[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1", name, name);
 }
 

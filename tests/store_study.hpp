@@ -40,7 +40,7 @@ std::string refusal(Call call) {
 }
 
 inline DeformableSettings scenario(const std::string& name, const std::string& process = "heading") {
-    return read_scenario_text("[scenario]\nname = " + name + "\ntitle = größer als 1\nposes = 4\n" +
+    return read_deformable_text("[scenario]\nname = " + name + "\ntitle = größer als 1\nposes = 4\n" +
                                   "[model]\nprocess = " + process, name, name);
 }
 

@@ -47,7 +47,7 @@ public:
     virtual void set(std::size_t column, double value) = 0;
 };
 
-/// What a world of somebody's own says of a scenario beside its settings.
+/// What a user's own world says of a scenario beside its settings.
 struct OwnReport {
     std::vector<Column> columns{};      ///< its own; others are there in every world
     int largest_innovation = 0;         ///< m; 0: the trials give no innovations

@@ -28,10 +28,11 @@
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
-// draw from anywhere else: a block of trials is a pure function of scenario, root seed and index [docs/design.md]. Its
+// draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Its
 // series are the same bits on one machine for any number of threads; over machines they are so where its own
 // arithmetic is.
 
+#include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
 #include <credence/own_keys.hpp>
 #include <credence/own_trial.hpp>
@@ -64,82 +65,62 @@ constexpr bool meets_the_world_contract() {
     return true;
 }
 
-/// A world of somebody's own as one of the worlds.
+/// A user's own world as WorldOf takes it.
 template <class W>
-class OwnWorld : public World {
+class OwnWorld {
     static_assert(meets_the_world_contract<W>());
-    using Settings = typename W::Settings;
 
 public:
+    using Settings = OwnSettings<typename W::Settings>;
+
     OwnWorld() { W::keys(keys_); }
 
-    std::string name() const override { return W::name; }
-    std::vector<DescribedKey> keys() const override { return keys_.described(Settings()); }
-    std::unique_ptr<Draft> draft() const override { return std::make_unique<OwnDraft>(keys_); }
-    std::vector<Column> columns(const Scenario& scenario) const override {
-        return own_columns(scenario, report_of(settings_of(scenario)));
+    std::string name() const { return W::name; }
+    const std::vector<KeyOf<Settings>>& keys() const { return keys_.list(); }
+    Settings defaults() const { return {}; }
+    Settings resolved(const Settings& settings) const {
+        if constexpr (requires { W::validate(settings.own); }) W::validate(settings.own);
+        return settings;
     }
-    std::vector<Series> all_series(const Scenario& scenario) const override {
-        return own_series(scenario, report_of(settings_of(scenario)));
+    void describe(const Settings& settings, Scenario& scenario) const {
+        scenario.components = W::components(settings.own);
+        scenario.groups = {{"all", 0, static_cast<int>(scenario.components.size())}};
+        for (ComponentGroup& group : groups_of(settings.own)) scenario.groups.push_back(std::move(group));
+        scenario.arms = W::arms(settings.own);
+        check_declared(scenario);
     }
-    std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const override {
-        const Settings settings = settings_of(scenario);
-        return own_simulation(scenario, report_of(settings), [settings](OwnTrial& trial) { W::run(settings, trial); });
+    std::vector<Column> columns(const Settings& settings, const Scenario& scenario) const {
+        return own_columns(scenario, report_of(settings.own));
+    }
+    std::vector<Series> all_series(const Settings& settings, const Scenario& scenario) const {
+        return own_series(scenario, report_of(settings.own));
+    }
+    std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario& scenario) const {
+        return own_simulation(scenario, report_of(settings.own),
+                              [own = settings.own](OwnTrial& trial) { W::run(own, trial); });
     }
 
 private:
-    class OwnDraft : public Draft {
-    public:
-        explicit OwnDraft(const OwnKeys<Settings>& keys) : keys_(keys) {}
-        void set(const std::string& key, const std::string& value) override { keys_.set(basics_, settings_, key, value); }
-        Scenario declare() const override { return declared(keys_, basics_, settings_); }
-        const Settings& settings() const { return settings_; }
-
-    private:
-        const OwnKeys<Settings>& keys_;
-        OwnBasics basics_;
-        Settings settings_;
-    };
-
-    static Scenario declared(const OwnKeys<Settings>& keys, const OwnBasics& basics, const Settings& settings) {
-        if constexpr (requires { W::validate(settings); }) W::validate(settings);
-        Scenario scenario{W::name, basics.name, basics.title, basics.length_unit, basics.poses, {}, {}, {}, {}};
-        scenario.settings = keys.settings(W::name, basics, settings);
-        scenario.components = W::components(settings);
-        scenario.groups = {{"all", 0, static_cast<int>(scenario.components.size())}};
-        for (ComponentGroup& group : groups_of(settings)) scenario.groups.push_back(std::move(group));
-        scenario.arms = W::arms(settings);
-        check_declared(scenario);
-        return scenario;
-    }
-
-    static std::vector<ComponentGroup> groups_of(const Settings& settings) {
+    static std::vector<ComponentGroup> groups_of(const typename W::Settings& settings) {
         if constexpr (requires { W::groups(settings); })
             return W::groups(settings);
         else
             return W::blocks(settings);
     }
 
-    static OwnReport report_of(const Settings& settings) {
+    static OwnReport report_of(const typename W::Settings& settings) {
         OwnReport report{{}, W::innovation_rows(settings)};
         if constexpr (requires { W::columns(settings); }) report.columns = W::columns(settings);
         return report;
     }
 
-    Settings settings_of(const Scenario& scenario) const {
-        OwnDraft draft(keys_);
-        for (const auto& [key, value] : scenario.settings)
-            if (key != world_key) draft.set(key, value);
-        return draft.settings();
-    }
-
-    OwnKeys<Settings> keys_;
+    OwnKeys<typename W::Settings> keys_;
 };
 
 /// Adds W to the worlds that there are: in main, before anything else. Throws like add_world.
 template <class W>
 void add_own_world() {
-    add_world(std::make_unique<OwnWorld<W>>());
+    add_world(std::make_unique<WorldOf<OwnWorld<W>>>());
 }
 
 }  // namespace credence

@@ -1,10 +1,11 @@
 #pragma once
-// Module scenario: a scenario of any world, as everything from the block up knows it: what it is called, what it reports, and its
-// settings as text. What the settings mean, its world knows [worlds.hpp].
+// Module scenario: a scenario of any world, as engine, files and program know it: its name, what it reports, and its settings as
+// text. Its world knows what the settings mean [worlds.hpp].
 
 #include <credence/columns.hpp>
 #include <credence/sweep.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,11 @@ struct Scenario {
     int poses = 20;                      ///< K, the first included: K - 1 steps
     std::vector<Setting> settings;       ///< every key of it, in the order in which they are shown
     std::vector<Component> components;   ///< of the state, [n]
-    std::vector<ComponentGroup> groups;      ///< that are judged by themselves, the whole state (`all`) first
+    std::vector<ComponentGroup> groups;  ///< that are judged by themselves, the whole state (`all`) first
     std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
     SweepPoint sweep{};                  ///< its place in a grid; empty: in none
+    /// The settings as its world's own type: of a scenario that its world made, so that they are read from text once.
+    std::shared_ptr<const void> own_settings{};
 };
 
 /// A scenario as an INI text that names every key, and its place in a grid where it has one. Reading it back gives the

@@ -44,7 +44,7 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
                              " does not go with --noise (a record is one trial, for all arms). Leave it out.");
     check_kind(parsed.arguments.front(), {FileKind::scenario});
     check_kind(record_path, {FileKind::noise});
-    const DeformableSettings scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
+    const DeformableSettings scenario = read_deformable(parsed.arguments.front(), parsed.overrides());
     const NoiseRecord record = read_noise_record(record_path);
     check_covers(record, scenario, record_path);
     const Problem problem(scenario);

@@ -38,7 +38,7 @@ int show(const Parsed& parsed) {
         return 0;
     }
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
-    const Scenario scenario = read_declaration_text("", "defaults", "scenario", parsed.overrides());
+    const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
     for (const Setting& setting : scenario.settings)
         for (const DescribedKey& key : keys)

@@ -2,7 +2,7 @@
 
 #include "statistics/bootstrap.hpp"
 #include <credence/error.hpp>
-#include <credence/slam_record.hpp>
+#include <credence/slam_columns.hpp>
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"

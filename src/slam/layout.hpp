@@ -37,7 +37,7 @@ struct Layout {
     /// n
     constexpr auto size() const { return feature(features()); }
 
-    /// Blocks of the state that are judged by themselves, numbered in the order of state_blocks (record.hpp).
+    /// Blocks of the state that are judged by themselves, numbered in the order of state_groups (record.hpp).
     static constexpr Known<0> group_all{};
     static constexpr Known<1> group_pose{};
     static constexpr Known<2> group_heading{};   ///< heading model only

@@ -41,7 +41,7 @@ BlockRanges read_blocks(const std::vector<std::string>& texts) {
     return blocks;
 }
 
-std::size_t settings_of(const Study& study, const std::string& name) {
+std::size_t scenario_of(const Study& study, const std::string& name) {
     const auto found = std::find_if(study.scenarios.begin(), study.scenarios.end(),
                                     [&](const ScenarioResults& results) { return results.scenario.name == name; });
     if (found == study.scenarios.end()) throw std::invalid_argument(name);
@@ -138,7 +138,7 @@ Provenance read_provenance(const std::string& text, const Study& study) {
         for (const std::string& part : split_list(line.substr(end + after_release.size()), ';')) {
             std::vector<std::string> words = split_list(part, ' ');
             if (words.empty()) throw std::invalid_argument(line);
-            const std::size_t s = settings_of(study, words.front());
+            const std::size_t s = scenario_of(study, words.front());
             words.erase(words.begin());
             note_computed(provenance, line.substr(0, end), s, read_blocks(words).common(study.scenarios[s].blocks));
         }

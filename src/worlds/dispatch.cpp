@@ -10,12 +10,12 @@
 
 namespace credence {
 
-inline CREDENCE_DECLARE_UNIT(portable)  // CREDENCE_TARGET by default, hence inline here too
+inline CREDENCE_DECLARE_TARGET(portable)  // CREDENCE_TARGET by default, hence inline here too
 #ifdef CREDENCE_X86_TARGETS
-CREDENCE_DECLARE_UNIT(v3)
+CREDENCE_DECLARE_TARGET(v3)
 #endif
 #ifdef CREDENCE_TARGET_V4
-CREDENCE_DECLARE_UNIT(v4)
+CREDENCE_DECLARE_TARGET(v4)
 #endif
 
 namespace {
@@ -43,7 +43,7 @@ bool runs_v4() {
 #endif
 #endif
 
-/// A unit of this build, and whether this processor runs it.
+/// A target of this build, and whether this processor runs it.
 struct BuiltTarget {
     Target target;
     bool runs = false;
@@ -53,16 +53,16 @@ struct BuiltTarget {
 std::vector<BuiltTarget> built_targets() {
     return {
 #ifdef CREDENCE_TARGET_V4
-        {CREDENCE_LIST_UNIT(v4, 8), runs_v4()},
+        {CREDENCE_LIST_TARGET(v4, 8), runs_v4()},
 #endif
 #ifdef CREDENCE_X86_TARGETS
-        {CREDENCE_LIST_UNIT(v3, 4), runs_v3()},
+        {CREDENCE_LIST_TARGET(v3, 4), runs_v3()},
 #endif
-        {CREDENCE_LIST_UNIT(portable, 1), true}};
+        {CREDENCE_LIST_TARGET(portable, 1), true}};
 }
 
-/// The unit of this name; throws InputError where there is none that runs.
-Target forced_unit(const std::string& name) {
+/// The target of this name; throws InputError where there is none that runs.
+Target forced_target(const std::string& name) {
     std::vector<std::string> runnable;
     std::string why = "not a unit of this build";
     for (const auto& [target, runs] : built_targets()) {
@@ -86,7 +86,7 @@ std::vector<Target> runnable_targets() {
 
 Target best_target() {
     const char* forced = std::getenv(force_target_variable);
-    return forced ? forced_unit(forced) : runnable_targets().front();
+    return forced ? forced_target(forced) : runnable_targets().front();
 }
 
 }  // namespace credence

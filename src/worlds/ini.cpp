@@ -194,7 +194,7 @@ std::vector<Setting> read_settings(const std::string& text, const std::string& o
     return settings;
 }
 
-Scenario read_declaration_text(const std::string& text, const std::string& origin, const std::string& default_name,
+Scenario read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
                                   const Overrides& overrides) {
     const std::vector<Assignment> assignments = read_lines(text, origin);
     const std::unique_ptr<Draft> draft = draft_of(assignments, origin, overrides);
@@ -214,13 +214,13 @@ Scenario read_declaration_text(const std::string& text, const std::string& origi
     }
 }
 
-Scenario read_declaration(const std::string& path, const Overrides& overrides) {
-    return read_declaration_text(text_of_file(path), path, stem(path), overrides);
+Scenario read_scenario(const std::string& path, const Overrides& overrides) {
+    return read_scenario_text(text_of_file(path), path, stem(path), overrides);
 }
 
 std::vector<Scenario> read_grid(const std::string& path, const Overrides& overrides,
                                    const std::vector<SweepAxis>& axes) {
-    if (axes.empty()) return {read_declaration(path, overrides)};
+    if (axes.empty()) return {read_scenario(path, overrides)};
     const std::vector<Assignment> assignments = read_lines(text_of_file(path), path);
     const std::string name = given("scenario.name", assignments, path, overrides).value_or(Given{stem(path), ""}).value;
     std::vector<Scenario> scenarios;
@@ -236,13 +236,13 @@ std::vector<Scenario> read_grid(const std::string& path, const Overrides& overri
     return scenarios;
 }
 
-DeformableSettings read_scenario_text(const std::string& text, const std::string& origin, const std::string& default_name,
+DeformableSettings read_deformable_text(const std::string& text, const std::string& origin, const std::string& default_name,
                             const Overrides& overrides) {
-    return settings_of(read_declaration_text(text, origin, default_name, overrides));
+    return settings_of(read_scenario_text(text, origin, default_name, overrides));
 }
 
-DeformableSettings read_scenario(const std::string& path, const Overrides& overrides) {
-    return settings_of(read_declaration(path, overrides));
+DeformableSettings read_deformable(const std::string& path, const Overrides& overrides) {
+    return settings_of(read_scenario(path, overrides));
 }
 
 }  // namespace credence

@@ -1,5 +1,5 @@
 #pragma once
-// The door between the engine and the units: the same source, compiled once for each instruction set.
+// The interface between the engine and its targets: the same source, compiled once for each instruction set.
 
 #include <credence/detail/batch.hpp>
 #include "worlds/landmarks/problem.hpp"
@@ -10,10 +10,10 @@
 
 namespace credence {
 
-/// Simulates a batch of an arm. The same bits from every unit.
+/// Simulates a batch of an arm. The same bits from every target.
 using SimulateFunction = void (*)(const ProblemView&, const Arm&, const Batch&);
 
-/// A unit by name: v4 (AVX-512), v3 (AVX2 and FMA) or portable; with the number of trials it runs at once.
+/// A target by name: v4 (AVX-512), v3 (AVX2 and FMA) or portable; with the number of trials it runs at once.
 struct Target {
     std::string name;
     int lanes = 1;
@@ -23,25 +23,25 @@ struct Target {
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
 };
 
-/// What a unit compiled from src/worlds/deformable/target.cpp and src/worlds/landmarks/target.cpp offers under its name, and its
-/// entry in a list of units.
-#define CREDENCE_DECLARE_UNIT(name)                    \
+/// What a target compiled from src/worlds/deformable/target.cpp and src/worlds/landmarks/target.cpp offers under its name, and its
+/// entry in a list of targets.
+#define CREDENCE_DECLARE_TARGET(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
     std::size_t workspace_size(const ProblemView&, Estimator); \
     void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
     std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
     }
-#define CREDENCE_LIST_UNIT(name, lanes) \
+#define CREDENCE_LIST_TARGET(name, lanes) \
     Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
 
-/// Environment variable that names the unit to run, for tests.
+/// Environment variable that names the target to run, for tests.
 inline constexpr const char* force_target_variable = "CREDENCE_FORCE_UNIT";
 
-/// Every unit that was built and that this processor can run, the best one first.
+/// Every target that was built and that this processor can run, the best one first.
 std::vector<Target> runnable_targets();
 
-/// The unit that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
+/// The target that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
 /// InputError where that is none of runnable_targets; who computes calls this before anything else.
 Target best_target();
 

@@ -153,18 +153,18 @@ std::string turns_text(const std::optional<std::vector<double>>& turns) {
 }
 
 std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value) {
-    std::vector<PublishedNumber> all_series;
+    std::vector<PublishedNumber> numbers;
     for (const std::string& part : split_list(value)) {
         const std::size_t space = part.find_first_of(" \t");
         const std::string number = space == std::string::npos ? "" : trimmed(part.substr(space));
-        all_series.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
+        numbers.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
     }
-    return all_series;
+    return numbers;
 }
 
-std::string published_text(const std::vector<PublishedNumber>& all_series) {
+std::string published_text(const std::vector<PublishedNumber>& numbers) {
     std::vector<std::string> parts;
-    for (const PublishedNumber& series : all_series) parts.push_back(series.arm + " " + to_text(series.value));
+    for (const PublishedNumber& number : numbers) parts.push_back(number.arm + " " + to_text(number.value));
     return joined(parts);
 }
 
@@ -214,12 +214,22 @@ std::string is_title(const std::string& value) {
     });
 }
 
-std::string is_target(const std::string& value) {
+std::string is_unit(const std::string& value) {
     if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
     return characters_not_in(value, [](char c) {
         return is_name_character(c) || static_cast<unsigned char>(c) >= 0x80;
     });
+}
+
+void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known) {
+    constexpr std::size_t a_line = 12;
+    const std::string meant = closest(key, known);
+    throw InputError("unknown key " + printable(key) + ". " +
+                         (!meant.empty()           ? "Did you mean " + meant + "?"
+                          : known.size() > a_line ? "`credence show` prints every key."
+                                                   : "The keys are " + joined(known) + "."),
+                     key);
 }
 
 }  // namespace credence

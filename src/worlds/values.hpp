@@ -38,7 +38,7 @@ std::optional<double> parse_truncate(const std::string& value);
 std::optional<std::vector<double>> parse_turns(const std::string& value);
 std::string turns_text(const std::optional<std::vector<double>>& turns);
 std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value);
-std::string published_text(const std::vector<PublishedNumber>& all_series);
+std::string published_text(const std::vector<PublishedNumber>& numbers);
 
 const std::vector<std::string>& controller_names();
 const std::vector<std::string>& estimator_names();
@@ -50,7 +50,7 @@ std::optional<std::vector<Estimator>> parse_estimators(const std::string& value)
 /// Why a text is refused, or empty where it is good.
 std::string is_name(const std::string& value);
 std::string is_title(const std::string& value);
-std::string is_target(const std::string& value);
+std::string is_unit(const std::string& value);
 
 template <class Enum>
 std::string names_text(const std::vector<Enum>& values, const std::vector<std::string>& names) {
@@ -99,23 +99,9 @@ void add_common_keys(std::vector<KeyOf<S>>& keys) {
                                [](auto& s) -> auto& { return s.name; }, is_name));
     keys.push_back(text_key<S>("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
     keys.push_back(text_key<S>("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
-                               [](auto& s) -> auto& { return s.length_unit; }, is_target));
+                               [](auto& s) -> auto& { return s.length_unit; }, is_unit));
     keys.push_back(integer_key<S>("scenario.poses", "K, the first pose included", 2, largest_pose_count,
                                   [](auto& s) -> auto& { return s.poses; }));
-}
-
-/// Sets one of these keys [scenario_keys.hpp, set_key].
-template <class S>
-void set_one_of(const std::vector<KeyOf<S>>& keys, S& scenario, const std::string& name, const std::string& value) {
-    std::vector<std::string> names;
-    for (const KeyOf<S>& key : keys) {
-        if (key.name == name) return key.set(scenario, trimmed(value));  // as a file would read it back
-        names.push_back(key.name);
-    }
-    const std::string meant = closest(name, names);
-    throw InputError("unknown key " + printable(name) + ". " +
-                         (meant.empty() ? "`credence show` prints every key." : "Did you mean " + meant + "?"),
-                     name);
 }
 
 }  // namespace credence

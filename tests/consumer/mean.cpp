@@ -1,6 +1,6 @@
 // 256 trials of the default scenario, and the mean of their trace(P) under each arm.
 #include <credence/ini.hpp>
-#include <credence/slam_record.hpp>
+#include <credence/slam_columns.hpp>
 #include <credence/statistics.hpp>
 #include <credence/study.hpp>
 #include <credence/text.hpp>
@@ -8,7 +8,7 @@
 #include <iostream>
 
 int main() {
-    credence::Study study = credence::new_study({credence::read_declaration_text("", "defaults", "mine")}, 1);
+    credence::Study study = credence::new_study({credence::read_scenario_text("", "defaults", "mine")}, 1);
     credence::RunOptions options;
     options.trials = 256;
     credence::run_study(study, options);

@@ -18,9 +18,9 @@ namespace credence {
 
 // The lane widths without an instruction set of their own: what Lane<W> is on any processor.
 #ifdef CREDENCE_DIGEST_WIDTHS
-CREDENCE_DECLARE_UNIT(w2)
-CREDENCE_DECLARE_UNIT(w4)
-CREDENCE_DECLARE_UNIT(w8)
+CREDENCE_DECLARE_TARGET(w2)
+CREDENCE_DECLARE_TARGET(w4)
+CREDENCE_DECLARE_TARGET(w8)
 #endif
 
 namespace digest {
@@ -59,9 +59,9 @@ private:
 std::vector<Target> all_units() {
     std::vector<Target> targets = runnable_targets();
 #ifdef CREDENCE_DIGEST_WIDTHS
-    targets.push_back(CREDENCE_LIST_UNIT(w2, 2));
-    targets.push_back(CREDENCE_LIST_UNIT(w4, 4));
-    targets.push_back(CREDENCE_LIST_UNIT(w8, 8));
+    targets.push_back(CREDENCE_LIST_TARGET(w2, 2));
+    targets.push_back(CREDENCE_LIST_TARGET(w4, 4));
+    targets.push_back(CREDENCE_LIST_TARGET(w8, 8));
 #endif
     return targets;
 }

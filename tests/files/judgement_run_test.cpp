@@ -22,7 +22,7 @@ constexpr std::uint64_t seed = 3;
 /// The blocks of the state but for the whole one, as a record names them.
 std::string blocks_text(const DeformableSettings& scenario) {
     std::string text;
-    for (const ComponentGroup& block : state_blocks(scenario))
+    for (const ComponentGroup& block : state_groups(scenario))
         if (block.name != "all")
             text += (text.empty() ? "" : ", ") + block.name + " " + std::to_string(block.first) + ":" +
                     std::to_string(block.first + block.count);

@@ -13,7 +13,7 @@ namespace {
 
 /// A study of the tracker, as if of a world that nobody knows.
 Study unknown_world() {
-    const OwnWorld<Tracker> world;
+    const WorldOf<OwnWorld<Tracker>> world;
     const std::unique_ptr<Draft> draft = world.draft();
     draft->set("scenario.poses", "5");
     Scenario scenario = draft->declare();

@@ -68,9 +68,9 @@ TEST_CASE("sweep: a file's grid has a scenario for every point, with --set befor
     CHECK(value_of(grid[2], "sensor.noise") == "constant");
     CHECK(grid[3].sweep == SweepPoint{"base", {{"noise.heading", "0.1"}, {"sensor.noise", "ranged"}}});
     for (const Scenario& scenario : grid)
-        CHECK(scenario_text(read_declaration_text(scenario_text(scenario), "x.ini", "x")) == scenario_text(scenario));
+        CHECK(scenario_text(read_scenario_text(scenario_text(scenario), "x.ini", "x")) == scenario_text(scenario));
     CHECK(swept(folder, {}).front().name == "base");
-    CHECK(scenario_text(swept(folder, {}).front()) == scenario_text(read_declaration(folder / "base.ini")));
+    CHECK(scenario_text(swept(folder, {}).front()) == scenario_text(read_scenario(folder / "base.ini")));
 }
 
 TEST_CASE("sweep: what depends on a swept key is resolved at each point") {
@@ -99,14 +99,14 @@ TEST_CASE("sweep: a point that cannot be run is named, and so is a scenario that
 
 TEST_CASE("sweep: a scenario says where it is, and is refused where it is not") {
     const auto placed = [](const std::string& sweep) {
-        return read_declaration_text(world + "[sweep]\n" + sweep, "x.ini", "x");
+        return read_scenario_text(world + "[sweep]\n" + sweep, "x.ini", "x");
     };
     const Scenario there = placed("of = base\nat = planner.turns=default, noise.heading=1e-3,planner.speeds=2\n");
     CHECK(there.sweep ==
           SweepPoint{"base", {{"planner.turns", "default"}, {"noise.heading", "0.001"}, {"planner.speeds", "2"}}});
     CHECK_THAT(scenario_text(there),
                Contains("\n\n[sweep]\nof = base\nat = planner.turns=default, noise.heading=0.001, planner.speeds=2\n"));
-    CHECK(scenario_text(read_declaration_text(scenario_text(there), "x.ini", "x")) == scenario_text(there));
+    CHECK(scenario_text(read_scenario_text(scenario_text(there), "x.ini", "x")) == scenario_text(there));
     const auto refused_place = [&](const std::string& sweep) { return refusal<InputError>([&] { placed(sweep); }); };
     CHECK_THAT(refused_place("of = base\nat = noise.heading=0.002"),
                Contains("x.ini:7: invalid sweep.at=noise.heading=0.002 (the scenario has noise.heading=0.001)"));
@@ -120,7 +120,7 @@ TEST_CASE("sweep: a scenario says where it is, and is refused where it is not") 
 
 TEST_CASE("sweep: the text of a study without one is what it was, and so is its hash") {
     // Computed before there were sweeps: whoever has files of studies must be able to go on with them.
-    CHECK(study_hash(StudyDefinition{1, {read_declaration_text("", "x.ini", "scenario")}}) ==
+    CHECK(study_hash(StudyDefinition{1, {read_scenario_text("", "x.ini", "scenario")}}) ==
           "ba5d28bb-9fb1-5546-9527-e36bb295fbee");
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("sweep: the points of a grid have the bits of runs of their own") {
     std::size_t at = 0;
     for (const char* heading : {"0.01", "0.1"})
         for (const char* noise : {"constant", "ranged"}) {
-            Study alone = run({read_declaration_text(world, "one.ini", "one", {{"noise.heading", heading}, {"sensor.noise", noise}})});
+            Study alone = run({read_scenario_text(world, "one.ini", "one", {{"noise.heading", heading}, {"sensor.noise", noise}})});
             Study point{grid.root_seed, {grid.scenarios[at++]}, grid.trials, grid.complete};
             CHECK(same_results(alone, point));
         }
@@ -251,7 +251,7 @@ TEST_CASE("sweep: of a large grid the page has the table and the curves, and no 
 TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     const TemporaryFolder folder;
     std::vector<Scenario> scenarios = swept(folder, square);
-    scenarios.push_back(read_declaration_text(world, "alone.ini", "alone"));
+    scenarios.push_back(read_scenario_text(world, "alone.ini", "alone"));
     const Report report = make_report(run(scenarios, 40), 0.05);
 
     const Json json = Json::parse(report_json(report));

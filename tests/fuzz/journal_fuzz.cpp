@@ -23,7 +23,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace {
 
 /// The study of the seeds [journal.ini]; what it keeps, the journal's version says.
-Study asked(Keep keep) { return new_study({read_scenario(CREDENCE_FUZZ_SCENARIO, {})}, 1, keep); }
+Study asked(Keep keep) { return new_study({read_deformable(CREDENCE_FUZZ_SCENARIO, {})}, 1, keep); }
 
 template <class T>
 T number_at(const std::uint8_t* data, std::size_t position) {

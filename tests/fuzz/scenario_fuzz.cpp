@@ -38,7 +38,7 @@ Input split(const std::string& bytes) {
 
 std::optional<Scenario> read(const Input& input) {
     try {
-        return read_declaration_text(input.text, "x.ini", "x", input.overrides);
+        return read_scenario_text(input.text, "x.ini", "x", input.overrides);
     } catch (const InputError& error) {
         require_one_line(error.what());
         return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<Scenario> read(const Input& input) {
 
 void require_usable(const Scenario& scenario) {
     const std::string text = scenario_text(scenario);
-    const Scenario again = read_declaration_text(text, "again.ini", "again");
+    const Scenario again = read_scenario_text(text, "again.ini", "again");
     require(scenario_text(again) == text, "what scenario_text writes reads back to the same text");
     require(key_differences(scenario, again).empty(), "no key differs");
     require(!scenario.arms.empty() && again.arms == scenario.arms, "there is an arm");

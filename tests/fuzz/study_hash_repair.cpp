@@ -52,7 +52,7 @@ void repair_study_hash(Image image) {
     try {
         for (const Image text : attribute_values(image, structure, "scenario")) {
             ScenarioResults& results = study.scenarios.emplace_back();
-            results.scenario = read_declaration_text(text_of(text), "image", "scenario");
+            results.scenario = read_scenario_text(text_of(text), "image", "scenario");
             results.keep = aggregates ? Keep::aggregates : Keep::trials;
         }
     } catch (const InputError&) {

@@ -152,7 +152,7 @@ TEST_CASE("trial: figures of a step are what their names say") {
         for (int k = 1; k < scenario.poses; ++k) {
             const RunStep& step = run.steps[static_cast<std::size_t>(k)];
             // Tolerances: a few roundings, and for the squared errors another factorisation, cond(P) below 1e4.
-            for (const ComponentGroup& block : state_blocks(scenario)) {
+            for (const ComponentGroup& block : state_groups(scenario)) {
                 const std::string name = block.name == "all" ? "nees" : "nees_" + block.name;
                 CHECK(run.figure(name, k) == Approx(squared_error(step, block.first, block.count, 2.25)).epsilon(1e-11));
             }

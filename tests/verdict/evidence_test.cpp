@@ -86,7 +86,7 @@ TEST_CASE("evidence: NIS of features and of edges, squared errors and variances 
                   Approx(quadratic(step.innovation.head(seen), step.innovation_covariance.topLeftCorner(seen, seen))).epsilon(1e-9));
             CHECK(run.figure("nis_edges", k) ==
                   Approx(quadratic(step.innovation.tail(rest), step.innovation_covariance.bottomRightCorner(rest, rest))).epsilon(1e-9));
-            for (const ComponentGroup& block : state_blocks(scenario)) {
+            for (const ComponentGroup& block : state_groups(scenario)) {
                 const auto e = (step.mean - step.truth).segment(block.first, block.count);
                 const auto P = step.covariance.diagonal().segment(block.first, block.count);
                 const std::string suffix = block.name == "all" ? "" : "_" + block.name;
@@ -163,7 +163,7 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
         }
         const ArmResults& arm = results.arms.front();
         const Eigen::Index steps = results.steps();
-        std::vector<Eigen::MatrixXd> covered(state_blocks(world).size(), Eigen::MatrixXd::Zero(steps, 4));
+        std::vector<Eigen::MatrixXd> covered(state_groups(world).size(), Eigen::MatrixXd::Zero(steps, 4));
         Eigen::MatrixXd cells = Eigen::MatrixXd::Zero(steps, distribution_cells);
         for (std::uint64_t trial = 0; trial < 300; ++trial) {
             const Run run = run_arm(world, Controller::fixed, keyed_noise(world, 3, trial));
@@ -171,7 +171,7 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
             for (std::size_t b = 0; b < covered.size(); ++b)
                 for (Eigen::Index k = 0; k < steps; ++k) {
                     const double value = run.figures(static_cast<Eigen::Index>(b), k);
-                    const boost::math::chi_squared distribution(state_blocks(world)[b].count);
+                    const boost::math::chi_squared distribution(state_groups(world)[b].count);
                     const double share = boost::math::cdf(distribution, std::min(value, 1e6));
                     for (Eigen::Index level = 0; level < 4; ++level) covered[b](k, level) += share < coverage_levels[level];
                     if (b == 0) ++cells(k, std::min<Eigen::Index>(distribution_cells - 1, static_cast<Eigen::Index>(share * distribution_cells)));

@@ -16,7 +16,7 @@ namespace {
 
 std::string refusal(const std::string& text, const Overrides& overrides = {}) {
     try {
-        read_scenario_text(text, "x.ini", "x", overrides);
+        read_deformable_text(text, "x.ini", "x", overrides);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -28,7 +28,7 @@ bool starts(const std::string& text, const std::string& with) { return text.comp
 }  // namespace
 
 TEST_CASE("ini: an empty text is the default scenario, under the name given") {
-    const DeformableSettings s = read_scenario_text("", "x.ini", "x");
+    const DeformableSettings s = read_deformable_text("", "x.ini", "x");
     CHECK(s.name == "x");
     CHECK(s.poses == 20);
     CHECK(s.planner.speeds == 10);
@@ -36,7 +36,7 @@ TEST_CASE("ini: an empty text is the default scenario, under the name given") {
 }
 
 TEST_CASE("ini: sections, comments, blank lines, spaces and carriage returns are read") {
-    const DeformableSettings s = read_scenario_text(
+    const DeformableSettings s = read_deformable_text(
         "# a comment\r\n\n[scenario]\n name = abc # behind\n[model]\r\nprocess=translation\r\n\n[noise]\n  walk =  0.25 \n", "x.ini", "x");
     CHECK(s.name == "abc");
     CHECK(s.process == Process::translation);
@@ -53,11 +53,11 @@ TEST_CASE("ini: what scenario_text writes reads back to the same text") {
     s.noise.truncate = 2;
     s.published.trace_P = {{"fixed.ekf", 0.1061}};
     const std::string text = scenario_text(resolved(s));
-    CHECK(scenario_text(read_scenario_text(text, "x.ini", "x")) == text);
+    CHECK(scenario_text(read_deformable_text(text, "x.ini", "x")) == text);
 }
 
 TEST_CASE("ini: overrides win, the last one most") {
-    const DeformableSettings s = read_scenario_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
+    const DeformableSettings s = read_deformable_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
     CHECK(s.noise.walk == 3);
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("ini: names, titles and units that a file could not hold are refused")
     CHECK(starts(refusal("[scenario]\ntitle = \xff\n"), "x.ini:2: invalid scenario.title="));
     CHECK(starts(refusal("[scenario]\nlength_unit = \xc3\n"), "x.ini:2: invalid scenario.length_unit="));
     CHECK(starts(refusal("", {{"scenario.title", "a # b"}}), "--set scenario.title: invalid scenario.title=a # b"));
-    CHECK(read_scenario_text("", "x.ini", "x", {{"scenario.title", " a "}}).title == "a");
+    CHECK(read_deformable_text("", "x.ini", "x", {{"scenario.title", " a "}}).title == "a");
 }
 
 TEST_CASE("ini: every refusal is one line") {
@@ -99,11 +99,11 @@ TEST_CASE("ini: every refusal is one line") {
 }
 
 TEST_CASE("ini: files that cannot be read are refused by name") {
-    CHECK_THROWS_WITH(read_scenario("no/such.ini"), Catch::Contains("no/such.ini"));
-    CHECK_THROWS_WITH(read_scenario("."), Catch::Contains("it is not a file"));
+    CHECK_THROWS_WITH(read_deformable("no/such.ini"), Catch::Contains("no/such.ini"));
+    CHECK_THROWS_WITH(read_deformable("."), Catch::Contains("it is not a file"));
     const std::string big = (std::filesystem::temp_directory_path() / "credence-big.ini").string();
     std::ofstream(big) << std::string((1 << 20) + 1, '#');
-    CHECK_THROWS_WITH(read_scenario(big), Catch::Contains("larger than 1 MiB"));
+    CHECK_THROWS_WITH(read_deformable(big), Catch::Contains("larger than 1 MiB"));
     std::filesystem::remove(big);
 }
 
@@ -112,8 +112,8 @@ TEST_CASE("ini: a file's stem is its default name, and must be a good one") {
     const std::string good = (folder / "credence-name_1.ini").string(), bad = (folder / "credence bad.ini").string();
     std::ofstream(good) << "[noise]\nwalk = 1\n";
     std::ofstream(bad) << "[noise]\nwalk = 1\n";
-    CHECK(read_scenario(good).name == "credence-name_1");
-    CHECK_THROWS_WITH(read_scenario(bad), Catch::Contains("scenario.name"));
+    CHECK(read_deformable(good).name == "credence-name_1");
+    CHECK_THROWS_WITH(read_deformable(bad), Catch::Contains("scenario.name"));
     std::filesystem::remove(good);
     std::filesystem::remove(bad);
 }

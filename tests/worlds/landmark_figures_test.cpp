@@ -28,7 +28,7 @@ public:
         squares_.resize(arms);
         run_squares_.resize(arms);
         for (int b = 0; b < blocks; ++b) {
-            const Block block = run_block(simulation, trial_columns(reported_as(scenario)), arms, 3, b, block_size);
+            const Block block = run_block(simulation, trial_columns(state_of(scenario)), arms, 3, b, block_size);
             trials_ += block_size;
             for (std::size_t a = 0; a < arms; ++a) {
                 REQUIRE(block.arms[a].counted == block_size);

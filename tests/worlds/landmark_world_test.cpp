@@ -16,7 +16,7 @@ using Catch::Contains;
 namespace {
 
 Scenario landmarks(const std::string& lines) {
-    return read_declaration_text("[scenario]\nworld = landmarks\n" + lines, "test", "test");
+    return read_scenario_text("[scenario]\nworld = landmarks\n" + lines, "test", "test");
 }
 
 std::string refusal_of(const std::string& lines) {
@@ -43,10 +43,10 @@ TEST_CASE("landmark world: a scenario names its world, and its text reads back a
     CHECK(declared.arms == std::vector<std::string>{"fixed.riekf", "fixed.ekf"});
     CHECK(declared.components.size() == 3 + 2 * 9);
     CHECK(declared.groups.size() == 5 + 9);
-    const Scenario again = read_declaration_text(scenario_text(declared), "test", "other");
+    const Scenario again = read_scenario_text(scenario_text(declared), "test", "other");
     CHECK(again.settings == declared.settings);
     CHECK(again.arms == declared.arms);
-    const LandmarkSettings scenario = landmark_scenario_of(declared);
+    const LandmarkSettings scenario = landmark_settings_of(declared);
     CHECK(scenario.loop.sides == 17);
     CHECK(scenario.loop.step == 2.5);
     CHECK(scenario.landmarks.count == 9);

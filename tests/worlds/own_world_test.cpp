@@ -100,7 +100,7 @@ const bool added = [] {
 }();
 
 Scenario tracker(const Overrides& more = {}) {
-    return read_declaration_text("[scenario]\nworld = tracker\nposes = 30\n", "test", "mine", more);
+    return read_scenario_text("[scenario]\nworld = tracker\nposes = 30\n", "test", "mine", more);
 }
 
 Study run(const Scenario& scenario, std::int64_t trials, int threads = 1, std::uint64_t seed = 1) {
@@ -113,13 +113,13 @@ Study run(const Scenario& scenario, std::int64_t trials, int threads = 1, std::u
 }
 
 Study run_spoiled(std::int64_t trials) {
-    return run(read_declaration_text("[scenario]\nworld = spoiled\nposes = 10\n", "test", "mine"), trials);
+    return run(read_scenario_text("[scenario]\nworld = spoiled\nposes = 10\n", "test", "mine"), trials);
 }
 
 /// x of the draws under this key: [arm], normal and uniform.
 std::vector<double> keyed(int source, int pose, int index) {
     const auto set = [](const char* key, int value) { return std::pair{std::string(key), std::to_string(value)}; };
-    const Study study = run(read_declaration_text("[scenario]\nworld = keyed\nposes = 2\n", "test", "mine",
+    const Study study = run(read_scenario_text("[scenario]\nworld = keyed\nposes = 2\n", "test", "mine",
                                                   {set("draw.source", source), set("draw.pose", pose), set("draw.index", index)}),
                             1);
     const ScenarioResults& results = study.scenarios[0];
@@ -241,7 +241,7 @@ TEST_CASE("own world: figures are those of the formulas") {
 }
 
 TEST_CASE("own world: what a world does wrong is said, not counted") {
-    const Scenario shorter = read_declaration_text("[scenario]\nworld = short\n", "test", "mine");
+    const Scenario shorter = read_scenario_text("[scenario]\nworld = short\n", "test", "mine");
     REQUIRE_THROWS_WITH(run(shorter, 1), "world short: a trial took 18 steps, not 19.");
     REQUIRE_THROWS_AS(add_own_world<Tracker>(), InputError);
     Scenario broken = tracker();
@@ -259,7 +259,7 @@ TEST_CASE("own world: a key of a draw that the counter has no room for is refuse
     REQUIRE_THROWS_WITH(keyed(0, -1, 0), "world keyed: invalid pose of a draw -1 (must be 0 to 2147483647).");
     REQUIRE_THROWS_WITH(keyed(0, 1, -1), "world keyed: invalid index of a draw -1 (must be 0 to " + last + ").");
     REQUIRE_THROWS_WITH(keyed(0, 1, 134217728), "world keyed: invalid index of a draw 134217728 (must be 0 to " + last + ").");
-    const Scenario undeclared = read_declaration_text("[scenario]\nworld = undeclared\n", "test", "mine");
+    const Scenario undeclared = read_scenario_text("[scenario]\nworld = undeclared\n", "test", "mine");
     REQUIRE_THROWS_WITH(run(undeclared, 1), "world undeclared: a column that it does not have is set.");
 }
 
@@ -285,7 +285,7 @@ TEST_CASE("own world: its keys are read, refused and shown like any other") {
           "[scenario]\nworld = tracker\nname = mine\ntitle = \nlength_unit = m\nposes = 30\n\n"
           "[target]\nperiod = 0.5\nacceleration = 0.2\n\n[sensor]\nsigma = 2\ndetection = 0.9\n");
     const auto refused = [](const std::string& text, const std::string& message) {
-        REQUIRE_THROWS_WITH(read_declaration_text(text, "file.ini", "mine"), Catch::Contains(message));
+        REQUIRE_THROWS_WITH(read_scenario_text(text, "file.ini", "mine"), Catch::Contains(message));
     };
     refused("[scenario]\nworld = trakcer\n", "file.ini:2: invalid scenario.world=trakcer (this program has no such world)");
     refused("[scenario]\nworld = tracker\n[sensor]\ndetection = 2\n", "file.ini:4: invalid sensor.detection=2");
@@ -302,10 +302,10 @@ TEST_CASE("own world: its keys are swept like those of any other") {
     CHECK(grid[1].name == "mine_sigma-1");
     CHECK(grid[1].sweep == SweepPoint{"mine", {{"sensor.sigma", "1"}}});
     const std::string text = scenario_text(grid[0]);
-    CHECK(scenario_text(read_declaration_text(text, "test", "x")) == text);
+    CHECK(scenario_text(read_scenario_text(text, "test", "x")) == text);
     CHECK(same_results(run(grid[0], 20), run(tracker({{"sensor.sigma", "0.5"}}), 20)));
     CHECK_THROWS_WITH(read_grid(folder / "mine.ini", {}, parse_grid({"target.period=0"})),
                       Catch::Contains("--sweep target.period: invalid target.period=0"));
-    CHECK_THROWS_WITH(read_declaration_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
+    CHECK_THROWS_WITH(read_scenario_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
                       Catch::Contains("the scenario has sensor.sigma=0.5"));
 }

@@ -79,7 +79,7 @@ JournalHeader read_header(const std::string& start, const std::string& path, std
     header.shard = get_shard(body);
     header.study.root_seed = body.get<std::uint64_t>();
     for (std::uint64_t left = body.get_count(); left > 0; --left)
-        header.study.scenarios.push_back(read_declaration_text(body.get_text(), path + ": scenario", "scenario"));
+        header.study.scenarios.push_back(read_scenario_text(body.get_text(), path + ": scenario", "scenario"));
     return header;
 }
 

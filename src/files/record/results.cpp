@@ -1,6 +1,6 @@
 // What a record's results are before the first trial: the same lists as a run has, declared for a record.
 
-#include <credence/slam_record.hpp>
+#include <credence/slam_columns.hpp>
 #include <credence/text.hpp>
 
 #include "files/record/results.hpp"

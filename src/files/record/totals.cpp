@@ -2,7 +2,7 @@
 
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
-#include <credence/slam_record.hpp>
+#include <credence/slam_columns.hpp>
 
 #include "files/record/results.hpp"
 #include "base/nan.hpp"

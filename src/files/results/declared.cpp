@@ -124,7 +124,7 @@ ScenarioResults read_declared(const Handle& group, const std::string& file, Keep
     const std::vector<Setting> settings = read_settings(text, origin);
     const Setting* named = find_setting(settings, world_key);
     if (named != nullptr && find_world(named->value) == nullptr) return declared_by_file(group, settings, keep);
-    const Scenario scenario = read_declaration_text(text, origin, "scenario");
+    const Scenario scenario = read_scenario_text(text, origin, "scenario");
     const World& world = world_of(scenario);
     return {scenario, world.columns(scenario), world.all_series(scenario), {}, 0, {}, keep};
 }

@@ -131,7 +131,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
-    const std::vector<ComponentGroup> blocks = state_blocks(scenario_);
+    const std::vector<ComponentGroup> blocks = state_groups(scenario_);
     view_.group_count = static_cast<int>(blocks.size());
     coverage_bounds_ = coverage_bounds(blocks);
     view_.coverage_bounds = coverage_bounds_.data();

@@ -2,7 +2,7 @@
 // A scenario made ready: the tables that its equations read, computed once.
 
 #include "slam/planning/horizon.hpp"
-#include <credence/slam_record.hpp>
+#include <credence/slam_columns.hpp>
 
 namespace credence {
 

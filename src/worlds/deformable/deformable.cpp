@@ -2,21 +2,12 @@
 
 #include "worlds/deformable/keys.hpp"
 
+#include <credence/detail/world_of.hpp>
+#include <credence/error.hpp>
+
 namespace credence {
 
 namespace {
-
-class DeformableDraft : public Draft {
-public:
-    void set(const std::string& key, const std::string& value) override { set_key(scenario_, key, value); }
-    Scenario declare() const override {
-        validate(scenario_);
-        return scenario_of(resolved(scenario_));
-    }
-
-private:
-    DeformableSettings scenario_;
-};
 
 /// A simulation with the problem that it reads.
 class OwningSimulation : public Simulation {
@@ -31,31 +22,41 @@ private:
     DeformableSimulation simulation_;
 };
 
-class DeformableWorld : public World {
-public:
-    std::string name() const override { return first_world; }
-    std::vector<DescribedKey> keys() const override {
-        std::vector<DescribedKey> described;
-        const DeformableSettings defaults = resolved(DeformableSettings());
-        for (const DeformableKey& key : scenario_keys())
-            described.push_back({key.name, key.get(defaults), key.help, key.choices});
-        return described;
+/// The deformable world as WorldOf takes it.
+struct Deformable {
+    using Settings = DeformableSettings;
+
+    std::string name() const { return first_world; }
+    const std::vector<DeformableKey>& keys() const { return scenario_keys(); }
+    Settings defaults() const { return credence::resolved(Settings()); }
+    Settings resolved(const Settings& settings) const {
+        validate(settings);
+        return credence::resolved(settings);
     }
-    std::unique_ptr<Draft> draft() const override { return std::make_unique<DeformableDraft>(); }
-    std::vector<Column> columns(const Scenario& scenario) const override {
-        return trial_columns(settings_of(scenario));
+    void describe(const Settings& settings, Scenario& scenario) const {
+        scenario.components = state_components(settings);
+        scenario.groups = state_groups(settings);
+        for (const Arm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(arm));
     }
-    std::vector<Series> all_series(const Scenario& scenario) const override {
-        return step_series(settings_of(scenario));
-    }
-    std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const override {
-        return std::make_unique<OwningSimulation>(settings_of(scenario));
+    std::vector<Column> columns(const Settings& settings, const Scenario&) const { return trial_columns(settings); }
+    std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return step_series(settings); }
+    std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
+        return std::make_unique<OwningSimulation>(settings);
     }
 };
 
 }  // namespace
 
-std::unique_ptr<const World> deformable_world() { return std::make_unique<DeformableWorld>(); }
+std::unique_ptr<const World> deformable_world() { return std::make_unique<WorldOf<Deformable>>(); }
+
+Scenario scenario_of(const DeformableSettings& settings) { return WorldOf<Deformable>().scenario_of(settings); }
+
+DeformableSettings settings_of(const Scenario& scenario) {
+    if (scenario.world != first_world)
+        throw invalid_value(world_key, scenario.world, "only trials of the deformable world can be replayed",
+                            "Give a scenario of that world");
+    return WorldOf<Deformable>().settings_of(scenario);
+}
 
 DeformableSimulation::DeformableSimulation(const Problem& problem, Target target)
     : problem_(problem), target_(std::move(target)), arms_(arms_of(problem.scenario())) {

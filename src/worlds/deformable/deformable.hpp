@@ -3,6 +3,7 @@
 
 #include <credence/detail/block.hpp>
 #include "slam/trial/problem.hpp"
+#include "worlds/deformable/keys.hpp"
 #include "worlds/simulate.hpp"
 
 #include <memory>
@@ -11,13 +12,10 @@ namespace credence {
 
 std::unique_ptr<const World> deformable_world();
 
-/// A resolved scenario as everything from the block up knows it, and back. The second throws InputError where the
-/// settings are not those of the deformable world.
-Scenario scenario_of(const DeformableSettings& scenario);
-DeformableSettings settings_of(const Scenario& declared);
-
-/// The scenario as text [declaration.hpp].
-std::string scenario_text(const DeformableSettings& scenario);
+/// Settings as engine, files and program know them, and back. Both throw InputError where settings contradict each other,
+/// the second also where they are not those of the deformable world.
+Scenario scenario_of(const DeformableSettings& settings);
+DeformableSettings settings_of(const Scenario& scenario);
 
 /// The trials of a problem, which must outlive it, on a unit.
 class DeformableSimulation : public Simulation {

@@ -171,7 +171,13 @@ const std::vector<DeformableKey>& scenario_keys() {
 }
 
 void set_key(DeformableSettings& scenario, const std::string& name, const std::string& value) {
-    set_one_of(scenario_keys(), scenario, name, value);
+    set_key(scenario_keys(), scenario, name, value);
+}
+
+std::string scenario_text(const DeformableSettings& scenario) {
+    Scenario described;
+    for (const DeformableKey& key : scenario_keys()) described.settings.push_back({key.name, key.get(scenario)});
+    return scenario_text(described);
 }
 
 }  // namespace credence

@@ -1,70 +1,47 @@
 #include "worlds/landmarks/landmarks.hpp"
 
-#include <credence/error.hpp>
-
 #include "worlds/landmarks/keys.hpp"
-#include "worlds/values.hpp"
+
+#include <credence/detail/world_of.hpp>
 
 namespace credence {
 
 namespace {
 
-class LandmarkDraft : public Draft {
-public:
-    void set(const std::string& key, const std::string& value) override {
-        set_one_of(landmark_keys(), scenario_, key, value);
-    }
-    Scenario declare() const override {
-        validate(scenario_);
-        return scenario_of(scenario_);
-    }
+/// The world of landmarks as WorldOf takes it.
+struct Landmarks {
+    using Settings = LandmarkSettings;
 
-private:
-    LandmarkSettings scenario_;
-};
-
-class LandmarkWorld : public World {
-public:
-    std::string name() const override { return landmark_world_name; }
-    std::vector<DescribedKey> keys() const override {
-        std::vector<DescribedKey> described;
-        const LandmarkSettings defaults;
-        for (const LandmarkKey& key : landmark_keys())
-            described.push_back({key.name, key.get(defaults), key.help, key.choices});
-        return described;
+    std::string name() const { return landmark_world_name; }
+    const std::vector<LandmarkKey>& keys() const { return landmark_keys(); }
+    Settings defaults() const { return {}; }
+    Settings resolved(const Settings& settings) const {
+        validate(settings);
+        return settings;
     }
-    std::unique_ptr<Draft> draft() const override { return std::make_unique<LandmarkDraft>(); }
-    std::vector<Column> columns(const Scenario& scenario) const override {
-        return trial_columns(reported_as(landmark_scenario_of(scenario)));
+    void describe(const Settings& settings, Scenario& scenario) const {
+        const SlamState state = state_of(settings);
+        scenario.components = state_components(state);
+        scenario.groups = state_groups(state);
+        for (const Estimator estimator : settings.estimators)
+            scenario.arms.push_back(arm_name({Controller::fixed, estimator}));
     }
-    std::vector<Series> all_series(const Scenario& scenario) const override {
-        return landmark_series(landmark_scenario_of(scenario));
+    std::vector<Column> columns(const Settings& settings, const Scenario&) const {
+        return trial_columns(state_of(settings));
     }
-    std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const override {
-        return std::make_unique<LandmarkSimulation>(landmark_scenario_of(scenario));
+    std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return landmark_series(settings); }
+    std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
+        return std::make_unique<LandmarkSimulation>(settings);
     }
 };
 
 }  // namespace
 
-std::unique_ptr<const World> landmark_world() { return std::make_unique<LandmarkWorld>(); }
+std::unique_ptr<const World> landmark_world() { return std::make_unique<WorldOf<Landmarks>>(); }
 
-Scenario scenario_of(const LandmarkSettings& scenario) {
-    const DeformableSettings slam = reported_as(scenario);
-    Scenario declared{landmark_world_name, scenario.name, scenario.title, scenario.length_unit, scenario.poses,
-                         {{world_key, landmark_world_name}}, state_components(slam), state_blocks(slam), {}};
-    for (const LandmarkKey& key : landmark_keys()) declared.settings.push_back({key.name, key.get(scenario)});
-    for (const Estimator estimator : scenario.estimators) declared.arms.push_back(arm_name({Controller::fixed, estimator}));
-    return declared;
-}
+Scenario scenario_of(const LandmarkSettings& settings) { return WorldOf<Landmarks>().scenario_of(settings); }
 
-LandmarkSettings landmark_scenario_of(const Scenario& declared) {
-    LandmarkSettings scenario;
-    for (const Setting& setting : declared.settings)
-        if (setting.key != world_key) set_one_of(landmark_keys(), scenario, setting.key, setting.value);
-    validate(scenario);
-    return scenario;
-}
+LandmarkSettings landmark_settings_of(const Scenario& scenario) { return WorldOf<Landmarks>().settings_of(scenario); }
 
 LandmarkSimulation::LandmarkSimulation(const LandmarkSettings& scenario, Target target)
     : problem_(scenario), target_(std::move(target)), arms_(scenario.estimators) {

@@ -17,7 +17,7 @@ std::unique_ptr<const World> landmark_world();
 /// A valid scenario as everything from the block up knows it, and back. The second throws InputError where the settings
 /// are not those of the world of landmarks.
 Scenario scenario_of(const LandmarkSettings& scenario);
-LandmarkSettings landmark_scenario_of(const Scenario& declared);
+LandmarkSettings landmark_settings_of(const Scenario& declared);
 
 /// The trials of a valid scenario, on a unit.
 class LandmarkSimulation : public Simulation {

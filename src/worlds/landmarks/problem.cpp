@@ -4,32 +4,31 @@
 
 namespace credence {
 
-DeformableSettings reported_as(const LandmarkSettings& scenario) {
-    DeformableSettings slam;
-    slam.length_unit = scenario.length_unit;
-    slam.features.positions.resize(static_cast<std::size_t>(scenario.landmarks.count));
-    slam.edges.graph = EdgeGraph::none;
-    slam.arms.estimators = scenario.estimators;
-    return slam;
+SlamState state_of(const LandmarkSettings& scenario) {
+    SlamState state;
+    state.features = scenario.landmarks.count;
+    state.length_unit = scenario.length_unit;
+    state.estimators = scenario.estimators;
+    return state;
 }
 
 std::vector<Series> landmark_series(const LandmarkSettings& scenario) {
-    std::vector<Series> all_series = step_series(reported_as(scenario));
+    std::vector<Series> all_series = step_series(state_of(scenario));
     all_series.push_back({"unsettled_updates", "iterated updates whose last pass still moved the mean", "1",
                        SeriesRole::other, 0, true, "", "", 0});
     return all_series;
 }
 
 LandmarkProblem::LandmarkProblem(const LandmarkSettings& scenario) {
-    const DeformableSettings slam = reported_as(scenario);
+    const SlamState state = state_of(scenario);
     view_.poses = scenario.poses;
     view_.features = scenario.landmarks.count;
-    view_.state_size = state_size(slam);
-    const std::vector<ComponentGroup> blocks = state_blocks(slam);
+    view_.state_size = state.size();
+    const std::vector<ComponentGroup> blocks = state_groups(state);
     coverage_bounds_ = coverage_bounds(blocks);
     view_.group_count = static_cast<int>(blocks.size());
     view_.coverage_bounds = coverage_bounds_.data();
-    view_.charts = charts_of(slam);
+    view_.charts = charts_of(state);
     view_.series_count = static_cast<int>(landmark_series(scenario).size());
     fill_loop(scenario);
     fill_world(scenario);

@@ -12,11 +12,10 @@ struct LandmarkView : CommonView {
     LandmarkParameters world;
 };
 
-/// The SLAM scenario whose trials report what these do: one with a heading, as many features, the same estimators and no
-/// edges.
-DeformableSettings reported_as(const LandmarkSettings& scenario);
+/// The state that these trials estimate: with a heading and without edges.
+SlamState state_of(const LandmarkSettings& scenario);
 
-/// The per-step series, in the order in which landmark_trial.hpp writes them: those of a SLAM scenario, and whether an
+/// The per-step series, in the order in which landmark_trial.hpp writes them: those of any SLAM trial, and whether an
 /// iterated update had come to rest.
 std::vector<Series> landmark_series(const LandmarkSettings& scenario);
 

@@ -6,33 +6,13 @@
 
 namespace credence {
 
-namespace {
-
-const std::vector<KeyOf<OwnBasics>>& common_keys() {
+const std::vector<KeyOf<OwnBasics>>& basic_keys() {
     static const std::vector<KeyOf<OwnBasics>> keys = [] {
         std::vector<KeyOf<OwnBasics>> common;
         add_common_keys(common);
         return common;
     }();
     return keys;
-}
-
-}  // namespace
-
-std::vector<DescribedKey> basic_keys(const OwnBasics& basics) {
-    std::vector<DescribedKey> described;
-    for (const KeyOf<OwnBasics>& key : common_keys())
-        described.push_back({key.name, key.get(basics), key.help, key.choices});
-    return described;
-}
-
-bool set_basic(OwnBasics& basics, const std::string& key, const std::string& value) {
-    for (const KeyOf<OwnBasics>& common : common_keys()) {
-        if (common.name != key) continue;
-        common.set(basics, value);
-        return true;
-    }
-    return false;
 }
 
 double own_real(const std::string& key, const std::string& text, double low, double high) {
@@ -48,12 +28,5 @@ std::size_t own_choice(const std::string& key, const std::string& text, const st
 }
 
 std::string own_text(double value) { return to_text(value); }
-
-void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known) {
-    const std::string meant = closest(key, known);
-    throw InputError("unknown key " + printable(key) + ". " +
-                         (meant.empty() ? "The keys are " + joined(known) + "." : "Did you mean " + meant + "?"),
-                     key);
-}
 
 }  // namespace credence

@@ -1,0 +1,39 @@
+#pragma once
+// Module worlds: the keys of a scenario. One table for each world serves scenario files, `--set`, `credence show`, stored
+// scenarios, the study's hash and the documentation.
+
+#include <credence/text.hpp>
+#include <credence/worlds.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// One key `section.name` of a world's settings, which are a plain struct.
+template <class Settings>
+struct KeyOf {
+    std::string name;     ///< section.key
+    std::string help;     ///< one line: meaning, unit, choices
+    std::function<void(Settings&, const std::string&)> set;  ///< throws InputError where the value is not in range
+    std::function<std::string(const Settings&)> get;         ///< text that `set` reads back to the same value
+    std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
+};
+
+/// Throws InputError for a key that is not among `known`, with the closest one that is.
+[[noreturn]] void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known);
+
+/// Sets `section.key` to a value without its outer blanks. Throws InputError for an unknown key or a value out of range.
+template <class Settings>
+void set_key(const std::vector<KeyOf<Settings>>& keys, Settings& settings, const std::string& name,
+             const std::string& value) {
+    std::vector<std::string> names;
+    for (const KeyOf<Settings>& key : keys) {
+        if (key.name == name) return key.set(settings, trimmed(value));  // as a file would read it back
+        names.push_back(key.name);
+    }
+    refuse_unknown_key(name, names);
+}
+
+}  // namespace credence
