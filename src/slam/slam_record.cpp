@@ -13,7 +13,7 @@ const std::string& described(const ComponentGroup& block) {
     return block.name == "all" ? whole : block.name;
 }
 
-/// `name`, or `name_BLOCK` for a part of the state.
+/// `name`, or `name_GROUP` for a component group.
 std::string of_block(const std::string& name, const ComponentGroup& block) {
     return block.name == "all" ? name : name + "_" + block.name;
 }
