@@ -60,7 +60,7 @@ public:
 
 private:
     Keep keep_;
-    std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column; {0}: none are kept
+    std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column; {0}: none
     std::int64_t arms_, detailed_blocks_, errors_, nees_;
 };
 

@@ -94,7 +94,7 @@ private:
     }
 
     const std::vector<std::string>& paths_;
-    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for reading the files when the results are written
+    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for reading the files at the end
     std::size_t first_ = 0;
     Study study_;
     std::vector<ScenarioMerger> scenarios_;
