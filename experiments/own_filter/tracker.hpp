@@ -28,7 +28,7 @@ struct Tracker {
     static std::vector<credence::Component> components(const Settings&) {
         return {{"p_x", "m"}, {"p_y", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}};
     }
-    static std::vector<credence::ComponentGroup> blocks(const Settings&) {
+    static std::vector<credence::ComponentGroup> groups(const Settings&) {
         return {{"position", 0, 2}, {"velocity", 2, 2}};
     }
     static int innovation_rows(const Settings&) { return 2; }

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as bytes and back, for the journal. Little-endian, as every machine is that credence runs on.
+// Conversion of numbers to bytes and back, for the journal. Little-endian, as every machine is that credence runs on.
 
 #include <algorithm>
 #include <bit>
@@ -43,7 +43,7 @@ public:
         std::memcpy(bytes_.data() + position, &value, sizeof value);
     }
 
-    /// Makes room for so many further bytes.
+    /// Reserves capacity for so many further bytes.
     void reserve(std::size_t further) {
         const std::size_t size = bytes_.size() + further;
         if (size > bytes_.capacity()) bytes_.reserve(std::max(size, 2 * bytes_.capacity()));
@@ -57,12 +57,12 @@ private:
     std::string bytes_;
 };
 
-/// Bytes that do not say what they should.
+/// Bytes with invalid content.
 struct BadBytes : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Reads bytes that may be hostile: nothing is taken beyond their end. Throws BadBytes.
+/// Reads untrusted bytes: it never reads beyond their end. Throws BadBytes.
 class ByteReader {
 public:
     ByteReader(const void* bytes, std::size_t size) : at_(static_cast<const char*>(bytes)), left_(size) {}

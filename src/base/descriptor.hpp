@@ -1,5 +1,5 @@
 #pragma once
-// File descriptors, and the system's words for its errors.
+// File descriptors, and the system's messages for its errors.
 
 #include <string>
 #include <utility>
@@ -19,7 +19,7 @@ private:
     int descriptor_;
 };
 
-/// The system's own words, such as `no space left on device`.
+/// The system's own message, such as `no space left on device`.
 std::string words_for(int error);
 
 }  // namespace credence

@@ -1,5 +1,5 @@
 #pragma once
-// What a figure is that does not exist.
+// The value of a number that does not exist.
 
 #include <limits>
 

@@ -33,7 +33,7 @@ std::string start_of_file(const std::string& path, std::size_t most) {
     const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (file.get() < 0) throw Unreadable(errno);
     if (fstat(file.get(), &status) != 0) throw Unreadable(errno);
-    if (!S_ISREG(status.st_mode)) throw Unreadable(0);  // another one has come under the name
+    if (!S_ISREG(status.st_mode)) throw Unreadable(0);  // the name leads to another file by now
     std::string bytes(most, '\0');
     std::size_t size = 0;
     while (size < most) {

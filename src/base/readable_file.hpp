@@ -1,5 +1,5 @@
 #pragma once
-// Files that are read: regular ones only, and errors of the system by their names.
+// Reading files: only regular files are opened, and errors of the system are reported by their names.
 
 #include <stdexcept>
 #include <string>
@@ -9,7 +9,7 @@ namespace credence {
 /// Why a file cannot be read. The message is the system's own, such as `input/output error`.
 class Unreadable : public std::runtime_error {
 public:
-    /// `error` is one of the system; 0 for what is not a regular file.
+    /// `error` is the system's error number; 0 if the file is not a regular one.
     explicit Unreadable(int error);
     int error() const { return error_; }
     bool is_missing() const;
@@ -19,7 +19,7 @@ private:
     int error_;
 };
 
-/// What to do about an error of the system that kept a file from being read.
+/// The remedy for an error of the system that kept a file from being read.
 std::string remedy_for_reading(int error);
 
 /// The first `most` bytes of a regular file, fewer where it is shorter. It neither waits for the other end of a pipe nor

@@ -45,7 +45,7 @@ bool is_name_character(char c) {
 
 namespace {
 
-/// A character of UTF-8 (RFC 3629); of length 0 where the bytes are none.
+/// A character of UTF-8 (RFC 3629); of length 0 where the bytes are not one.
 struct Character {
     std::size_t length = 0;
     unsigned long code = 0;
@@ -66,8 +66,8 @@ Character character_at(std::string_view text, std::size_t at) {
     return {length, code};
 }
 
-/// Controls of ASCII and of Latin-1 (some terminals obey U+009B as they do ESC [), separators of lines, and what changes
-/// the direction of writing, by which a text can show something else than it says.
+/// Control characters of ASCII and of Latin-1 (some terminals obey U+009B as they do ESC [), line separators, and
+/// characters that change the direction of writing, by which a displayed text can differ from its content.
 bool is_control(unsigned long code) {
     return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x2028 && code <= 0x202e) ||
            (code >= 0x2066 && code <= 0x2069);
@@ -80,7 +80,7 @@ std::string hexadecimal(char byte) {
     return text;
 }
 
-/// `\u009b`, as JSON has it; `\xff` of a byte that is not UTF-8, which JSON does not have.
+/// `\u009b`, as in JSON; `\xff` for a byte that is not UTF-8, for which JSON has no escape.
 std::string escape(std::string_view piece) {
     const Character character = character_at(piece, 0);
     if (character.length == 0) return "\\x" + hexadecimal(piece.front());

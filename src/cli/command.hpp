@@ -1,5 +1,5 @@
 #pragma once
-// What the subcommands share. One file a subcommand; main.cpp lists them.
+// Declarations shared by the subcommands. Each subcommand has one file; main.cpp lists them.
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
@@ -11,7 +11,7 @@
 
 namespace credence::cli {
 
-/// An option as its help shows it. Every value arrives as text: Boost's own conversions wrap -1 and refuse 1e6.
+/// An option as its help shows it. Every value is read as text first: Boost's own conversions wrap -1 and refuse 1e6.
 struct Option {
     std::string name;          ///< long name, with a short one after a comma: "output,o"
     std::string value;         ///< name of its value in the help, FILE or NAME.ext for a file's; empty for a switch
@@ -20,29 +20,29 @@ struct Option {
     std::vector<std::string> choices{};  ///< the values that it takes, the first by default; empty: any
 
     std::string long_name() const { return name.substr(0, name.find(',')); }
-    /// The letter; empty where it has none.
+    /// The short name, a letter; empty where it has none.
     std::string short_name() const { return name.size() == long_name().size() ? "" : name.substr(name.find(',') + 1); }
 };
 
 /// A subcommand as its help shows it.
 struct Command {
     std::string name, arguments, summary;
-    std::string details;       ///< after the options
+    std::string details;       ///< printed after the options
     std::vector<Option> options;
 };
 
-/// What stood on the command line.
+/// The parsed command line.
 class Parsed {
 public:
-    std::vector<std::string> arguments;               ///< those that are not options
+    std::vector<std::string> arguments;               ///< the arguments that are not options
     std::map<std::string, std::vector<std::string>> values;
-    const Command* command = nullptr;                 ///< whose they are
+    const Command* command = nullptr;                 ///< the command they belong to
 
     bool has(const std::string& option) const { return values.count(option) > 0; }
     std::optional<std::string> text(const std::string& option) const;
     /// A whole number in [low, high]; throws InputError naming the option.
     std::int64_t integer(const std::string& option, std::int64_t otherwise, std::int64_t low, std::int64_t high) const;
-    /// Of --seed: any number of 64 bits without a sign; throws InputError.
+    /// The value of --seed: any 64-bit number without a sign; throws InputError.
     std::uint64_t seed(std::uint64_t otherwise) const;
     /// A number in [low, high]; throws InputError naming the option.
     double real(const std::string& option, double otherwise, double low, double high) const;
@@ -63,13 +63,13 @@ double parse_margin(const Parsed& parsed);
 /// --failed: `1%` or `0.01` as a number in [0, 1]; throws InputError.
 double parse_failed(const Parsed& parsed);
 
-/// Where `-o` says to write, if it is given. Refuses, before any work, what cannot be written, what exists while --overwrite is
-/// not given, and the files that the command reads.
+/// The output file of `-o`, if it is given. Before any work, refuses files that cannot be written, files that exist
+/// unless --overwrite is given, and the files that the command reads.
 std::optional<Output> check_output_option(const Parsed& parsed);
 
-/// Prints a text to the standard output, with what a terminal could obey escaped [text.hpp, shown].
+/// Prints a text to the standard output, with control characters escaped for the terminal [text.hpp, shown].
 void print(const std::string& text);
-/// The same to the error stream, at once.
+/// The same to the standard error, flushed at once.
 void say(const std::string& text);
 
 /// Writes a text to `-o`'s file, or to the standard output.
@@ -79,7 +79,7 @@ void write_output(const Parsed& parsed, const std::string& text);
 Option set_option();
 Option sweep_option();
 Option margin_option();
-/// --failed; `what`: what it means that too many failed.
+/// --failed; `what`: the consequence of too many failed trials.
 Option failed_option(const std::string& what);
 Option output_option(const std::string& help, const std::string& value = "FILE");
 /// --overwrite, of the commands that write a report or a trajectory to -o.
@@ -87,17 +87,17 @@ Option overwrite_option();
 /// --format: the first of `formats` by default.
 Option format_option(const std::vector<std::string>& formats);
 
-// What report and judge share: how to render, and rendering it. give_report returns the exit code.
+// Options of report and judge for rendering, and the rendering itself. give_report returns the exit code.
 struct ReportRequest {
     std::string format;
     Limits limits;
 };
 ReportRequest read_report_request(const Parsed& parsed);
-/// `path` and `run`: where the report's figures came from.
+/// `path` and `run`: the source of the report's numbers.
 int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
                 const RunFacts& run);
 
-// The subcommands: their description, and their work. They return the exit code.
+// The subcommands: their descriptions, and the functions that run them and return the exit code.
 const Command& run_command();
 const Command& report_command();
 const Command& judge_command();
@@ -119,10 +119,10 @@ int watch(const Parsed& parsed);
 int completion(const Parsed& parsed);
 int manual(const Parsed& parsed);
 
-/// All of them, in the order in which they are shown. [main.cpp]
+/// All subcommands, in the order in which they are shown. Defined in main.cpp.
 std::vector<const Command*> all_commands();
 
-/// What the program's exit code means.
+/// The meanings of the program's exit codes.
 struct ExitCode {
     int code;
     std::string meaning;

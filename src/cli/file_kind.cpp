@@ -14,7 +14,7 @@ namespace credence::cli {
 
 namespace {
 
-/// Of an HDF5 file.
+/// The kind of an HDF5 file.
 FileKind kind_of_contents(const std::string& path) {
     try {
         const hdf5::QuietErrors quiet;
@@ -29,7 +29,7 @@ FileKind kind_of_contents(const std::string& path) {
     return FileKind::unknown;
 }
 
-/// Whether the first line that says something is `[section]`.
+/// Whether the first line that is neither empty nor a comment is `[section]`.
 bool is_scenario(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)

@@ -1,4 +1,4 @@
-// credence: can a filter's covariance be believed?
+// The program credence, which tests whether a filter's covariance can be believed: main() and the list of subcommands.
 
 #include <credence/program.hpp>
 

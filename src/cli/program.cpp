@@ -1,4 +1,4 @@
-// The program: its subcommands, and what becomes of errors.
+// Runs a command line: selects the subcommand and reports errors.
 
 #include "cli/command.hpp"
 #include "cli/process/limits.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 using namespace credence;
 
-/// A subcommand: how it describes itself, and its work.
+/// A subcommand: its description, and the function that runs it.
 struct Subcommand {
     const cli::Command& (*command)();
     int (*work)(const cli::Parsed&, const std::string& command_line);
@@ -61,7 +61,7 @@ int help() {
     return 0;
 }
 
-/// The command line as it was given, quoted where a shell would need it.
+/// The command line as given, quoted where a shell needs it.
 std::string command_line(int argc, char** argv) {
     std::vector<std::string> words{"credence"};
     for (int i = 1; i < argc; ++i) words.push_back(shell_word(argv[i]));
@@ -70,7 +70,7 @@ std::string command_line(int argc, char** argv) {
 
 std::vector<std::string> arguments(int argc, char** argv) { return {argv + std::min(argc, 2), argv + argc}; }
 
-/// One line on the error stream, whatever was given to the program.
+/// Prints a message on one line of the standard error, whatever the program's input contains.
 int complain(const std::string& message, int exit_code) {
     std::cerr << printable(message, 1000) << "\n";
     return exit_code;
@@ -90,7 +90,7 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
                      (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
 }
 
-/// `--help`, `help`, `help COMMAND`, `--version`, or a command's work.
+/// Handles `--help`, `help`, `help COMMAND` and `--version`, or runs a command.
 int obey(const std::string& name, std::vector<std::string> arguments, const std::string& line) {
     if (name == "--version") {
         cli::print(version_text());
@@ -112,14 +112,15 @@ std::vector<const cli::Command*> cli::all_commands() {
 
 int program(int argc, char** argv) {
     cli::hold_standard_streams();
-    // At the process's end HDF5 would close what is open, and crash over what a damaged file kept it from closing. What
-    // credence writes is closed, and checked, long before.
+    // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
+    // from being closed. Files that credence writes are closed, and checked, long before.
     H5dont_atexit();
     const std::string name = argc > 1 ? argv[1] : "--help";
     const bool known = !name.empty() && name.front() != '-';
     const std::string prefix = known ? "credence " + name + ": " : "credence: ";
     try {
-        // Bad surroundings of this process, which another one on another machine need not have, before any work.
+        // Faults of this process's environment, which a process on another machine need not have, are reported before
+        // any work.
         if (known && name != "help") best_target(), cli::check_stack();
     } catch (const InputError& error) {
         return complain(prefix + error.what(), 2);

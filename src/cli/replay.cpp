@@ -70,7 +70,7 @@ const ScenarioResults& find_scenario(const Study& study, const std::string& name
     throw invalid_value("--scenario", name, "not in the file", "It has " + joined(names));
 }
 
-/// The place of the arm that a name means, its own or the only one of that controller.
+/// The index of the arm that a name denotes: its own name, or that of the only arm of a controller.
 std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
     const std::vector<const ArmResults*> meant = arms_meant(results, name);
     if (meant.size() == 1) return static_cast<std::size_t>(meant.front() - results.arms.data());
@@ -80,7 +80,7 @@ std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
                         "It has " + joined(names));
 }
 
-/// Where the trial stands in the columns.
+/// The row of the trial in the columns.
 std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
     const std::optional<std::int64_t> first = first_row(results, trial / block_size);
     if (!first || *first + trial % block_size >= results.trials)
@@ -89,7 +89,7 @@ std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
     return *first + trial % block_size;
 }
 
-/// Bit for bit, any NaN being like another.
+/// Equality bit for bit, where any NaN equals any other.
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
@@ -150,7 +150,7 @@ std::string as_csv(const std::vector<Trajectory>& trajectories) {
     return text;
 }
 
-/// `-` for a figure that a failed trial does not have.
+/// A value as text; `-` for one that a failed trial does not have.
 std::string figure_text(double value, int digits) {
     char text[40];
     std::snprintf(text, sizeof text, "%.*g", digits, value);

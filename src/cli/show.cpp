@@ -17,7 +17,7 @@ const Command& show_command() {
 
 namespace {
 
-/// One is a file that can be run; of several, each is one.
+/// One scenario is printed as a file that can be run; of several, each one is.
 void show_scenarios(const std::vector<Scenario>& scenarios) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         if (scenarios.size() > 1)

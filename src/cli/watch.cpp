@@ -30,7 +30,7 @@ const Command& watch_command() {
 
 namespace {
 
-/// Waits, but for a signal not longer than it takes to notice it.
+/// Waits in slices, so that a signal is noticed soon.
 void wait(double seconds) {
     using namespace std::chrono;
     constexpr int slice = 100;  // ms
@@ -41,7 +41,7 @@ void wait(double seconds) {
     }
 }
 
-/// The last look.
+/// The last snapshot.
 Snapshot follow(RunWatch& run, double every) {
     Snapshot look = run.look();
     if (look.ended()) return look;
@@ -53,7 +53,7 @@ Snapshot follow(RunWatch& run, double every) {
     return look;
 }
 
-/// FILE.h5 where its journal was named.
+/// FILE.h5, also where the name of its journal was given.
 std::string results_path(const std::string& given) {
     const std::string journal = ".journal";
     return given.ends_with(journal) ? given.substr(0, given.size() - journal.size()) : given;

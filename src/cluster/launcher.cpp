@@ -11,7 +11,7 @@ namespace credence {
 
 namespace {
 
-/// Which of several: a task of an array, a process of a launcher.
+/// A place among several: a task of an array, or a process of a launcher.
 struct Place {
     std::int64_t index = 0, count = 1;
 };
@@ -30,7 +30,7 @@ std::int64_t number_in(const Variables& variables, const std::string& name, std:
     return variables(name) ? number_in(variables, name) : otherwise;
 }
 
-/// Throws where the place is none.
+/// Throws where the place is invalid.
 Place checked(const Place& place, const std::string& index_name, const std::string& count_name) {
     if (place.count < 1 || place.index < 0 || place.index >= place.count)
         throw InputError("invalid --shard auto (" + index_name + " and " + count_name + " say " +
@@ -53,7 +53,7 @@ std::optional<Place> array_place(const Variables& variables) {
     return checked({(id - first) / step, count}, id_name, array + "COUNT");
 }
 
-/// What mpiruns and srun's MPI say of each process.
+/// The variables that mpirun and srun's MPI set for each process.
 struct RankNames {
     std::string rank, size;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// What the launcher of this process (Slurm, mpirun) says in environment variables: which of the processes that
-// it started this one is. docs/cluster.md has the table.
+// The environment variables of this process's launcher (Slurm, mpirun): they name this process among those that were
+// started. docs/cluster.md has the table.
 
 #include <credence/study.hpp>
 
@@ -14,27 +14,28 @@ namespace credence {
 using Variables = std::function<std::optional<std::string>(const std::string& name)>;
 Variables environment();
 
-/// Reads `I/N`. Throws InputError where it is not that, or I is not one of 0 ... N - 1.
+/// Reads `I/N`. Throws InputError where the text is invalid, or I is not one of 0 ... N - 1.
 Shard parse_shard(const std::string& text);
 
-/// The shard that this process is to compute [--shard auto]. Two launchers may stand inside each other, and each counts:
+/// The shard that this process has to compute [--shard auto]. Two launchers may be nested, and each counts:
 ///   the task of a Slurm array   a = (SLURM_ARRAY_TASK_ID - SLURM_ARRAY_TASK_MIN) / SLURM_ARRAY_TASK_STEP of A =
 ///                               SLURM_ARRAY_TASK_COUNT
 ///   the process of a launcher   p of P, of the first of OMPI_COMM_WORLD_RANK / _SIZE (mpirun of Open MPI), PMI_RANK /
 ///                               PMI_SIZE (other mpiruns), SLURM_PROCID / SLURM_NTASKS (srun)
-/// Both together are shard a P + p of A P; one of them alone is that. A batch script that was not started by srun is one
-/// process, though Slurm sets SLURM_PROCID and SLURM_NTASKS in it too.
-/// Throws InputError where nothing names a shard, or what names it cannot be.
+/// Both together give shard a P + p of A P; one of them alone gives its own. A batch script that was not started by
+/// srun is one process, though Slurm sets SLURM_PROCID and SLURM_NTASKS in it too.
+/// Throws InputError where no variable names a shard, or they contradict each other.
 Shard shard_of_launcher(const Variables& variables);
 
-/// A process of an MPI job of more than one, as the environment says.
+/// This process's place in an MPI job of several processes, according to the environment.
 struct LauncherRank {
     std::int64_t rank = 0, size = 0;
     std::string names;  ///< the variables with their values: `PMI_RANK=1, PMI_SIZE=4`
 };
 
-/// What the same variables (PMIX_RANK in a step of srun) say of this process; nothing where they name no MPI job of more
-/// than one. A process inherits them from a shell in a job as well: MPI itself says whether there are others.
+/// This process's place according to the same variables (PMIX_RANK in a step of srun); nothing where they name no MPI
+/// job of several processes. A process also inherits them from a shell in a job, so only MPI itself can tell whether
+/// there are others.
 std::optional<LauncherRank> rank_of_launcher(const Variables& variables);
 
 }  // namespace credence

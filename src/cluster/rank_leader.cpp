@@ -1,4 +1,4 @@
-// Rank 0: handing blocks out to the other ranks, and taking back what they computed.
+// Rank 0: hands blocks out to the other ranks, and takes back the results.
 
 #include "cluster/rank_message.hpp"
 
@@ -13,16 +13,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Rank 0 adds up the totals of a record in milliseconds: it is to get no more than some tens of them a second.
+/// Rank 0 adds up the totals of a message in milliseconds: it should receive no more than some tens of them a second.
 double seconds_between_records(int ranks) { return std::max(0.5, 0.02 * ranks); }
 
 }  // namespace
 
-/// What rank 0 knows of another one.
+/// Rank 0's state for another rank.
 struct RankLeader::Rank {
-    std::int64_t wants = 0;  ///< blocks that it asked for and did not get yet
-    std::int64_t out = 0;    ///< blocks that it was given and did not send back
-    bool dropping = false;   ///< was told to drop its blocks, and did not say that it has
+    std::int64_t wants = 0;  ///< blocks that it asked for and has not received yet
+    std::int64_t out = 0;    ///< blocks that were handed out to it and are not back
+    bool dropping = false;   ///< was asked to drop its blocks, and has not answered yet
     bool gone = false;
     Clock::time_point heard = Clock::now();
 };
@@ -42,7 +42,7 @@ RankLeader::~RankLeader() {
             std::this_thread::sleep_for(rank_pause);
         }
     } catch (const std::exception&) {
-        lost_ = true;  // whatever it was that came first is being told already
+        lost_ = true;  // the first error is being reported already
     }
     if (lost_) transport_.abandon();
 }
@@ -61,7 +61,7 @@ void RankLeader::begin(const StudyDefinition& definition, int threads, Sending s
 void RankLeader::serve(BlockQueue& queue) {
     const auto busy = [](const Rank& rank) { return rank.out > 0; };
     const auto dropping = [](const Rank& rank) { return rank.dropping; };
-    for (Rank& rank : ranks_) rank.heard = Clock::now();  // until now nobody listened
+    for (Rank& rank : ranks_) rank.heard = Clock::now();  // until now rank 0 did not receive messages
     bool told = false;
     for (;;) {
         while (const std::optional<Message> message = transport_.receive()) hear(*message, &queue);
@@ -79,7 +79,7 @@ void RankLeader::serve(BlockQueue& queue) {
     }
 }
 
-/// Gives what is asked for, but no more than a share of what is left, so that all ranks end at about the same time.
+/// Hands out what is asked for, but no more than a share of what is left, so that all ranks end at about the same time.
 void RankLeader::hand_out(BlockQueue& queue) {
     for (int number = 1; number < transport_.size(); ++number) {
         Rank& rank = ranks_[static_cast<std::size_t>(number)];
@@ -93,7 +93,7 @@ void RankLeader::hand_out(BlockQueue& queue) {
     }
 }
 
-/// Without a desk nobody has a use for blocks any more.
+/// Without a run in progress, received blocks are ignored.
 void RankLeader::hear(const Message& message, BlockQueue* queue) {
     Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
     rank.heard = Clock::now();

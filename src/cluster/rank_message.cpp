@@ -52,7 +52,7 @@ ScenarioResults without_columns(const Scenario& scenario, Keep keep) {
 
 namespace {
 
-/// All of a record's blocks, those that have values in their order.
+/// All blocks of a message, those that have values in their order.
 std::vector<std::int64_t> blocks_of(const CommitStart& start) {
     std::vector<std::int64_t> blocks;
     for (const JournalBlock& block : start.blocks)

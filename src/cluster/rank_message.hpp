@@ -1,5 +1,5 @@
 #pragma once
-// What ranks tell each other, as bytes.
+// The messages between ranks, as bytes.
 
 #include "cluster/ranks.hpp"
 
@@ -11,19 +11,20 @@
 
 namespace credence {
 
-/// Between two looks at what has come: short beside the time for which a rank has blocks, long beside that of a look.
+/// Pause between two checks for messages: short beside the time for which a rank has blocks, long beside the check
+/// itself.
 inline constexpr std::chrono::milliseconds rank_pause(1);
 
-/// What a rank computes, and how.
+/// A rank's task: what to compute, and how.
 struct RankOrder {
     StudyDefinition study;
     int threads = 0;                 ///< 0: as many as the rank may have
-    double seconds = 0;              ///< between two records
+    double seconds = 0;              ///< between two messages with blocks
 };
 std::string order_bytes(const RankOrder& order);
 RankOrder read_order(const std::string& bytes);
 
-/// Tasks of a study of `trials` trials.
+/// Blocks to compute, of a study of `trials` trials.
 struct RankTasks {
     std::int64_t trials = 0;
     std::vector<Task> tasks;
@@ -39,7 +40,7 @@ public:
     void take(const Block& block, const std::vector<ArmAggregates>& aggregates = {});
     bool empty() const { return blocks_.empty(); }
     std::size_t size() const { return values_.size() + totals_size_; }  ///< bytes that it takes
-    /// A record of the journal but for its checksum: the totals are those of its blocks alone.
+    /// The bytes of a journal's commit without its checksum: the totals are those of its blocks alone.
     std::string bytes(std::size_t scenario, std::int64_t trials) const;
 
 private:
@@ -51,10 +52,10 @@ private:
     std::size_t totals_size_ = 0;
 };
 
-/// Reads it back; `empty` are those of the study's scenarios without columns. Throws BadBytes.
+/// Reads the message back; `empty` are the study's scenarios without columns. Throws BadBytes.
 ComputedBlocks read_rank_message(const std::string& bytes, const std::vector<ScenarioResults>& empty);
 
-/// Empty results that hold no columns, and no totals yet.
+/// Empty results without columns and totals.
 ScenarioResults without_columns(const Scenario& scenario, Keep keep = Keep::trials);
 
 }  // namespace credence

@@ -1,4 +1,4 @@
-// A rank other than 0: computing what it is given.
+// A rank other than 0: computes the blocks that rank 0 hands out.
 
 #include "cluster/rank_message.hpp"
 
@@ -19,14 +19,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds silence(5);               ///< after which a rank says that it is alive
-constexpr double seconds_ahead = 0.1;                    ///< for which a rank is to have blocks
-constexpr double most_blocks_ahead = 1000;               ///< of a thread
-constexpr std::size_t too_much = std::size_t{64} << 20;  ///< bytes of finished blocks that rank 0 did not take yet
+constexpr std::chrono::seconds silence(5);               ///< after which a rank sends a sign of life
+constexpr double seconds_ahead = 0.1;                    ///< for which a rank should have blocks in advance
+constexpr double most_blocks_ahead = 1000;               ///< in advance, of a thread
+constexpr std::size_t too_much = std::size_t{64} << 20;  ///< bytes of finished blocks that rank 0 has not received yet
 
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
-/// One thread talks with rank 0, the others compute.
+/// One thread communicates with rank 0, the others compute.
 class Worker {
 public:
     Worker(Transport& transport, const std::function<std::string()>& signal) : transport_(transport), signal_(signal) {}
@@ -80,7 +80,7 @@ private:
         }
     }
 
-    /// Under the lock.
+    /// Called with the lock held.
     void finish() {
         over_ = true;
         queue_.clear();
@@ -116,7 +116,7 @@ private:
             static_cast<std::int64_t>(threads_ * std::clamp(seconds_ahead / block_seconds_, 1.0, most_blocks_ahead));
     }
 
-    // On the thread that talks.
+    // On the thread that communicates.
     void talk() {
         for (;;) {
             while (const std::optional<Message> message = transport_.receive()) hear(*message);
@@ -145,7 +145,7 @@ private:
     }
 
     void add_tasks(const RankTasks& given) {
-        if (given.trials != trials_) send_messages();  // a record is of one number of trials; nothing is under way
+        if (given.trials != trials_) send_messages();  // a message is of one number of trials
         const std::lock_guard lock(mutex_);
         trials_ = given.trials;
         waiting_ = false;
@@ -220,19 +220,19 @@ private:
     std::vector<BlockRunner> runners_;
     std::vector<ScenarioResults> empty_;
 
-    std::mutex mutex_;                 ///< of what follows, up to the gap
-    std::condition_variable changed_;  ///< tasks, room for what they bring, or the end
+    std::mutex mutex_;                 ///< of the members below, up to the empty line
+    std::condition_variable changed_;  ///< new tasks, space for results, or the end
     std::deque<Task> queue_;
-    std::vector<RankMessage> records_;  ///< by scenario: what is done
-    std::size_t pending_ = 0;          ///< bytes that they take
-    std::int64_t trials_ = 0;          ///< of the study, at the tasks' time
-    std::int64_t wanted_ = 0;          ///< blocks to have
+    std::vector<RankMessage> records_;  ///< by scenario: finished blocks
+    std::size_t pending_ = 0;          ///< bytes in these
+    std::int64_t trials_ = 0;          ///< of the study, with the current tasks
+    std::int64_t wanted_ = 0;          ///< blocks to have in advance
     int under_way_ = 0;
     double block_seconds_ = 0;
     bool over_ = false;
     std::exception_ptr trouble_;
 
-    bool dropping_ = false, waiting_ = false, told_of_signal_ = false;  // of the thread that talks alone
+    bool dropping_ = false, waiting_ = false, told_of_signal_ = false;  // used by the communicating thread only
     Clock::time_point spoke_ = Clock::now(), sent_ = Clock::now();
 };
 

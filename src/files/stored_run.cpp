@@ -18,7 +18,7 @@ bool exists(const std::string& path) {
     return std::filesystem::exists(std::filesystem::symlink_status(path, none));
 }
 
-/// Refuses to go on with another study, saying what differs.
+/// Refuses to continue another study, and names the difference.
 void check_same_study(const StudyDefinition& there, const StudyDefinition& asked, const std::string& path,
                       const std::string& remedy) {
     const std::string difference = difference_of(there, asked);
@@ -26,7 +26,7 @@ void check_same_study(const StudyDefinition& there, const StudyDefinition& asked
         throw InputError("cannot resume " + path + " (it holds another study: " + difference + "). " + remedy + ".");
 }
 
-/// Whether every trial of `part`, of the same study, is in `whole` too.
+/// Whether `whole` has every trial of `part`, which is of the same study.
 bool holds(const ScenarioResults& whole, const ScenarioResults& part) {
     if (!part.blocks.without(whole.blocks).empty()) return false;
     if (part.blocks.empty()) return true;
@@ -41,7 +41,7 @@ bool holds(const Study& whole, const Study& part) {
                       [](const ScenarioResults& a, const ScenarioResults& b) { return holds(a, b); });
 }
 
-/// As a journal's header has it.
+/// The file's identity as in a journal's header.
 FileIdentity without_device(FileIdentity file) {
     file.device = 0;
     return file;
@@ -61,7 +61,7 @@ StoredRun::StoredRun(const std::string& path, Study study, Start start, const st
     : output_(check_output(path, start != Start::fresh, "Give another name, --resume or --overwrite")),
       journal_path_(journal_path_of(path)),
       start_(start),
-      release_(release.substr(0, commit_release_size)),  // as a journal has it
+      release_(release.substr(0, commit_release_size)),  // cut as in a journal
       study_(std::move(study)) {
     if (exists(journal_path_)) open_journal();
     if (start_ == Start::resume) go_on();
@@ -93,7 +93,7 @@ void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& a
     check_same_study(header.study, asked, journal_path_,
                      "Finish that study first, remove the journal if it is not to be finished, or name another output");
     if (header.base != JournalBase::grown) {
-        // A file that --overwrite is to replace says nothing to the run.
+        // A file that --overwrite replaces does not affect the run.
         const bool unexpected = output_.there && !(header.base == JournalBase::replaced && is_base_of(header));
         return unexpected ? choose(asked) : journal_->load(study_);
     }
@@ -111,8 +111,8 @@ void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& a
     }
 }
 
-/// There are a journal and a results file that it does not know: its run wrote that and died before the journal was
-/// removed, or a merge put it there.
+/// There are a journal and a results file that the journal does not know: either its run wrote the file and died before
+/// it removed the journal, or a merge wrote it.
 void StoredRun::choose(const StudyDefinition& asked) {
     Study in_file = stored(asked);
     journal_->load(study_);
@@ -139,7 +139,7 @@ void StoredRun::read_file(const StudyDefinition& asked) {
     in_file_ = Contents::of(study_);
 }
 
-/// Whether the file is the one that was there when the journal was begun.
+/// Whether the file is the one that existed when the journal was begun.
 bool StoredRun::is_base_of(const JournalHeader& header) const {
     return output_.there && without_device(*output_.there) == header.base_file;
 }
@@ -153,7 +153,7 @@ void StoredRun::check_releases() const {
 
 BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, const Shard& shard) {
     const bool goes_on = journal_ && journal_->header() && !journal_is_over_;
-    // The journal of a file that others may not read is not for them either.
+    // If other users may not read the results file, they may not read its journal either.
     if (!journal_) journal_ = std::make_unique<Journal>(journal_path_, permissions_of(output_.target));
     if (!goes_on) {
         if (start_ != Start::overwrite && journal_->header() && !journal_is_over_)
@@ -171,7 +171,7 @@ BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, co
     return *journal_;
 }
 
-/// Throws Failure where what was read back in order to write the results is not what was there before.
+/// Throws Failure where the values that were read back for the results differ from the committed ones.
 void StoredRun::check_unchanged() const {
     if (in_file_ && identity_of(output_.target) != output_.there)
         throw Failure("cannot write " + output_.path + " (another program changed, replaced or removed it while the run "
@@ -183,7 +183,7 @@ void StoredRun::write(const RunFacts& facts) {
     if (journal_) study_.computed_by = journal_->computed_by();
     try {
         write_results(output_, study_, facts, [this] { check_unchanged(); });
-    } catch (const InputError& error) {  // what was to be read back is damaged
+    } catch (const InputError& error) {  // the values that were to be read back are damaged
         check_unchanged();
         throw Failure(error.what());
     }
@@ -200,7 +200,7 @@ bool StoredRun::keeps_something() {
     if (in_file_ || (journal_ && journal_->has_commits())) return true;
     try {
         if (journal_) journal_->remove();
-    } catch (const Failure&) {  // what failed before is what is to be said
+    } catch (const Failure&) {  // the earlier error is the one to report
     }
     return false;
 }

@@ -78,7 +78,7 @@ EquiprobableCells::EquiprobableCells(int degrees) {
     constexpr int slots = 1 << 14;
     scale_ = (slots - 1) / limit_;
     for (int slot = 0, cell = 0; slot < slots; ++slot) {
-        // A value's slot is found with rounding: start a little early.
+        // The slot is computed with rounding, so the search starts a little early.
         const double start = (slot - 0.001) / scale_;
         while (upper_[static_cast<std::size_t>(cell)] <= start) ++cell;
         first_.push_back(static_cast<std::uint16_t>(cell));

@@ -1,6 +1,6 @@
 #pragma once
-// Quantiles of chi-square that are the same bits from every compiler and library: totals are counted against
-// them. Everything that is computed when a report is made uses Boost's instead.
+// Quantiles of chi-square that are the same bits with every compiler and library, because stored totals count against
+// them. Reports use Boost's instead.
 
 #include <cstdint>
 #include <memory>
@@ -14,14 +14,16 @@ double stable_chi_square_quantile(double p, int degrees);
 /// The line cut into `distribution_cells` cells that are equally probable under chi-square(degrees).
 inline constexpr int distribution_cells = 4096;
 
-/// Whether the shape of NEES is counted: not over so many steps that the counts alone would take over 128 MB an arm.
+/// Whether the distribution of NEES is counted: not over so many steps that the counts alone would take over 128 MB an
+/// arm.
 inline bool distribution_counted(int steps) { return steps <= 4096; }
 
 class EquiprobableCells {
 public:
     explicit EquiprobableCells(int degrees);
 
-    /// The search for a value's cell, apart from the vectors it reads: loops that write keep it in registers.
+    /// The search for a value's cell, separate from the vectors that it reads, so that loops that write keep it in
+    /// registers.
     struct Search {
         const double* upper;
         const std::uint16_t* first;
@@ -31,7 +33,7 @@ public:
         int cell(double value) const {
             if (!(value < limit)) return distribution_cells - 1;
             int cell = value > 0 ? first[static_cast<int>(value * scale)] : 0;
-            cell += value >= upper[cell];  // mostly all, and no branch to guess
+            cell += value >= upper[cell];  // usually all are at or above, and a sum has no branch to predict
             while (value >= upper[cell]) ++cell;
             return cell;
         }
@@ -47,7 +49,7 @@ private:
     double limit_ = 0, scale_ = 0;
 };
 
-/// The cells of a number of degrees, made once and kept for the program's life. Thread-safe.
+/// The cells for a number of degrees, computed once and kept until the program ends. Thread-safe.
 std::shared_ptr<const EquiprobableCells> equiprobable_cells(int degrees);
 
 }  // namespace credence

@@ -1,7 +1,6 @@
 #pragma once
-// W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving
-// the bits that a plain double would. The only place with intrinsics; everything else is the compiler's vector
-// extension.
+// W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving the same
+// bits as a plain double. Only this file uses intrinsics; other code uses the compiler's vector extension.
 
 #include <credence/detail/real.hpp>
 
@@ -65,7 +64,7 @@ struct Lane {
     V v;
     Lane() = default;
     Lane(V raw) : v(raw) {}
-    explicit Lane(double one) : v(one - V{}) {}  // unlike one + V{}, exact for -0: nothing is left to compute
+    explicit Lane(double one) : v(one - V{}) {}  // unlike one + V{}, exact for -0: the compiler removes the subtraction
     explicit Lane(int one) : Lane(static_cast<double>(one)) {}
 
     friend Lane operator+(Lane a, Lane b) { return a.v + b.v; }
@@ -98,11 +97,11 @@ struct Lane {
     }
 };
 
-/// Trials in a Real.
+/// Number of trials in a Real.
 template <class Real>
 inline constexpr int lanes = static_cast<int>(sizeof(Real) / sizeof(double));
 
-/// W trials at once; one of them is a plain double.
+/// The Real for W trials at once: for one trial, a plain double.
 template <int W>
 struct PackOf {
     using type = Lane<W>;
@@ -188,7 +187,7 @@ Mask<Real> mask_of_bits(unsigned bits) {
     }
 }
 
-/// In how many lanes a mask is true.
+/// Number of lanes in which a mask is true.
 inline int lane_count(bool mask) { return mask; }
 template <int W>
 int lane_count(LaneMask<W> mask) {
@@ -215,8 +214,8 @@ Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
     return mask.m ? yes.v : no.v;
 }
 
-/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, NaN last, and what lies below
-/// `low` comes out above everything, so that one comparison does.
+/// low <= x <= high, of numbers that are not negative: they are ordered as their bits are, NaN last, and the difference
+/// of a value below `low` wraps around to above everything, so that one comparison suffices.
 template <int W>
 LaneMask<W> within(Lane<W> x, Lane<W> low, Lane<W> high) {
 #if defined(__AVX512F__)
@@ -228,7 +227,7 @@ LaneMask<W> within(Lane<W> x, Lane<W> low, Lane<W> high) {
         return both(x >= low, x <= high);
 }
 
-/// A pack from its doubles in memory, wherever they lie.
+/// A pack loaded from its doubles in memory, with any alignment.
 template <class Real>
 Real load(const double* from) {
     Real pack;

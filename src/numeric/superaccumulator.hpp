@@ -1,5 +1,5 @@
 #pragma once
-// Fast exact sums of the values of a block, of which ExactSum makes five times as much work.
+// Fast exact sums of the values of a block; ExactSum takes about five times as long.
 
 #include <credence/detail/exact_sum.hpp>
 
@@ -18,7 +18,7 @@ namespace credence {
 class Superaccumulator {
 public:
     void add(double value) {
-        finite_ = finite_ && std::abs(value) < 1e300;  // as ExactSum has it
+        finite_ = finite_ && std::abs(value) < 1e300;  // the same limit as ExactSum's
         if (!finite_) return;
         constexpr std::uint64_t one = std::uint64_t{1} << 52;
         const auto bits = std::bit_cast<std::uint64_t>(value);

@@ -22,7 +22,7 @@ std::size_t characters(const std::string& text) {
 
 std::string padded(const std::string& text, int width, bool right) {
     const int left = width - static_cast<int>(characters(text));
-    const std::string space(static_cast<std::size_t>(std::max(1, left)), ' ');  // never glued together
+    const std::string space(static_cast<std::size_t>(std::max(1, left)), ' ');  // at least one blank between columns
     return right ? space + text : text + space;
 }
 
@@ -76,7 +76,7 @@ std::string p_text(double p) {
 
 namespace {
 
-/// Targets with blanks between them, on as many lines as they take; the first begins behind `indent` columns.
+/// Words with blanks between them, on as many lines as needed; the first begins after `indent` columns.
 std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
     std::string text;
     std::size_t column = indent;

@@ -1,5 +1,5 @@
 #pragma once
-// How text reports write numbers, sentences and tables.
+// Formatting of numbers, sentences and tables in text reports.
 
 #include <credence/statistics.hpp>
 
@@ -11,7 +11,7 @@ namespace credence {
 /// Left- or right-pads to a width counted in characters, not bytes.
 std::string padded(const std::string& text, int width, bool right = true);
 
-/// `-` for what is not finite: neither `nan` nor `inf` gets into a sentence.
+/// A number; `-` where it is not finite, so that neither `nan` nor `inf` appears in a sentence.
 std::string number(double value, int digits);
 
 /// Decimals that show two digits of the uncertainty, at most 6.
@@ -28,25 +28,26 @@ std::string duration_text(double seconds);
 /// `[low, high]`, or `-`.
 std::string bracketed(const Interval& interval, int digits);
 
-/// A share in whole percents; only what is none or all says so.
+/// A share in whole percents; 0 % and 100 % are used only for none and all.
 std::string percent(double share);
 
 /// A p-value: three decimals, below 0.001 its order of magnitude.
 std::string p_text(double p);
 
-/// A sentence on lines of less than 120 columns, of which the first begins behind `indent` columns and the others two further.
+/// A sentence on lines of less than 120 columns, of which the first begins after `indent` columns and the others two
+/// further.
 std::string wrapped(const std::string& text, std::size_t indent = 0);
 
-/// The same of `head` and the parts between commas, each of which stays whole where it can.
+/// The same for `head` and parts separated by commas, each of which stays on one line where it can.
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent);
 
-/// Columns as wide as what they hold, each two blanks from the one before.
+/// A table with columns as wide as their content, two blanks apart.
 class TextTable {
 public:
     /// `l` or `r` for each column, to the left or to the right; the last one stands for all further ones.
     explicit TextTable(std::string alignment) : alignment_(std::move(alignment)) {}
     void row(std::vector<std::string> cells);
-    /// Between the rows, as it is.
+    /// A line between the rows, printed unchanged.
     void line(std::string text);
     /// Whether its rows have less than 120 columns.
     bool fits() const;

@@ -16,7 +16,7 @@ namespace credence {
 
 namespace {
 
-/// What `published.COLUMN` says; nothing where the scenario has no such key.
+/// The value of `published.COLUMN`; nothing where the scenario has no such key.
 std::optional<std::vector<PublishedNumber>> published_of(const Scenario& scenario, const std::string& column) {
     const std::string key = "published." + column;
     const Setting* published = find_setting(scenario.settings, key);
@@ -24,7 +24,7 @@ std::optional<std::vector<PublishedNumber>> published_of(const Scenario& scenari
     return parse_published(key, published->value);
 }
 
-/// `values` may be none: then nothing is known of its place.
+/// `values` may be null: then the place is unknown.
 std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedNumber>>& published,
                                        const std::string& arm, const std::vector<double>& values) {
     if (!published) return std::nullopt;
@@ -33,10 +33,10 @@ std::optional<PublishedPlace> place_of(const std::optional<std::vector<Published
     return std::nullopt;
 }
 
-/// NEES and NIS ratios are judged by tests of their own.
+/// NEES and NIS ratios have tests of their own.
 bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
-/// Of totals: mean and spread are known, and nothing of the distribution.
+/// A column's report from totals: mean and spread are known, the distribution is not.
 ColumnReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
     const Column& column = results.columns[c];
     ColumnReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
@@ -98,12 +98,12 @@ Report make_report(const Study& study, const Limits& limits) {
 Report make_record_report(Record record, const std::string& path, const Limits& limits) {
     ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
-    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // a record does not tell
+    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // not in a record
     Report report;
     report.source = "record " + printable(path, path.size());
     report.limits = limits;
     report.troubles = record.troubles;
-    results.scenario.title.clear();  // the source says it
+    results.scenario.title.clear();  // the source names it
     report.scenarios.push_back(results.scenario);
     constexpr std::uint64_t bootstrap_seed = 1;
     report.arms.push_back(report_arm(results, arm, bootstrap_seed, limits));

@@ -1,5 +1,5 @@
 #pragma once
-// A report's grids, and what its arms and pairs have at their points.
+// A report's sweeps, and the values of its arms and pairs at their points.
 
 #include <credence/report.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace credence {
 
-/// The report as grids of points.
+/// A report organised by the points of its sweeps.
 class SweptReport {
 public:
     explicit SweptReport(const Report& report);
@@ -21,13 +21,13 @@ public:
     const Report& report() const { return report_; }
     const std::vector<Grid>& grids() const { return grids_; }
     const std::string& scenario(const GridPoint& point) const { return report_.scenarios[point.scenario].name; }
-    /// Nothing where the point lacks the arm or the pair.
+    /// Nothing where the point does not have the arm or the pair.
     const ArmReport* arm(const GridPoint& point, const std::string& name) const;
     const Comparison* pair(const GridPoint& point, const std::string& name) const;
-    /// Names of the arms and of the pairs of all points, in the order in which they come.
+    /// Names of the arms and of the pairs of all points, in the order of their first appearance.
     std::vector<std::string> arm_names(const Grid& grid) const;
     std::vector<std::string> pair_names(const Grid& grid) const;
-    /// Whether a scenario is a point of a grid.
+    /// Whether a scenario is a point of a sweep.
     static bool swept(const Scenario& scenario) { return !scenario.sweep.at.empty(); }
 
 private:
@@ -41,19 +41,19 @@ private:
     std::map<Key, const Comparison*> pairs_;
 };
 
-/// A figure of a point as its tables and curves show it.
+/// A quantity of a point as its tables and curves show it.
 struct SweptColumn {
     std::string name, unit;
     Summary summary;
 };
 
-/// The figures that tables and curves show of an arm, in their order: NEES, NIS and trace(P), as far as it has them.
+/// The quantities that tables and curves show of an arm, in their order: NEES, NIS and trace(P), as far as it has them.
 std::vector<SweptColumn> swept_columns(const ArmReport& arm);
-/// Those of a pair: what planning is for.
+/// Those of a pair: the gain by planning.
 std::vector<SweptColumn> swept_columns(const Comparison& pair);
 
-/// Columns that only the CSV of a study with grids has: the swept scenario, and every swept key. Blank where a scenario
-/// has none.
+/// Columns that only the CSV of a study with sweeps has: the swept scenario, and every swept key. Blank for a scenario
+/// without them.
 class SweepColumns {
 public:
     explicit SweepColumns(const Report& report);
@@ -66,7 +66,7 @@ private:
     std::vector<std::string> keys_;
 };
 
-/// The grids as tables, for people.
+/// The sweeps as text tables.
 std::string sweep_text(const Report& report);
 
 }  // namespace credence

@@ -16,7 +16,7 @@ bool same_axes(const Grid& grid, const SweepPoint& point) {
                       [](const GridAxis& axis, const SweepCoordinate& one) { return axis.key == one.key; });
 }
 
-/// The place of a value along an axis, which gets it where it lacks it.
+/// The index of a value along an axis; a new value is added to the axis.
 std::size_t place_on(GridAxis& axis, const std::string& value) {
     const auto found = std::find(axis.values.begin(), axis.values.end(), value);
     const auto place = static_cast<std::size_t>(found - axis.values.begin());
@@ -34,7 +34,7 @@ std::vector<double> numbers_of(const std::vector<std::string>& values) {
     return numbers;
 }
 
-/// Standard deviation over mean of the differences of neighbours.
+/// Coefficient of variation of the differences of neighbours.
 double unevenness(const std::vector<double>& sorted) {
     std::vector<double> differences;
     for (std::size_t i = 0; i + 1 < sorted.size(); ++i) differences.push_back(sorted[i + 1] - sorted[i]);

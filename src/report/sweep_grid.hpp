@@ -1,5 +1,5 @@
 #pragma once
-// The grids of a study: which of its scenarios are points of one, and where.
+// The grids of a study: the scenarios that are points of one, and their places in it.
 
 #include <credence/sweep.hpp>
 
@@ -36,13 +36,13 @@ std::vector<Grid> grids_of(const std::vector<SweepPoint>& places);
 /// three, and their ratios vary less, by coefficient of variation, than their differences.
 bool evenly_by_ratio(std::vector<double> values);
 
-/// The axis that curves are drawn along: the first that has numbers, or the first.
+/// The axis along which curves are drawn: the first one with numbers, or the first.
 std::size_t curve_axis(const Grid& grid);
 
-/// The points of a grid by what they have on all axes but one: a curve each, in the study's order.
+/// The points of a grid, grouped by their values on all axes but one: a curve each, in the study's order.
 struct GridCurve {
     std::string title;                     ///< `sensor.sigma=0.05`; empty where there is no other axis
-    std::vector<const GridPoint*> points;  ///< rising along the axis where it has numbers
+    std::vector<const GridPoint*> points;  ///< increasing along the axis where it has numbers
 };
 std::vector<GridCurve> curves_along(const Grid& grid, std::size_t axis);
 

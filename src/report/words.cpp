@@ -1,4 +1,4 @@
-// Words that every rendering of a report shares.
+// Texts that every format of a report uses.
 
 #include "report/words.hpp"
 
@@ -15,12 +15,12 @@ namespace credence {
 
 namespace {
 
-/// How far a finding is from what a consistent filter gives.
+/// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
     return finding.what == "biased" ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
 
-/// The findings of one kind: each block or component at its worst, the farthest off first.
+/// The findings of one kind: each group or component at its worst, the farthest off first.
 std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
@@ -42,7 +42,7 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
     return parts;
 }
 
-/// How many trials failed, where that is the verdict.
+/// How many trials failed, where that decides the verdict.
 std::string failed_text(const ArmReport& arm) {
     if (arm.consistency.verdict != Verdict::failed) return {};
     return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) + " trials failed" +
@@ -50,7 +50,7 @@ std::string failed_text(const ArmReport& arm) {
            short_number(100 * arm.consistency.limits.failed) + " %";
 }
 
-/// Why an arm that is undecided is so, and whether there is anything to judge.
+/// The reason why an arm is undecided, and whether there are any data.
 std::string undecided_text(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
     if (arm.evidence.trials == 0) return "no trial is left that could be judged";
@@ -64,7 +64,7 @@ std::string undecided_text(const ArmReport& arm) {
     return {};
 }
 
-/// The trials of a record that are in no figure, the first of them by name.
+/// The trials of a record that are left out of the numbers, the first of them by name.
 void add_troubles(const Report& report, std::vector<std::string>& lines) {
     constexpr std::size_t most = 5;
     const std::size_t shown = std::min(most, report.troubles.size());

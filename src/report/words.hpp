@@ -1,5 +1,5 @@
 #pragma once
-// Words that every rendering of a report shares.
+// Texts that every format of a report uses.
 
 #include <credence/report.hpp>
 
@@ -8,19 +8,19 @@
 
 namespace credence {
 
-/// A line of why an arm has its verdict: a head, and what is listed behind it.
+/// A line of the reasons for an arm's verdict: a head, and the list after it.
 struct Reason {
     std::string head;
     std::vector<std::string> parts;
 };
 
-/// Why an arm has its verdict: how many trials failed, the worst of what was found, notes, and what would decide. Nothing
-/// of an arm that is not run yet.
+/// The reasons for an arm's verdict: the share of failed trials, the worst findings, notes, and the trials that would
+/// decide. Empty for an arm that has not run yet.
 std::vector<Reason> reasons_of(const ArmReport& arm);
 std::string reason_text(const Reason& reason);
 
-/// Why nothing is claimed of an arm: that it is not run yet, that too many trials failed, or what leaves it undecided. Empty
-/// where there is nothing to say.
+/// Why there is no verdict on an arm: it has not run yet, too many trials failed, or the reason why it is undecided.
+/// Empty for a verdict.
 std::string no_claim_text(const ArmReport& arm);
 
 /// The verdict's name, or `not run yet`; and as a clause, such as `is consistent`.
@@ -33,7 +33,7 @@ bool has_run(const Report& report, const std::string& scenario);
 /// `300 trials of each arm, root seed 1`; of the arms that have run.
 std::string trials_text(const Report& report);
 
-/// What is missing where no trial is kept.
+/// The note on what is missing where no trial is kept.
 inline const char* const no_trials_note =
     "only totals are kept: medians and distributions need the trials (credence run --keep trials).";
 
@@ -41,7 +41,7 @@ inline const char* const no_trials_note =
 struct FailureCounts {
     std::int64_t trials = 0, left_out = 0, diverged = 0;
 };
-/// What becomes of the trials that failed, such as `are left out of its figures`, and of those that diverged.
+/// How failed trials are treated, such as `are left out of its figures`, and those that diverged.
 struct FailureWords {
     std::string left_out, diverged;
 };
@@ -49,21 +49,21 @@ struct FailureWords {
 std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
                                        const FailureWords& words);
 
-/// What is said before anything else: failed and diverged trials, troubles of a record, a study that is not complete or
-/// keeps no trials.
+/// The warnings before everything else: failed and diverged trials, troubles of a record, a study that is not complete
+/// or keeps no trials.
 std::vector<std::string> warnings_of(const Report& report);
 
-/// The figure of that name; the first one where there is none.
+/// The column of that name; the first one where there is none.
 const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name);
 
-/// A figure's name in words, with its unit.
+/// A column's name in words, with its unit.
 std::string figure_title(const std::string& column, const std::string& unit);
 
-/// The blocks worth a line: those of several parts, and the features (or whatever comes in numbers) that are farthest
-/// off.
+/// The component groups that get a line: those with several components, and the features (or other numbered groups)
+/// that are farthest off.
 std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence);
 
-/// Of the values that are known.
+/// Statistics of the values that are not NaN.
 double mean_of(const std::vector<double>& values);
 
 /// The step whose NEES is farthest from chi-square.

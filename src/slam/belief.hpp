@@ -1,5 +1,5 @@
 #pragma once
-// The belief, and what can be asked of it.
+// The filter's belief: mean and covariance, and the quadratic forms e' P^-1 e that are computed from it.
 
 #include <credence/detail/each.hpp>
 
@@ -15,7 +15,7 @@ struct Symmetric {
     const Real& at(int i, int j) const { return i <= j ? entry[i][j] : entry[j][i]; }
 };
 
-/// What the filter holds: mean x [n] and covariance P [n, n], n <= capacity.
+/// The filter's mean x [n] and covariance P [n, n], n <= capacity.
 template <class Real, int capacity>
 struct Belief {
     Real mean[capacity];
@@ -76,7 +76,8 @@ struct Elimination {
     Real e[capacity];
 };
 
-/// use(room); where the loops are written out, use(another room), of which the compiler keeps in registers what it can.
+/// Calls use(room). Where the loops are written out, it passes a local variable instead of `room`, so that the compiler
+/// can keep it in registers.
 template <class Layout, class Room, class Use>
 CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
     if constexpr (Layout::written_out) {
@@ -87,8 +88,8 @@ CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
     }
 }
 
-/// e' A^-1 e over the rows [i, i + 2), which are then eliminated from the rows [first, i): what is left of A and e goes
-/// into `left`, which may be where they are.
+/// Returns e' A^-1 e over the rows [i, i + 2) and eliminates these from the rows [first, i). The remaining A and e are
+/// written to `left`, which may be the same object as the input.
 template <class Real, int capacity, class First, class Index>
 CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
                                                   First first, Index i, Elimination<Real, capacity>& left) {
@@ -110,9 +111,10 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& l
     return eliminate_pair(left.A, left.e, first, i, left);
 }
 
-/// e' P^-1 e over the blocks [i, last) of the state, for i = last - 2, last - 4 ... down to first, each with that
-/// block's P [Bar-Shalom 2001, 5.4.2]: told(i, value and definiteness so far). P is eliminated two rows at a time from
-/// its end, so that one elimination serves every block that ends at `last`. An odd row is left over as the first.
+/// Computes e' P^-1 e over the component ranges [i, last) of the state, for i = last - 2, last - 4 ... down to first,
+/// each with its own part of P [Bar-Shalom 2001, 5.4.2]. Calls told(i, error) with the squared error of the range [i,
+/// last) and whether its P is positive definite. P is eliminated two rows at a time from its end, so that one
+/// elimination serves every range that ends at `last`. Of an odd number of rows, the first is eliminated by itself.
 template <class Real, int capacity, class First, class Last, class Told>
 CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
                                            Last last, Elimination<Real, capacity>& left, Told&& told) {

@@ -1,5 +1,5 @@
 #pragma once
-// Conditioning a belief on two rows of a measurement [model.md, Filter: Update].
+// Conditioning a belief on two rows of a measurement [docs/model.md, Filter: Update].
 //
 //   H  rows of a measurement, N  its noise variance, nu  innovation, W = P H', S = H W + N, K = W S^-1
 // Every measurement comes as two rows with isotropic noise:
@@ -7,15 +7,16 @@
 //   (theta, r, f_j), d = f_j - r [docs/model.md, Rotated sightings];
 //   a contrast, one of the M - 1 combinations of features (or fewer) that say all that the edges do
 //   [docs/model.md, Contrasts].
-// Updating with two rows after two, each innovation taken about what the rows before it have moved (the running
-// correction), is the joint update of model.md, and the parts of nu' S^-1 nu add up to the joint one.
+// Updating with the rows two by two, each innovation corrected for the change of the mean by the rows before it (the
+// running correction), gives the joint update of model.md, and the contributions to nu' S^-1 nu add up to the joint
+// one.
 
 #include "slam/filter.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Where rows of H have entries: at the pose, or not, and at the features' components [first, last).
+/// Where rows of H can differ from 0: at the pose, if `pose`, and at the features' components [first, last).
 template <bool pose, class First, class Last>
 struct Entries {
     First first;
@@ -79,7 +80,8 @@ struct ContrastRows {
         Vector2<Real> sum{column(start), column(start + one)};
         each(first + one, layout.features(), [&](auto j) {
             const auto f = Layout::feature(j);
-            // Written out, a product with 0 costs less than a look at the coefficient; it changes nothing finite.
+            // Where loops are written out, a product with 0 costs less than a test of the coefficient; finite sums are
+            // the same.
             if (Layout::written_out || coefficient[j] != 0)
                 sum = add_scaled(sum, Real(coefficient[j]), Vector2<Real>{column(f), column(f + one)});
         });
@@ -87,19 +89,19 @@ struct ContrastRows {
     }
 };
 
-/// What an update has come to: the correction K nu so far, nis = nu' S^-1 nu over `rows` rows; the same of the features'
-/// rows alone and of the edges' rows alone, each with its own part of S.
+/// The accumulated result of an update: the correction K nu, and nis = nu' S^-1 nu over `rows` rows; the same for the
+/// features' rows alone and for the edges' rows alone, each with its own part of S.
 template <class Real, int capacity>
 struct Update {
     Real correction[capacity];
     Real nis{}, nis_features{}, nis_edges{}, rows{}, unseen{};
-    Real unsettled{};                ///< 1 where an iterated update had not come to rest, else 0
+    Real unsettled{};                ///< 1 where an iterated update has not converged, else 0
     Mask<Real> positive_definite{};  ///< every S was
-    Elimination<Real, capacity> alone;  ///< room for nis_edges
+    Elimination<Real, capacity> alone;  ///< workspace for nis_edges
 };
 
-/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes keep theirs. `gained(i, K_i)` is told
-/// the gain, row by row. Returns S^-1, zero where masked.
+/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(i, K_i)`
+/// receives the gain, row by row. Returns S^-1, zero where masked.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
 Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
                          Gained&& gained) {
@@ -107,7 +109,7 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
     const auto entries = rows.entries();
     Vector2<Real> W[capacity];
     const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA { W[i] = rows([&](auto s) { return P.at(i, s); }); };
-    // What S is made of comes first: the rest fills the time in which S is inverted.
+    // The entries that S needs come first: the others are computed while S is being inverted.
     each_entry(layout, entries, make_row);
     const Vector2<Real> HWx = rows([&](auto s) { return W[s].x; });
     const Vector2<Real> HWy = rows([&](auto s) { return W[s].y; });
@@ -119,7 +121,7 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
         gained(i, K);
         each(i, n, [&](auto j) { entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, entry[i][j])); });
     };
-    // As above for the next measurement's S: it wants the pose and the next feature.
+    // Likewise, the next measurement's S needs the pose and the next feature first.
     const auto next = entries.first + two;
     each(zero, Layout::pose_size, update_row);
     each(next, n, update_row);
@@ -127,7 +129,7 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
     return S_inverse;
 }
 
-/// The same for a covariance alone: what a planner asks.
+/// The same for a covariance alone, as planners need it.
 template <class Layout, class Rows, class Real, int capacity>
 void condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used) {
     condition(P, layout, rows, N, used, [](auto, const Vector2<Real>&) {});
@@ -152,7 +154,7 @@ Vector2<Real> point_at(const Real* mean, int index) {
     return {mean[index], mean[index + 1]};
 }
 
-/// d = f_j - r at the mean x, world frame: what a sighting rotated into the world is expected to be.
+/// d = f_j - r at the mean x, world frame: the expected sighting, rotated into the world.
 template <class Layout, class Real>
 Vector2<Real> predicted_difference(const Real* mean, int j) {
     return point_at(mean, Layout::feature(j)) - point_at(mean, Layout::position);
@@ -170,7 +172,7 @@ SightingRows<Layout, Real, Index> sighting_rows(const Real* mean, Index j) {
     return sighting_rows_at<Layout>(predicted_difference<Layout>(mean, j), j);
 }
 
-/// A sighting as an estimator takes it in: its rows of H and its innovation, turned by the estimator's `frame`.
+/// A linearised sighting: its rows of H and its innovation, both rotated by the estimator's `frame`.
 template <class Layout, class Real, class Index>
 struct Linearised {
     SightingRows<Layout, Real, Index> rows;

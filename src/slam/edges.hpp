@@ -6,19 +6,19 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// What the edges measured, about the predicted mean, as the contrasts' innovations; `unexplained` is what no state can
-/// explain of it, the residual of the graph's cycles, which enters the NIS alone [docs/model.md, Contrasts].
+/// The edge measurements as innovations of the contrasts, about the predicted mean. `unexplained` is the part of them
+/// that no state can explain, the residual of the graph's cycles; it enters the NIS alone [docs/model.md, Contrasts].
 template <class Layout, class Real>
 struct ContrastInnovations {
     Vector2<Real> nu[Layout::feature_capacity];  ///< [M - 1]
     Real unexplained = Real(0);                  ///< over sigma_edge^2
 };
 
-/// By a forward substitution. `edge_measurement(e)` gives z_e, world frame.
+/// Computes the contrasts' innovations by a forward substitution. `edge_measurement(e)` gives z_e, world frame.
 template <class Layout, class Real, int capacity, class EdgeMeasurement>
 void contrast_innovations(const Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                           const EdgeMeasurement& edge_measurement, ContrastInnovations<Layout, Real>& innovations) {
-    Vector2<Real>* pull = innovations.nu;  // B' nu: what the edges say of each feature; then, in place, nu of contrasts
+    Vector2<Real>* pull = innovations.nu;  // B' nu, summed by feature; then, in place, nu of the contrasts
     Real unexplained = Real(0);
     each(zero, layout.features(), [&](auto j) { pull[j] = {Real(0), Real(0)}; });
     for (int e = 0; e < filter.edge_count; ++e) {
@@ -44,7 +44,7 @@ void contrast_innovations(const Belief<Real, capacity>& belief, const FilterPara
     innovations.unexplained = filter.edge_count > 0 ? unexplained * Real(1 / filter.variance_edge) : Real(0);
 }
 
-/// nu' S^-1 nu of the edges alone: P is still the predicted one.
+/// nu' S^-1 nu of the edges alone. P must still be the predicted covariance.
 template <class Layout, class Real, int capacity>
 Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& filter, const Layout& layout,
                   const ContrastInnovations<Layout, Real>& innovations, Elimination<Real, capacity>& work) {
@@ -53,7 +53,7 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
     each(zero, contrasts, [&](auto c) {
         const Contrast& contrast = filter.contrasts[c];
         const auto row = two * c;
-        const bool idle = contrast.scale == 0;  // then it is a row of its own, with innovation 0
+        const bool idle = contrast.scale == 0;  // the graph lacks this contrast: a row of its own, with innovation 0
         const auto rows = contrast_rows<Real>(filter, layout, c);
         Vector2<Real> W[capacity];  // columns of P H'
         each(Layout::pose_size, layout.size(), [&](auto i) { W[i] = rows([&](auto s) { return P.at(i, s); }); });
@@ -82,7 +82,7 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
     return nis;
 }
 
-/// Takes the edges in, as contrasts: what they say of the state, and all of their part of the NIS.
+/// Updates with the edges, as contrasts, and adds their contribution to the NIS.
 template <class Layout, class Real, int capacity>
 void take_in_edges(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                    const ContrastInnovations<Layout, Real>& innovations, Update<Real, capacity>& update) {

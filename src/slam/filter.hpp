@@ -1,5 +1,5 @@
 #pragma once
-// The filter's start and prediction, for both process models [model.md, Filter]. Its update: update.hpp.
+// The filter's start and prediction, for both process models [docs/model.md, Filter]. Its update: update.hpp.
 //
 //   x  mean [n], P  covariance [n, n] (upper triangle), Q  process noise, F  transition
 //   omega  turn, v  move; R(theta) = [cos, -sin; sin, cos], J = [0, -1; 1, 0]; theta, r, f as in world.hpp, estimated
@@ -17,8 +17,8 @@ struct Contrast {
     double scale = 0;                        ///< 1/D; 0 where the graph has no such contrast
 };
 
-/// What the filter believes of the noises (sigma times the scenario's factors, squared), and what it knows of the
-/// world.
+/// The filter's model: the noises that it assumes (sigma times the scenario's factors, squared), and the parts of the
+/// world that it knows.
 struct FilterParameters {
     int features = 0;
     const Point* translation = nullptr;      ///< [K - 1] t_k
@@ -37,7 +37,7 @@ struct FilterParameters {
 
 inline namespace CREDENCE_TARGET {
 
-/// The filter's start: robot at 0 with the initial covariance (zero by default), features where they were first seen.
+/// The filter's start: the robot at 0 with the initial covariance (zero by default), features at their first estimates.
 template <class Layout, class Real, int capacity>
 void start_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                   const Sighting<Real>* first_sights) {
@@ -93,8 +93,8 @@ void turn_position(Symmetric<Real, capacity>& P, const Layout& layout, const Vec
 }
 
 /// Predicts the robot under a command: theta <- theta + omega, r <- r + R(theta) v, P <- F P F' + Q, F[r, theta] = J u.
-/// `turned(R(theta) v)` gives u, the move that the heading's error turns: R(theta) v itself, but for estimators that
-/// linearise elsewhere.
+/// `turned(R(theta) v)` gives u, the displacement that an error of the heading rotates: R(theta) v itself, except for
+/// estimators that linearise elsewhere.
 template <class Layout, class Real, int capacity, class Turned>
 void predict_robot(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                    const Command<Real>& command, const Turned& turned) {

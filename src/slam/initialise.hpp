@@ -1,15 +1,15 @@
 #pragma once
-// The initialisation of a feature that is seen for the first time [docs/landmarks.md, First sight].
+// The initialisation of a feature that is seen for the first time [docs/landmarks.md, Filter].
 //
-//   z  the sighting, body frame; sigma^2 its believed variance; c = J d, what the heading's error moves the feature by:
-//   d = f^ - r^, but for estimators that linearise elsewhere
+//   z  the sighting, body frame; sigma^2 its assumed variance; c = J d, the displacement of the feature by an error of
+//   the heading: d = f^ - r^, except for estimators that linearise elsewhere
 
 #include "slam/condition.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// P[f,:] = P[r,:] + c P[theta,:], and the same once more for P[f,f], plus the sighting's noise.
+/// P[f,:] = P[r,:] + c P[theta,:], applied once more for P[f,f], plus the sighting's noise.
 template <class Layout, class Real, int capacity>
 void initialise_covariance(Symmetric<Real, capacity>& P, const Layout& layout, int j, const Vector2<Real>& c,
                            Real variance) {
@@ -30,9 +30,9 @@ void initialise_covariance(Symmetric<Real, capacity>& P, const Layout& layout, i
     P.entry[f + 1][f + 1] = with_y.y + variance;
 }
 
-/// Initialises feature j where it is seen, after the update with the features that were known, in place of whatever was
-/// believed of it: f^ = r^ + R(theta^) z, P[f,:] = P[r,:] + c P[theta,:], P[f,f] = [c I] P_pose [c I]' + sigma^2 I.
-/// `turned(f^)` gives d. In every lane.
+/// Initialises feature j where it is seen, after the update with the features that were known before, replacing its
+/// earlier estimate: f^ = r^ + R(theta^) z, P[f,:] = P[r,:] + c P[theta,:], P[f,f] = [c I] P_pose [c I]' + sigma^2 I.
+/// `turned(f^)` gives d. All lanes are computed.
 template <class Layout, class Real, int capacity, class Turned>
 void initialise_feature(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout, int j,
                         const Sighting<Real>& sighting, const Turned& turned) {

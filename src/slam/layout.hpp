@@ -1,6 +1,6 @@
 #pragma once
-// Where the state's parts lie. x = [theta, r_x, r_y, f_1x, f_1y, ...] (heading model) or the same without theta
-// (translation model) [model.md, Two process models].
+// The indices of the state's components. x = [theta, r_x, r_y, f_1x, f_1y, ...] (heading model) or the same without
+// theta (translation model) [docs/model.md, Two process models].
 
 #include <credence/detail/each.hpp>
 #include <credence/deformable_settings.hpp>
@@ -9,12 +9,12 @@ namespace credence {
 
 inline constexpr int any_count = 0;
 
-/// Layout of a state with a number of features known to the compiler, or any number up to 64 (`any_count`). Sizes and
-/// indices are `Known` where they can be.
+/// Layout of a state with a number of features that is known at compile time, or with any number up to 64
+/// (`any_count`). Sizes and indices are `Known` where they can be.
 template <Process process, int compiled_features>
 struct Layout {
     static constexpr bool has_heading = process == Process::heading;
-    static constexpr bool written_out = compiled_features != any_count;  ///< loops over features are
+    static constexpr bool written_out = compiled_features != any_count;  ///< whether loops over features are unrolled
     static constexpr Known<0> heading{};
     static constexpr Known<has_heading ? 1 : 0> position{};
     static constexpr Known<position + 2> pose_size{};
@@ -37,7 +37,7 @@ struct Layout {
     /// n
     constexpr auto size() const { return feature(features()); }
 
-    /// Blocks of the state that are judged by themselves, numbered in the order of state_groups (record.hpp).
+    /// Component groups that are evaluated by themselves, numbered in the order of state_groups (slam_columns.hpp).
     static constexpr Known<0> group_all{};
     static constexpr Known<1> group_pose{};
     static constexpr Known<2> group_heading{};   ///< heading model only

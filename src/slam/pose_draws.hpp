@@ -1,6 +1,6 @@
 #pragma once
-// What a trial draws at one pose, all at once: the steps of one draw wait for each other, and several fill the
-// time.
+// All draws of a trial at one pose, computed together: the steps of one draw depend on each other, and those of several
+// overlap in the processor.
 
 #include <credence/detail/draws.hpp>
 #include "slam/layout.hpp"
@@ -8,7 +8,7 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Where a source stands among others; no constant where it does not.
+/// The index of a source among others; not a constant expression for a source that is not listed.
 template <Source... others>
 constexpr int place_among(Source source) {
     constexpr Source listed[]{others...};
@@ -23,7 +23,7 @@ class PoseDraws {
 public:
     explicit PoseDraws(const Layout& layout) : layout_(layout) {}
 
-    /// Draws those of pose k, whether or not the trial has a use for them.
+    /// Draws the pairs of pose k, whether or not the trial uses them.
     template <class Noise>
     CREDENCE_INLINE void draw(const Noise& noise, int k) {
         DrawKey keys[capacity];
@@ -35,7 +35,7 @@ public:
         draw_all(noise, keys, robot() + robot_draws, draws_);
     }
 
-    /// One source's. [M]
+    /// The pairs of one source. [M]
     template <Source source>
     const Vector2<Real>* of_features() const {
         return draws_ + layout_.features() * Known<place_among<feature_sources...>(source)>{};
@@ -49,10 +49,10 @@ private:
     static constexpr Known<Layout::has_heading ? 2 : 1> robot_draws{};
     static constexpr int capacity = source_count * Layout::feature_capacity + robot_draws;
 
-    /// The walk to a pose is drawn on leaving the one before; pose 0 has no use for its own [model.md, Conventions].
+    /// The walk to a pose is drawn on leaving the pose before; pose 0 does not use its own draw [docs/model.md, Truth].
     static constexpr int pose_of(Source source, int k) { return source == Source::walk && k > 0 ? k - 1 : k; }
 
-    /// Where the robot's draws begin: behind the features'.
+    /// Index of the robot's first draw: after the features'.
     auto robot() const { return layout_.features() * source_count; }
 
     Layout layout_;

@@ -1,5 +1,5 @@
 #pragma once
-// The sensor: which features are in sight, how noisy they are, and what is measured [model.md, Filter: See,
+// The sensor: which features are in sight, how large the noise is, and what is measured [docs/model.md, Filter: See,
 // Edges].
 //
 //   q  range to a feature, length units; z  measurement, relative position of a feature in the body frame
@@ -10,14 +10,14 @@ namespace credence {
 
 struct SensorParameters {
     double range_min = 0, range_max = 0;
-    /// r_min <= sqrt(s) <= r_max exactly where these bound s: the roots are spared.
+    /// r_min <= sqrt(s) <= r_max exactly where these bound s: no square root is needed.
     double squared_range_min = 0, squared_range_max = 0;
     RangeNoise noise = RangeNoise::constant;
     double sigma = 0;                 ///< constant noise
     double sigma_near = 0;            ///< ranged: at range_min
     double sigma_slope = 0;           ///< ranged: (sigma_far - sigma_near) / (range_max - range_min)
     double detection = 1;
-    double sigma_edge = 0;            ///< of the edge measurement itself; 0 where the truth has none
+    double sigma_edge = 0;            ///< of the edge measurement itself; 0 where the true edges have no noise
 };
 
 inline namespace CREDENCE_TARGET {
@@ -47,7 +47,7 @@ Real sigma_at(const SensorParameters& sensor, Real squared) {
     return sensor.noise == RangeNoise::constant ? Real(sensor.sigma) : ranged_sigma(sensor, sqrt(squared));
 }
 
-/// One look at one feature. Where it is not seen, z and sigma are those it would have had.
+/// One sighting of one feature. Where it is not seen, z and sigma are those it would have had.
 template <class Real>
 struct Sighting {
     Mask<Real> seen{};

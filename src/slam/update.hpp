@@ -1,14 +1,14 @@
 #pragma once
-// The filter's update [model.md, Filter: Update]. Letters as in condition.hpp.
+// The filter's update [docs/model.md, Filter: Update]. Letters as in condition.hpp.
 
 #include "slam/edges.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Conditions a predicted belief on what was seen and on every edge: P <- P - K S K', the correction K nu in `update`;
-/// the mean stays. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world frame;
-/// `linearised(j, sighting)` its rows and innovation.
+/// Conditions a predicted belief on the sightings and on every edge: P <- P - K S K', the correction K nu in `update`;
+/// the mean is not changed. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world
+/// frame; `linearised(j, sighting)` its rows and innovation.
 template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
 void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                       const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,

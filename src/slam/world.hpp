@@ -1,5 +1,5 @@
 #pragma once
-// The truth. Features that drift and deform, and the robot's motion [model.md, Truth].
+// The truth: features that drift and deform, and the robot's motion [docs/model.md, Truth].
 //
 //   c   feature centre, p  deformed feature: what the sensor sees and the filter estimates; o  known local deformation
 //   r   robot position, theta  heading; t_k  known translation of the features from pose k to k + 1
@@ -9,7 +9,7 @@
 
 namespace credence {
 
-/// What the truth is made of, as plain numbers. The pointers are owned by the Problem.
+/// The parameters of the truth, as plain numbers. The Problem owns the pointers' targets.
 struct WorldParameters {
     int poses = 0, features = 0, edges = 0;
     const Point* first_position = nullptr;  ///< [M] f_0
@@ -18,14 +18,14 @@ struct WorldParameters {
     double sigma_heading = 0, sigma_odometry = 0, sigma_walk = 0, sigma_deformation = 0;
     double sigma_initial_heading = 0, sigma_initial_position = 0;
     Deformation deformation = Deformation::jitter;
-    double truncate = 0;                    ///< infinity for never
+    double truncate = 0;                    ///< infinity: never
 
     const Point& sway_at(int k, int j) const { return sway[k * features + j]; }
 };
 
 inline namespace CREDENCE_TARGET {
 
-/// What is drawn at a pose of this world.
+/// The noise that is drawn at a pose of this world.
 template <class Layout, class Real>
 using WorldDraws = PoseDraws<Layout, Real, Source::walk, Source::deformation, Source::measurement>;
 
@@ -43,7 +43,7 @@ Vector2<Real> broadcast(const Point& point) {
     return {Real(point.x), Real(point.y)};
 }
 
-/// p_{k,j} = c_{k,j} + o_{k,j} + sigma_def eps^def_{k,j}; where deformation walks, the draw is in c already.
+/// p_{k,j} = c_{k,j} + o_{k,j} + sigma_def eps^def_{k,j}; where the deformation walks, the draw is included in c.
 /// `draws` are pose k's.
 template <class Layout, class Real, int capacity>
 void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world, const Layout& layout, int k,

@@ -21,9 +21,9 @@ std::uint64_t fnv1a(const std::string& text) {
 }
 
 /// The random words of one resample: SplitMix64 [Steele, Lea, Flood 2014], the finaliser of a counter times the golden
-/// ratio from a key on. The key is a Philox block: its key the root seed, its counter the resample and the hash of the
-/// figure's name with source 15 in the place where draws.hpp has a source: no trial's noise has that one. (Philox for
-/// every index takes three times as long.)
+/// ratio, starting from a key. The key is a Philox block: its key is the root seed, its counter the resample and the
+/// hash of the column's name, with source 15 at the position of draws.hpp's source: no trial's noise uses that source.
+/// (Philox for every index takes three times as long.)
 class Words {
 public:
     Words(std::uint64_t root_seed, const std::string& figure, int resample) {
@@ -46,7 +46,7 @@ private:
     std::uint64_t key_ = 0;
 };
 
-/// What is drawn: one trial's value.
+/// The resampled item: one trial's value.
 struct TrialPart {
     double sum = 0;
 
@@ -54,7 +54,7 @@ struct TrialPart {
     double mean(std::size_t drawn) const { return sum / static_cast<double>(drawn); }
 };
 
-/// Or a block's sum and count.
+/// The resampled item: a block's sum and count.
 struct BlockPart {
     double sum = 0, count = 0;
 
@@ -65,7 +65,7 @@ struct BlockPart {
     double mean(std::size_t) const { return sum / count; }
 };
 
-/// The mean of one resample. Four running sums, position p going to the one of p mod 4, hide the latency of adding.
+/// The mean of one resample. Four running sums, position p added to number p mod 4, hide the latency of adding.
 template <class Part>
 double resampled_mean(const std::vector<Part>& parts, const Words& words) {
     const std::uint64_t size = parts.size();
@@ -116,8 +116,8 @@ std::vector<TrialPart> trials_of(const std::vector<double>& by_trial, double cen
     return trials;
 }
 
-/// A value in the middle of the sample: sums of what the values differ from it lose little to rounding, and nothing
-/// where all are equal. NaN for fewer than two values or an infinite one.
+/// A value in the middle of the sample: sums of the differences from it lose little to rounding, and nothing where all
+/// values are equal. NaN for fewer than two values or an infinite one.
 double centre_of(std::vector<double> values) {
     std::erase_if(values, [](double value) { return std::isnan(value); });
     if (values.size() < 2 || std::any_of(values.begin(), values.end(), [](double x) { return std::isinf(x); }))

@@ -8,8 +8,8 @@ namespace credence {
 
 namespace {
 
-/// Errors of the trials that are used, a column each, every component over its root mean square: eps* does not depend
-/// on the units, and the decomposition is the better for it.
+/// Errors of the trials that are used, a column each, every component divided by its root mean square: eps* does not
+/// depend on the units, and the decomposition becomes more accurate.
 Eigen::MatrixXd scaled_errors(const std::vector<double>& nees, const std::vector<double>& errors, int n,
                               std::int64_t count) {
     Eigen::MatrixXd scaled(n, count);
@@ -31,7 +31,7 @@ Credibility credibility(const std::vector<double>& nees, const std::vector<doubl
     const double count = static_cast<double>(result.count);
     const Eigen::MatrixXd e = scaled_errors(nees, errors, n, result.count);
     const Eigen::LLT<Eigen::MatrixXd> mean_square(e * e.transpose() / count);
-    // M has a unit diagonal: where rounding is all that keeps it positive definite, its inverse means nothing.
+    // M has a unit diagonal: where only rounding keeps it positive definite, its inverse is meaningless.
     if (mean_square.info() != Eigen::Success || !(mean_square.rcond() > 1e-13)) return result;
     const Eigen::RowVectorXd actual = mean_square.matrixL().solve(e).colwise().squaredNorm();
     double sizes = 0, sum = 0;

@@ -9,7 +9,7 @@ namespace credence {
 
 namespace {
 
-/// Lower end of Wilson's interval, in a form that does not cancel for few successes, and gives 0 for none.
+/// Lower end of Wilson's interval, in a form without cancellation for few successes, and 0 for none.
 double wilson_low(double successes, double trials, double z) {
     const double failures = trials - successes;
     const double root = z * std::sqrt(z * z + 4 * successes * failures / trials);

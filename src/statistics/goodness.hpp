@@ -1,6 +1,6 @@
 #pragma once
-// Goodness of fit. Are NEES distributed as chi-square, and shares as they should be? Every null here is fully
-// specified: nothing is estimated from the values.
+// Goodness of fit: is NEES distributed as chi-square, and are shares as they should be? Every null hypothesis here is
+// fully specified: no parameter is estimated from the values.
 
 #include <credence/statistics.hpp>
 #include <cstdint>
@@ -25,9 +25,9 @@ double chi_square_p(double statistic, double degrees);
 /// Smirnov]. NaN values are left out; NaN where none is left.
 double chi_square_distance(std::vector<double> values, double degrees);
 
-/// The same as far as counts in `cells` cells of equal probability tell, from the lowest values to the highest:
-/// max over i |share in the first i cells - i/cells|. Not above the exact distance, and below it by at most 1/cells.
-/// NaN where nothing was counted.
+/// The same from counts in `cells` cells of equal probability, from the lowest values to the highest: max over i |share
+/// in the first i cells - i/cells|. At most the exact distance, and below it by at most 1/cells. NaN where there are no
+/// counts.
 double cell_distance(const std::int64_t* counts, int cells);
 
 /// P(D_n >= distance) for the two-sided Kolmogorov-Smirnov distance of n = `count` independent values from their true,

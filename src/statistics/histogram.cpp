@@ -25,7 +25,7 @@ double round_width(double least) {
     return 10 * power;
 }
 
-/// first, first + 1 ... last, each made an edge.
+/// The integers first, first + 1 ... last, converted to edges.
 template <class Edge>
 std::vector<double> edges_of(double first, double last, const Edge& edge) {
     std::vector<double> edges;

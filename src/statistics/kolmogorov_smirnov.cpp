@@ -106,7 +106,7 @@ double kolmogorov_smirnov_p(double distance, double count) {
     if (nd <= 1)
         return 1 - std::exp(log_scaled_factorial(n) + n * (std::log(2 * nd - 1) - 1));  // [Ruben, Gambino 1982]
     const bool few = n <= 140;
-    // Beyond these the chance of a crossing on both sides, which is then counted twice, does not matter.
+    // Beyond these, the probability of crossings on both sides, which is then counted twice, is negligible.
     if (d >= 0.5 || z2 > (few ? 4 : 2.2)) return std::min(1.0, 2 * one_sided(n, d));
     // Both limit the matrix: with z^2 below 0.03 the probability is below 1e-17.
     const bool fits = n <= 100000 && n * d * std::sqrt(d) <= 1.4 && z2 > 0.03;

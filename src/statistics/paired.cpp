@@ -64,7 +64,7 @@ double variance(std::vector<double> values) {
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
                                 const std::string& figure) {
     std::vector<double> differences, paired_a, paired_b;
-    std::vector<double> by_trial(std::min(a.size(), b.size()), nan);  // the bootstrap's blocks go by trial
+    std::vector<double> by_trial(std::min(a.size(), b.size()), nan);  // the bootstrap resamples blocks by trial
     for (std::size_t i = 0; i < by_trial.size(); ++i) {
         if (std::isnan(a[i] - b[i])) continue;  // also where both are infinite
         by_trial[i] = a[i] - b[i];

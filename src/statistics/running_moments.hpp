@@ -1,5 +1,5 @@
 #pragma once
-// Mean and spread of values that come in parts.
+// Mean and spread of values that arrive in parts.
 
 #include <credence/statistics.hpp>
 
@@ -10,14 +10,14 @@
 
 namespace credence {
 
-/// Count, mean and sum of squared deviations; parts are put together without the cancellation of a sum of squares
-/// [Chan, Golub and LeVeque 1983, Algorithms for computing the sample variance].
+/// Count, mean and sum of squared deviations; parts are combined without the cancellation of a sum of squares [Chan,
+/// Golub and LeVeque 1983, Algorithms for computing the sample variance].
 struct RunningMoments {
     std::int64_t count = 0;
     double mean = 0;
     double squares = 0;  ///< sum of (x - mean)^2
 
-    /// Of values of which those that are NaN are left out; in two passes.
+    /// Computes the moments of the values that are not NaN, in two passes.
     static RunningMoments of(const std::vector<double>& values) {
         RunningMoments part;
         double sum = 0;

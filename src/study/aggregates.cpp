@@ -12,7 +12,7 @@ namespace credence {
 
 namespace {
 
-/// a b exactly: the product rounded, and what rounding it left.
+/// a b exactly: the rounded product, and its rounding error.
 template <class Sum>
 void add_product(Sum& sum, double a, double b) {
     const double product = a * b;
@@ -96,7 +96,7 @@ Moments moments_of(const ExactMoments& values) {
     if (values.count < 1) return {n, nan, nan, nan};
     const double mean = values.sum.rounded() / n;
     if (values.count < 2) return {n, mean, nan, nan};
-    // A spread below 0 is none of any values: where a file says so, it is not to look like certainty.
+    // No values have a spread below 0: where a damaged file gives one, it must not appear as certainty.
     const double variance = spread_of(values) / n / (n - 1);
     return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
 }

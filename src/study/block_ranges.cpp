@@ -51,7 +51,7 @@ std::vector<BlockRange> BlockRanges::ranges() const {
 }
 
 void BlockRanges::add(const BlockRange& range) {
-    // Ranges that it overlaps or touches become one with it. Mostly it lies at the end, and nothing has to move.
+    // Ranges that it overlaps or touches are joined with it. Usually it is at the end, and no range has to be moved.
     const std::size_t begin = span_at(range.first - 1);
     std::size_t end = begin;
     BlockRange all = range;
@@ -76,7 +76,7 @@ void BlockRanges::add(const BlockRanges& others) {
         for (const Span& span : others.spans_) add(span.range);
         return;
     }
-    // Both in order, so that each goes to the end.
+    // Both are in order, so each range is added at the end.
     BlockRanges all;
     auto own = spans_.begin();
     for (const Span& span : others.spans_) {

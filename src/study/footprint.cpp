@@ -1,4 +1,4 @@
-// What a run is expected to take.
+// The expected memory and file size of a run.
 
 #include "numeric/chi_square.hpp"
 #include <credence/study.hpp>
@@ -9,7 +9,7 @@ namespace credence {
 
 namespace {
 
-/// What a scenario takes: its totals and details, what its threads hold of blocks under way, and its part of the file.
+/// The memory of a scenario, for its totals and details and for the threads' current blocks, and its part of the file.
 struct ScenarioFootprint {
     std::int64_t totals = 0, under_way = 0, file = 0;
 };
@@ -25,7 +25,7 @@ ScenarioFootprint footprint_of(const ScenarioResults& results, std::int64_t tria
     const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
     const std::int64_t shape = distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
     // A thread's running sums of octets, their squares and the series not yet folded; and details of its block, in the
-    // engine's order and in that of the results. (By the time they are committed, that is free again.)
+    // engine's order and in that of the results. (This memory is free again when the blocks are committed.)
     const std::int64_t detailed_blocks = std::min<std::int64_t>(threads, (kept + block_size - 1) / block_size);
     const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * numbers * 16 * detailed_blocks;
     return {totals_size(results, kept), arms * (threads * cells * 150 + of_details),
@@ -45,7 +45,7 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
         largest = std::max(largest, scenario.totals);
         under_way = std::max(under_way, scenario.under_way);
     }
-    // Totals of finished scenarios are dropped beyond a bound. The table at the end looks at a few columns at once; the
+    // Totals of finished scenarios are dropped beyond a limit. The table at the end reads a few columns at once; the
     // threads have stacks, and blocks wait to be committed.
     total.memory = std::min(totals, most_totals_in_memory + largest) + under_way + static_cast<std::int64_t>(threads) * (16 << 20);
     if (keep_of(study) == Keep::trials) total.memory += 6 * trials * 8;

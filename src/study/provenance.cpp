@@ -48,7 +48,7 @@ std::size_t scenario_of(const Study& study, const std::string& name) {
     return static_cast<std::size_t>(found - study.scenarios.begin());
 }
 
-/// What is noted of the study's blocks, those of which nothing is noted included.
+/// The releases of the study's blocks, with those of unknown release as well.
 Provenance all_of(const Study& study) {
     Provenance all;
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {

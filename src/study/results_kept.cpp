@@ -1,4 +1,4 @@
-// Totals and details that are in memory only while they are needed.
+// Totals and details that are loaded into memory only while they are needed.
 
 #include "numeric/chi_square.hpp"
 #include <credence/results.hpp>
@@ -37,7 +37,7 @@ void name_arms(ScenarioResults& results, const std::vector<std::string>& names) 
     for (std::size_t a = 0; a < results.arms.size(); ++a) results.arms[a].aggregates = std::move(aggregates[a]);
 }
 
-/// The same scenario without any block, and without room for columns.
+/// The same scenario without any block, and without memory for columns.
 ScenarioResults without_blocks(const ScenarioResults& results) {
     ScenarioResults empty{results.scenario, results.columns, results.all_series, {}, 0, {}, results.keep};
     name_arms(empty, results.scenario.arms);
@@ -45,7 +45,7 @@ ScenarioResults without_blocks(const ScenarioResults& results) {
     return empty;
 }
 
-/// The study of which the scenario has all blocks that it has.
+/// Number of trials of the smallest study that has all blocks of the scenario.
 std::int64_t trials_up_to(const ScenarioResults& results) {
     if (results.blocks.empty()) return 0;
     return results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1);
@@ -71,7 +71,7 @@ ScenarioResults empty_results(const Scenario& scenario, Keep keep) {
 bool has_totals(const ScenarioResults& results) { return results.arms.empty() || !results.arms.front().totals.empty(); }
 
 std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) {
-    constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the room of a few parts
+    constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the capacity of a few parts
     const std::int64_t steps = results.steps(), number = sizeof(double);
     std::int64_t size = detailed * steps * (results.state_size() + 1) * number;
     if (distribution_counted(results.steps())) size += steps * distribution_cells * number;
@@ -100,7 +100,7 @@ void load_totals(ScenarioResults& results) {
 }
 
 void drop_totals(ScenarioResults& results) {
-    const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} keeps the room
+    const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} keeps the capacity
     for (ArmResults& arm : results.arms) {
         free(arm.totals);
         free(arm.cells);

@@ -1,4 +1,4 @@
-// Which trials are there, and where: rows of columns and details.
+// The rows of columns and details: which trials they are of.
 
 #include <credence/results.hpp>
 
@@ -20,7 +20,7 @@ void store_details(const ArmBlock& from, std::int64_t row, std::size_t trials, A
     put(from.nees, to.nees);
 }
 
-/// A block that stays: where its rows were, where they go, and how many.
+/// A block that is kept: its old rows, its new rows, and their number.
 struct Move {
     std::int64_t from, to, rows;
 };
@@ -99,7 +99,7 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
                                        [](const ArmResults& arm) { return !arm.kept && !arm.columns.empty(); });
     std::int64_t rows = 0;
     for (const std::int64_t block : blocks) {
-        if (!in_memory && block >= most) break;  // nothing of it has a row
+        if (!in_memory && block >= most) break;  // the block has no row
         const std::int64_t size = trials_in_block(trials, block);
         if (const std::optional<std::int64_t> row = first_row(results, block)) {
             const auto place = static_cast<std::size_t>(*row / block_size);

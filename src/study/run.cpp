@@ -18,7 +18,7 @@ namespace credence {
 
 namespace {
 
-/// Runs tasks on threads and puts their results into the study. Totals are exact, so the order does not matter.
+/// Runs tasks on threads and adds their results to the study. Totals are exact, so the order does not matter.
 class Runner : private BlockQueue {
 public:
     Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
@@ -37,20 +37,20 @@ public:
     }
 
 private:
-    /// What a run has to do with a scenario.
+    /// The tasks of a run for one scenario.
     struct Work {
         explicit Work(const Scenario& scenario) : runner(scenario) {}
 
         BlockRunner runner;
-        BlockRanges done;      ///< blocks that are there
-        BlockRanges missing;   ///< blocks that are this run's tasks
-        std::size_t left = 0;  ///< of them those that are not finished
-        Task partial;          ///< the last block, where it was there with fewer trials than it will have
-        int partial_trials = 0;///< that it had; 0: there is none such
+        BlockRanges done;      ///< blocks that are present
+        BlockRanges missing;   ///< blocks that this run computes
+        std::size_t left = 0;  ///< the number of these that are not finished
+        Task partial;          ///< the last block, where it is present with fewer trials than it will have
+        int partial_trials = 0;///< that it has; 0: there is none
         bool begun = false;
     };
 
-    /// Makes room, and lists the blocks that are missing.
+    /// Allocates the rows, and lists the missing blocks.
     void prepare(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
         Work& work = work_[s];
@@ -71,7 +71,7 @@ private:
 
     static std::int64_t size_of(const ScenarioResults& results) { return totals_size(results, results.detailed()); }
 
-    /// Before a block is computed: waits where others are to be committed first, and begins with its scenario.
+    /// Called before a block is computed: waits while too many others wait to be committed, and prepares its scenario.
     void begin(std::size_t s) {
         std::unique_lock lock(mutex_);
         if (options_.keeper != nullptr && options_.keeper->full()) {
@@ -82,7 +82,7 @@ private:
         if (!work_[s].begun) begin_scenario(s);
     }
 
-    /// Brings totals into memory, and takes a partial last block back.
+    /// Loads totals into memory, and removes a partial last block from them.
     void begin_scenario(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
         Work& work = work_[s];
@@ -101,22 +101,23 @@ private:
         const int threads = options_.threads > 0 ? options_.threads : omp_get_max_threads();
         const int servers = options_.workers != nullptr ? 1 : 0;
         report();
-        // Thread 0 is the one that called run_study. It computes nothing where there are workers: none of them is to
-        // wait.
+        // Thread 0 is the one that called run_study. It computes no blocks where there are workers, so that none of
+        // them has to wait for it.
 #pragma omp parallel num_threads(threads + servers)
         if (omp_get_thread_num() < servers)
             guarded([&] { options_.workers->serve(*this); });
         else
             while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
         if (trouble_) std::rethrow_exception(trouble_);
-        for (const Work& work : work_)  // what was there is not lost to a stop
+        for (const Work& work : work_)  // blocks that were present are kept when a run is stopped
             if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);
         if (options_.keeper == nullptr) return;
         prepare_all();
         commit();
     }
 
-    /// An exception must not leave the parallel region (nor an omp critical one): it is kept, and thrown after it.
+    /// An exception must not leave the parallel region (nor an omp critical one): it is stored, and thrown after the
+    /// region.
     template <class Work>
     void guarded(Work work) {
         try {
@@ -172,7 +173,7 @@ private:
 
     bool too_much_held() const { return held_ > options_.most_totals; }
 
-    /// Prepares a commit of all that was taken. The keeper has then the totals of the scenarios that are finished.
+    /// Prepares a commit of all blocks taken so far. The keeper then has the totals of the finished scenarios.
     void prepare_all() {
         options_.keeper->prepare(study_);
         if (!too_much_held()) return;
@@ -188,7 +189,7 @@ private:
         options_.keeper->commit();
     }
 
-    // What the workers see [BlockQueue].
+    // The interface for the workers [BlockQueue].
     std::int64_t trials() const override { return options_.trials; }
     std::int64_t left() const override {
         return static_cast<std::int64_t>(task_count_ - std::min(task_count_, next_.load()));
@@ -222,7 +223,7 @@ private:
         return prepare_commit();
     }
 
-    /// After an early stop: only what is done is there.
+    /// After an early stop: keeps only the rows of blocks that are done.
     void leave_out_missing() {
         for (std::size_t s = 0; s < study_.scenarios.size(); ++s)
             set_blocks(study_.scenarios[s], std::move(work_[s].done), options_.trials);
@@ -235,9 +236,9 @@ private:
 
     Study& study_;
     const RunOptions& options_;
-    std::vector<Work> work_;             ///< by scenario; its tasks one scenario after the other
+    std::vector<Work> work_;             ///< by scenario; its tasks, one scenario after the other
     std::size_t task_count_ = 0;
-    std::atomic<std::size_t> next_ = 0;  ///< the first task that nobody has
+    std::atomic<std::size_t> next_ = 0;  ///< the first task that has not been handed out
     std::atomic<bool> stopped_ = false;
     std::exception_ptr trouble_;
     std::mutex mutex_;              ///< of totals, work_, progress and the keeper
@@ -248,7 +249,7 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Columns of a file cannot grow there.
+/// Columns that are kept in a file cannot grow there.
 void bring_into_memory(ScenarioResults& results) {
     load_totals(results);
     results.kept_totals.reset();

@@ -25,7 +25,7 @@ std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trial
     return paired_differences(first_values(*subject.arm), first_values(*subject.subtracted));
 }
 
-/// The same of totals, which are of all trials.
+/// The same for totals, which are of all trials.
 Moments aggregates_of(const StoppingSubject& subject) {
     if (subject.subtracted == nullptr) return aggregate_moments(*subject.arm, subject.column);
     return moments_of(
@@ -43,7 +43,7 @@ double half_width_of(double standard_deviation, double count, int number) {
     return t_quantile(analysis_alpha(number), count - 1) * standard_deviation / std::sqrt(count);
 }
 
-/// How wide a state is for what was asked: 0 for one that does not vary, infinite for one that could not be judged.
+/// How wide a state is relative to its goal: 0 for one that does not vary, infinite for one without an interval.
 double excess(const GoalState& state) {
     const double ratio = state.half_width / state.allowed;
     if (!std::isnan(ratio)) return ratio;
@@ -89,7 +89,7 @@ GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int numb
 }
 
 GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
-    // In two passes in trial order, without the copy and the median of a summary: looks may take 1e7 values each.
+    // In two passes in trial order, without the copy and the median of a summary: an analysis may use 1e7 values each.
     Moments moments;
     double squares = 0;
     for (const double value : values)
@@ -136,7 +136,7 @@ const GoalState& widest(const InterimAnalysis& look) {
 
 namespace {
 
-/// Nothing is decided by trials that were stopped half way, and no further look is taken.
+/// An interrupted run decides nothing, and makes no further interim analysis.
 InterimAnalysis interrupted_look(std::int64_t trials, int number) {
     InterimAnalysis look{trials, number, analysis_alpha(number), {}, false};
     look.interrupted = true;
@@ -158,7 +158,8 @@ InterimAnalysis run_until(Study& study, const StoppingRule& rule, RunOptions opt
                const std::function<void(const InterimAnalysis&)>& after_analysis) {
     check_goals(rule.goals, study);
     return run_analyses(rule, [&](std::int64_t trials, int number) {
-        // All scenarios of a study get as many trials: those of the one that has most, where that is more.
+        // All scenarios of a study get the same number of trials: if a scenario has more, that of the one that has
+        // most.
         options.trials = std::max(trials, least_trials(study));
         const bool aggregates = keep_of(study) == Keep::aggregates;
         if (aggregates && options.trials > trials && trials < rule.ceiling)

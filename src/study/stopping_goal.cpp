@@ -1,4 +1,4 @@
-// Goals as they are written, and the columns of a study that they are about.
+// Parsing of goals, and their columns in a study.
 
 #include "study/stopping_subject.hpp"
 
@@ -30,7 +30,7 @@ void parse_half_width(StoppingGoal& goal, std::string width) {
         throw refused(goal.text, "the half-width must be above 0 and finite");
 }
 
-/// Takes `[ARM-ARM]` off the metric.
+/// Removes `[ARM-ARM]` from the metric.
 void parse_arms(StoppingGoal& goal) {
     const std::size_t open = goal.metric.find('[');
     if (open == std::string::npos) return;
@@ -59,7 +59,7 @@ std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& c
     throw refused(goal.text, "there is no figure " + goal.metric, did_you_mean(goal.metric, names));
 }
 
-/// The scenario's arm of that name, or its only arm of that controller; none: it has no such arm.
+/// The scenario's arm of that name, or its only arm of that controller; nothing where it has no such arm.
 const ArmResults* arm_named(const StoppingGoal& goal, const ScenarioResults& results, const std::string& name) {
     const std::vector<const ArmResults*> meant = arms_meant(results, name);
     if (meant.size() > 1) {
@@ -71,7 +71,7 @@ const ArmResults* arm_named(const StoppingGoal& goal, const ScenarioResults& res
     return meant.empty() ? nullptr : meant.front();
 }
 
-/// What is wrong with a pair of arms that no scenario has.
+/// The message for a pair of arms that no scenario has.
 InputError no_such_pair(const StoppingGoal& goal, const Study& study) {
     std::vector<std::string> known;
     for (const ScenarioResults& results : study.scenarios)

@@ -1,5 +1,5 @@
 #pragma once
-// What a goal is about in a given study.
+// The means that a goal refers to in a given study.
 
 #include "study/stopping.hpp"
 
@@ -13,7 +13,7 @@ struct StoppingSubject {
     const ScenarioResults* results;
     std::size_t column;
     const ArmResults* arm;
-    const ArmResults* subtracted;  ///< null: no pair
+    const ArmResults* subtracted;  ///< null: not a difference
 };
 
 /// Throws as check_goals does; at least one.

@@ -1,4 +1,4 @@
-// What decides on a single trial, and what a verdict should be read with.
+// The verdict on a single trial, and the cautions beside a verdict.
 
 #include "statistics/goodness.hpp"
 
@@ -15,8 +15,8 @@ Interval interval_of(const Whiteness& lag) {
 }  // namespace
 
 /// One trial: its NIS, summed over the steps, is chi-square with as many degrees as it had rows, if the innovations are
-/// white; the factor by which S is off has an exact interval. Corrected over the groups of rows; half of
-/// the level is for them and half for the lags.
+/// white; the factor by which S is off has an exact interval, corrected over the groups of rows. Half of the level is
+/// for these and half for the lags.
 Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
     const double margin = limits.margin;
     Consistency verdict;
@@ -46,7 +46,8 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
     return verdict;
 }
 
-/// Correlations that are beyond the margin for sure, not only beyond 0: with enough trials every filter has some.
+/// Correlations that differ from 0 by significantly more than the margin: with enough trials every filter has some
+/// correlation.
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
     const Whiteness* worst = nullptr;
     std::vector<int> lags;
@@ -59,7 +60,7 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
     verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst)});
 }
 
-/// Innovations of the wrong size beside a state that is right: NEES does not see it.
+/// Innovations of the wrong size beside a consistent state: NEES does not show them.
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
     for (const NisEvidence& nis : evidence.nis)
@@ -68,9 +69,9 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
                 {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95});
 }
 
-/// A distance from chi-square that is beyond the margin for sure: Massart's bound on the distance of N values from their
-/// own distribution, sqrt(ln(2/alpha)/(2 N)) [Massart 1990], corrected over the steps. What P's size already explains
-/// is not said twice.
+/// A distance from chi-square that is significantly beyond the margin: Massart's bound on the distance of N values from
+/// their own distribution, sqrt(ln(2/alpha)/(2 N)) [Massart 1990], corrected over the steps. A deviation that the size
+/// of P already explains is not reported twice.
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict) {
     for (const Finding& finding : verdict.findings)
         if (finding.where == evidence.blocks.front().block) return;

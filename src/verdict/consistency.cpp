@@ -67,8 +67,9 @@ private:
                 add_finding(side, block.block, steps_text(steps.steps), steps.worst);
     }
 
-    /// Student's interval alone is too narrow for few trials, because chi-square is skewed: a step must also lie beyond
-    /// the exact bound that NEES (1 -+ margin) chi-square(dimension) has, which needs no estimated deviation. So must all steps.
+    /// For few trials Student's interval alone is too narrow, because chi-square is skewed: a step must also be beyond
+    /// the exact bound for NEES distributed as (1 -+ margin) chi-square(dimension), which needs no estimated deviation.
+    /// So must all steps.
     bool beyond_chi_square(const Estimate& step, Side side, double degrees) const {
         const double margin = verdict_.limits.margin,
                      scaled = step.value / (1 + (side == Side::above ? margin : -margin));
@@ -76,8 +77,9 @@ private:
         return side == Side::above ? scaled > band.high : scaled < band.low;
     }
 
-    /// Degrees of freedom of the NEES over all steps, from its spread over the trials: chi-square has 2 mean^2/variance.
-    /// Not fewer than wholly correlated steps have, which are as good as one, and not more than independent ones.
+    /// Degrees of freedom of the NEES over all steps, from its spread over the trials: chi-square has 2
+    /// mean^2/variance. At least those of fully correlated steps, which count as one, and at most those of independent
+    /// ones.
     double degrees_over_steps(const GroupEvidence& block) const {
         const double fewest = block.run.count * block.dimension,
                      told = 2 * block.run.count * std::pow(block.run.mean / block.run.standard_deviation, 2);
@@ -100,8 +102,8 @@ private:
         verdict_.findings.push_back({name_of(side), block, when, estimate.value, estimate.interval()});
     }
 
-    /// Trials that bring the time-averaged interval off the margin's edge, if the mean stays: every block must get
-    /// inside, but one outside is enough.
+    /// Number of trials at which the time-averaged interval no longer contains the margin's edge, if the mean stays the
+    /// same: every group must get inside, but one outside is enough.
     void note_needed_trials(const Moments& run) {
         const double off = std::abs(run.mean - 1), slack = std::abs(off - verdict_.limits.margin);
         const bool inside = off < verdict_.limits.margin;
@@ -115,7 +117,7 @@ private:
     double trials_needed(double alpha, double ratio) const {
         const double count = static_cast<double>(evidence_.trials);
         double needed = std::ceil(std::pow(normal_quantile(alpha) * ratio, 2));
-        for (int round = 0; round < 10 && needed < 1000; ++round)  // beyond, t is z
+        for (int round = 0; round < 10 && needed < 1000; ++round)  // beyond this, t equals z
             needed = std::ceil(std::pow(t_quantile(alpha, std::max(count, needed - 1)) * ratio, 2));
         return std::max(count + 1, needed);
     }

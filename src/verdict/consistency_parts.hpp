@@ -1,5 +1,5 @@
 #pragma once
-// What the two files of the verdict share.
+// Declarations shared by the two files of the verdict.
 
 #include <credence/consistency.hpp>
 
@@ -31,7 +31,7 @@ inline const std::string& name_of(Side side) {
 std::string listed(const std::string& what, const std::vector<int>& numbers);
 inline std::string steps_text(const std::vector<int>& steps) { return listed("step", steps); }
 
-/// Steps at which something was found, and the farthest off of them.
+/// Steps with a finding, and the one of them that is farthest off.
 struct Found {
     std::vector<int> steps;
     Estimate worst;

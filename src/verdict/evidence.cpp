@@ -19,7 +19,8 @@ const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResult
     return nullptr;
 }
 
-/// Rows of a NIS at a step, over all trials [docs/statistics.md, NIS]: never trials times rows, they vary.
+/// Number of rows of a NIS at a step, summed over all trials [docs/statistics.md, NIS]: they vary, so it is not trials
+/// times rows.
 double rows_at(const Series& nis, const SeriesTotals* rows, const ArmResults& arm, std::size_t k) {
     const double counted = rows == nullptr ? 0 : rows->sum[k].rounded();
     return counted + static_cast<double>(nis.more_rows) * static_cast<double>(arm.counted_at(k));
@@ -50,7 +51,7 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
     return evidence;
 }
 
-/// `scale` NIS/m. The bounds are for innovations of the right size; where they are not, products are off by that much.
+/// `scale` NIS/m. The bounds hold for innovations of the right size; otherwise the products are off by that factor.
 std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double scale) {
     std::vector<Whiteness> evidence;
     const double lags = static_cast<double>(products.sum.size());

@@ -1,4 +1,4 @@
-// The evidence of one block of the state: NEES, its coverage, and errors against what was predicted.
+// The evidence of one component group: NEES, its coverage, and errors against their prediction.
 
 #include "statistics/goodness.hpp"
 
@@ -61,8 +61,8 @@ const SeriesTotals* totals_of(const ScenarioResults& results, const ArmResults& 
     return nullptr;
 }
 
-/// RMSE and its prediction. The ratio's interval takes the error of the mean square only, to first order: the
-/// prediction varies far less from trial to trial.
+/// RMSE and its prediction. The ratio's interval uses the error of the mean square only, to first order: the prediction
+/// varies far less from trial to trial.
 Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& block) {
     Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
     const SeriesTotals* error = totals_of(results, arm, SeriesRole::squared_error, block, accuracy.unit);
@@ -81,7 +81,7 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
     return accuracy;
 }
 
-/// Ratios of a NEES to its dimension, over the run and step by step: what every chart of the error has.
+/// Ratios of a NEES to its dimension, over the run and step by step: the same for every chart of the error.
 template <class Ratios>
 void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
     const Series& series = results.all_series[f];
@@ -113,7 +113,7 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
     Interval band, simultaneous;
     for (std::size_t k = 0; k < totals.size(); ++k) {
         const double degrees = ratio.degrees[k];
-        if (degrees != previous) {  // mostly they stay as they are, and quantiles take their time
+        if (degrees != previous) {  // usually they are the same, and quantiles are slow
             band = degrees > 0 ? chi_square_band(degrees, 0.05) : Interval{nan, nan};
             simultaneous = degrees > 0 ? chi_square_band(degrees, 0.05 / ratio.observed) : Interval{nan, nan};
             previous = degrees;
@@ -141,7 +141,7 @@ GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& a
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     ChartEvidence evidence;
     fill_ratios(results, arm, f, evidence);
-    // The series is nees_CHART or nees_CHART_BLOCK.
+    // The series is nees_CHART or nees_CHART_GROUP.
     const std::string rest = results.all_series[f].name.substr(std::string("nees_").size());
     evidence.chart = rest.substr(0, rest.find('_'));
     return evidence;

@@ -1,5 +1,5 @@
 #pragma once
-// What the two files of the evidence share.
+// Declarations shared by the two files of the evidence.
 
 #include <credence/evidence.hpp>
 
@@ -8,13 +8,13 @@ namespace credence {
 /// Moments of a series over trials at step k + 1, times `scale`.
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale);
 
-/// Ratios and bands of totals whose degrees of freedom are filled in.
+/// Ratios and bands of totals whose degrees of freedom are already set.
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
 
-/// The block of the state that the nees series f is of.
+/// The component group of the nees series f.
 GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
-/// The block and chart that the series f of role nees_in_chart is of.
+/// The group and chart of the series f of role nees_in_chart.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
 }  // namespace credence

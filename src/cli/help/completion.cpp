@@ -1,4 +1,4 @@
-// The script that completes command lines in bash, made of the descriptions that the program itself reads.
+// The script that completes command lines in bash, generated from the program's own descriptions of its commands.
 
 #include "cli/command.hpp"
 #include "cli/version.hpp"
@@ -22,7 +22,8 @@ const Command& completion_command() {
 
 namespace {
 
-/// `ini` of `SCENARIO.ini`: the file that such a word stands for; `*` of `FILE`; nothing of another word.
+/// `ini` for `SCENARIO.ini`, the extension of the files that such a word denotes; `*` for `FILE`; nothing for another
+/// word.
 std::string extension_of(const std::string& word) {
     const std::size_t end = word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ");
     if (end == std::string::npos) return word == "FILE" ? "'*'" : "";
@@ -31,7 +32,8 @@ std::string extension_of(const std::string& word) {
     return word.substr(end + 1, (last == std::string::npos ? word.size() : last) - end - 1);
 }
 
-/// A command's arguments: the extensions of the files that its synopsis names outside options, or its literal words.
+/// Completions of a command's arguments: the extensions of the files that its synopsis names outside options, or its
+/// literal words.
 std::string arguments_reply(const Command& command) {
     std::vector<std::string> extensions, words;
     std::string before;
@@ -45,13 +47,13 @@ std::string arguments_reply(const Command& command) {
         if (!extension.empty()) extensions.push_back(extension);
         else if (literal && !word.empty()) words.push_back(word);
     }
-    // A run that goes on has its journal only.
+    // A run that can be resumed may have only its journal.
     if (command.name == "watch") extensions.push_back("h5.journal");
     if (!extensions.empty()) return "_credence_files " + joined(extensions, " ");
     return words.empty() ? "" : "_credence_words " + joined(words, " ");
 }
 
-/// What completes the value of an option; empty where nothing does.
+/// The completion of an option's value; empty where there is none.
 std::string value_reply(const Option& option) {
     if (option.value.starts_with("section.key=")) return "_credence_keys";
     if (!option.choices.empty()) return "_credence_words " + joined(option.choices, " ");
@@ -63,7 +65,8 @@ std::string patterns_of(const Option& option) {
     return "--" + option.long_name() + (option.short_name().empty() ? "" : "|-" + option.short_name());
 }
 
-/// One arm of `case $command in`: its options, those that may be given again, and what completes a value.
+/// One branch of `case $command in`: the command's options, those that may be repeated, and the completion of each
+/// value.
 std::string case_of(const Command& command) {
     std::vector<std::string> options{"--help"}, again;
     std::string values;
@@ -80,7 +83,7 @@ std::string case_of(const Command& command) {
            "            [[ $current == -* ]] || { " + (arguments.empty() ? ":" : arguments) + "; return; } ;;\n";
 }
 
-/// Which world, and the keys of every world there is, the first one's choices where several have a key.
+/// The key of the world, and the keys of all worlds; where several worlds have a key, the first one's choices.
 std::vector<DescribedKey> every_key() {
     std::vector<DescribedKey> keys{{world_key, first_world, "", {}}};
     for (const World* world : all_worlds()) keys.front().choices.push_back(world->name());
@@ -104,8 +107,8 @@ std::string keys_text() {
            joined(names, " ") + "\n           compopt -o nospace 2>/dev/null ;;\n    esac\n}\n\n";
 }
 
-/// What does not depend on the commands. bash breaks words at the = in COMP_WORDBREAKS: they are put together again,
-/// and what stands before the = is taken off the replies, which replace only what stands behind it.
+/// The part that does not depend on the commands. bash splits words at the = in COMP_WORDBREAKS: they are joined again,
+/// and the part up to the = is removed from the replies, which replace only the part after it.
 const char* const helpers = R"(
 _credence_reply() {
     local reply

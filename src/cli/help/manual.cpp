@@ -1,4 +1,4 @@
-// The manual page credence(1), made of the descriptions that the program itself reads.
+// The manual page credence(1), generated from the program's own descriptions of its commands.
 
 #include "cli/command.hpp"
 #include "cli/help/roff.hpp"

@@ -1,11 +1,11 @@
 #pragma once
-// Text as the macros man(7) of roff want it.
+// Text formatted with roff's man(7) macros.
 
 #include <string>
 
 namespace credence::cli::roff {
 
-/// A text of which roff takes every character as it is: hyphens stay hyphens that can be copied, quotes stay straight.
+/// A text with roff's special characters escaped: hyphens can be copied, quotes stay straight.
 std::string plain(const std::string& text);
 std::string bold(const std::string& text);
 std::string italic(const std::string& text);
@@ -14,16 +14,16 @@ std::string italic(const std::string& text);
 std::string section(const std::string& title);
 std::string subsection(const std::string& title);
 
-/// Begins a paragraph, but for the first one of a section.
+/// Begins a paragraph, except for the first one of a section.
 inline const std::string paragraph = ".PP\n";
 
-/// A text whose lines are filled; those that begin with a blank stay as they are, set apart.
+/// A text whose lines are filled; those that begin with a blank are set unchanged, apart.
 std::string filled(const std::string& text);
 
-/// A tagged paragraph: the tag is roff already, the text is not.
+/// A tagged paragraph: the tag is already roff, the text is not.
 std::string tagged(const std::string& tag, const std::string& text);
 
-/// Lines set as they are, indented.
+/// Lines set unchanged, indented.
 std::string example(const std::string& line);
 
 }  // namespace credence::cli::roff

@@ -1,12 +1,12 @@
 #pragma once
-// Stopping a run from outside.
+// Stopping a run by a signal.
 
 #include <string>
 
 namespace credence::cli {
 
-/// While there is one, SIGINT, SIGTERM and SIGHUP ask the run to stop, and a second one of them ends the program at once
-/// with 130. A SIGHUP that was ignored, as nohup has it, still is.
+/// While an object exists, SIGINT, SIGTERM and SIGHUP ask the run to stop, and a second one of them ends the program at
+/// once with 130. A SIGHUP that was ignored, as nohup arranges it, stays ignored.
 class Interrupt {
 public:
     Interrupt();
@@ -14,7 +14,7 @@ public:
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
 
-    /// Whether one came. From any thread.
+    /// Whether a signal was received. Can be called from any thread.
     static bool came();
     /// Its name, such as SIGINT.
     static std::string name();

@@ -20,7 +20,7 @@ namespace {
 /// The largest scenarios (64 features, every estimator) take less than 128 kB on any thread.
 constexpr std::size_t least_stack = std::size_t{256} << 10;
 
-/// That of the thread that asks.
+/// The stack size of the calling thread.
 std::size_t own_stack() {
     std::size_t size = std::numeric_limits<std::size_t>::max();
     pthread_attr_t attributes;
@@ -30,7 +30,7 @@ std::size_t own_stack() {
     return size;
 }
 
-/// The smaller of the first thread's and of another one's, which OMP_STACKSIZE may set.
+/// The smaller one of the first thread's stack and of other threads', which OMP_STACKSIZE may set.
 std::size_t smallest_stack() {
     rlimit limit{};
     std::size_t smallest = getrlimit(RLIMIT_STACK, &limit) == 0 ? limit.rlim_cur : least_stack;
@@ -39,7 +39,7 @@ std::size_t smallest_stack() {
     return smallest;
 }
 
-/// The number in a file of the control group that this process is in; none where there is no limit.
+/// The number in a file of this process's control group; nothing where there is no limit.
 std::optional<std::int64_t> number_in(const std::string& path) {
     std::int64_t number = 0;
     if (std::ifstream(path) >> number && number > 0) return number;

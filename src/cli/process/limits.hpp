@@ -1,5 +1,5 @@
 #pragma once
-// Limits of the system (ulimit) that the program runs under.
+// Limits of the system (ulimit, control groups) on the program.
 
 #include <cstdint>
 #include <optional>
@@ -7,17 +7,17 @@
 
 namespace credence::cli {
 
-/// Throws InputError where a thread has less stack than the work takes: it would end in a segmentation fault.
+/// Throws InputError where a thread's stack is too small for the work: it would end in a segmentation fault.
 void check_stack();
 
-/// The least bytes of memory that the machine, the control group and ulimit -v leave to the program.
+/// The bytes of memory that the program may use: the least of what the machine, the control group and ulimit -v allow.
 std::int64_t memory_limit();
 
-/// Bytes that can still be written into the folder of a file; nothing where the system does not say.
+/// Number of bytes that can still be written into the folder of a file; nothing where the system does not report it.
 std::optional<std::int64_t> free_space(const std::string& path);
 
-/// The columns of a merge stay in the shards' files, and those open: as many as the system allows, not the 1024 of a usual
-/// shell.
+/// Raises the limit on open files to the largest that the system allows: a merge keeps the files of all shards open,
+/// and a shell's usual limit is 1024.
 void allow_open_files();
 
 }  // namespace credence::cli

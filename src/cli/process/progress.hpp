@@ -1,5 +1,5 @@
 #pragma once
-// Progress of long work: a line that is drawn again on a terminal, a line now and then elsewhere, nothing with --quiet.
+// Progress of long work: a line that is redrawn on a terminal, otherwise a line now and then; nothing with --quiet.
 
 #include <credence/study.hpp>
 

@@ -49,7 +49,7 @@ std::string cut_to_fit(const std::string& text, int lines, int columns) {
     return fitting;
 }
 
-// ECMA-48, and the other page that xterm has brought to all terminals.
+// ECMA-48, and the alternate screen, which xterm introduced and other terminals have too.
 Screen::Screen() { std::cout << "\033[?1049h\033[?25l" << std::flush; }
 Screen::~Screen() { std::cout << "\033[?25h\033[?1049l" << std::flush; }
 

@@ -1,10 +1,10 @@
 #pragma once
-// The standard streams, which the program may be started without.
+// Standard streams that are closed when the program starts.
 
 namespace credence::cli {
 
-/// Opens something on each of descriptors 0, 1 and 2 that is closed, so that no file which the program opens gets one of
-/// them: what a library prints there would be written into that file. Ends the process where that is impossible.
+/// Opens each of descriptors 0, 1 and 2 that is closed, so that no file that the program opens gets one of them: a
+/// library's messages would be written into that file. Ends the process where this is impossible.
 void hold_standard_streams();
 
 }  // namespace credence::cli

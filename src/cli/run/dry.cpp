@@ -19,12 +19,13 @@ std::string threads_text(const RunRequest& request) {
 
 namespace {
 
-/// Seconds that blocks of a scenario take on one thread: those of a block, whatever its trials, and those of each trial.
+/// Seconds that a scenario's blocks take on one thread: those of a block, whatever its trials, and those of each trial.
 struct BlockSeconds {
     double block = 0, trial = 0;
 };
 
-/// Tried with more and more trials of the last block, for a fifth of a second, or less where there are many scenarios.
+/// Measured with more and more trials of the last block, for a fifth of a second, or less where there are many
+/// scenarios.
 BlockSeconds seconds_of_a_block(const Scenario& scenario, const RunRequest& request) {
     constexpr int octet = 8;  // a pack of fewer trials takes as long
     const double enough = std::min(0.1, 5 / static_cast<double>(request.scenarios.size()));
@@ -49,7 +50,7 @@ BlockSeconds seconds_of_a_block(const Scenario& scenario, const RunRequest& requ
     }
 }
 
-/// Seconds that it takes to write the journal and the results and to report them: bytes and cells by the second, measured
+/// Seconds for writing the journal and the results and for reporting them, from bytes and cells per second, measured
 /// with 2,000 and 20,000 poses (AMD Zen 5, a virtual disk).
 double seconds_of_writing(const Footprint& size) {
     return 2 * static_cast<double>(size.file) / 200e6 + static_cast<double>(size.cells) * 0.4e-6;
@@ -74,7 +75,7 @@ void check_fit(const RunRequest& request, const Study& study) {
         missing += trials_in(missing_blocks(results, request.options.trials, request.options.shard), request.options.trials);
         all += std::max<std::int64_t>(1, request.options.trials / request.options.shard.count);
     }
-    // The results are written while the journal, to which the missing trials are added, is still there.
+    // The results are written while the journal, which then also holds the missing trials, still exists.
     const double share = std::min(1.0, static_cast<double>(missing) / static_cast<double>(all));
     const auto needed = static_cast<std::int64_t>(static_cast<double>(size.file) * (1 + share));
     if (const std::optional<std::int64_t> there = free_space(request.output); missing > 0 && there && needed > *there)

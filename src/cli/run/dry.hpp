@@ -1,5 +1,5 @@
 #pragma once
-// `credence run --dry-run`: what a run is expected to take.
+// `credence run --dry-run`: the expected time, memory and file size of a run.
 
 #include "cli/run/request.hpp"
 
@@ -8,11 +8,11 @@ namespace credence::cli {
 /// `4`, or `3 x 4` for as many on each of several ranks.
 std::string threads_text(const RunRequest& request);
 
-/// Refuses a run that memory or disk cannot hold, as far as that can be told beforehand. A run that stops by itself may take
-/// less than its ceiling, and is not refused. Throws InputError.
+/// Refuses a run for which memory or disk are too small, as far as that is known in advance. A run with --until may
+/// need less than its ceiling, and is not refused. Throws InputError.
 void check_fit(const RunRequest& request, const Study& study);
 
-/// Prints it, from a trial or some of every scenario.
+/// Prints the estimate, from one or more trials of every scenario.
 int dry_run(const RunRequest& request, const Study& study);
 
 }  // namespace credence::cli

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t default_trials = 10000, default_ceiling = 10'000'000;
 
-/// `part-{shard}.h5`: a name of its own for every shard of one command line.
+/// `part-{shard}.h5`: a different name for every shard of one command line.
 std::string output_of(const Parsed& parsed, const Shard& shard) {
     std::string name = parsed.text("output").value_or("credence.h5");
     const std::string place = "{shard}";
@@ -38,7 +38,7 @@ Start start_of(const Parsed& parsed) {
     return parsed.has("resume") ? Start::resume : parsed.has("overwrite") ? Start::overwrite : Start::fresh;
 }
 
-/// Those of the files, each at every point of the grid.
+/// The scenarios of the files, each at every point of the sweep.
 std::vector<Scenario> scenarios_of(const Parsed& parsed) {
     const std::vector<SweepAxis> axes = parsed.sweep();
     const std::size_t count = parsed.arguments.size() * point_count(axes);

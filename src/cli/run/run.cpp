@@ -71,14 +71,14 @@ std::string now_text() {
     return text;
 }
 
-/// What a run did to its study.
+/// The outcome of a run.
 struct Work {
     bool changed = false;
     double seconds = 0;
     std::optional<InterimAnalysis> last_analysis;  ///< with --until
 };
 
-/// Runs what is missing of what was asked for.
+/// Runs the missing blocks of the request.
 Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
     const auto start = std::chrono::steady_clock::now();
     Work work;
@@ -89,7 +89,7 @@ Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
     if (ranks != nullptr)
         ranks->begin(definition_of(stored.study()), request.threads_given ? options.threads : 0,
                      request.commit_every > 0 ? RankLeader::Sending::at_once : RankLeader::Sending::now_and_then);
-    // With --until nobody knows yet how many trials will be asked for: each look asks for its own.
+    // With --until the number of trials is not known yet: each interim analysis asks for its own.
     options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
     if (!request.goals.empty()) {
         work.last_analysis = grow_until_precise(stored.study(), request, options);
@@ -113,19 +113,19 @@ RunFacts facts_of(const RunRequest& request, const Work& work, const std::string
     return facts;
 }
 
-/// The command that goes on with a run that was stopped.
+/// The command that resumes a run that was stopped.
 std::string resuming(std::string command_line, const Shard& shard) {
     const std::string overwrite = " --overwrite", resume = " --resume";
     if (const std::size_t at = command_line.find(overwrite); at != std::string::npos)
         command_line.erase(at, overwrite.size());
-    for (const std::string before : {" --shard ", " --shard="})  // what the launcher named holds where it did only
+    for (const std::string before : {" --shard ", " --shard="})  // the launcher's shard applied to that job only
         if (const std::size_t at = command_line.find(before + "auto"); at != std::string::npos)
             command_line.replace(at + before.size(), 4,
                                  std::to_string(shard.index) + "/" + std::to_string(shard.count));
     return command_line.find(resume) == std::string::npos ? command_line + resume : command_line;
 }
 
-/// What stopped the run, such as SIGTERM; empty where nothing did.
+/// The reason why the run stopped, such as SIGTERM; empty where it was not stopped.
 std::string stopped_by(const RankLeader* ranks) {
     if (Interrupt::came()) return Interrupt::name();
     return ranks != nullptr ? ranks->stopped_by() : "";
@@ -149,7 +149,7 @@ void print_table(const Study& study, const RunRequest& request, const Work& work
                         : " has these trials already\n"));
 }
 
-/// Runs and writes. Throws Failure with what is kept.
+/// Runs and writes the results. Failures are thrown with the progress that is kept.
 Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const std::string& command_line) {
     const std::string started = now_text();
     try {

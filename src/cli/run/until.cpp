@@ -18,7 +18,7 @@ std::string formatted(const char* format, int digits, double value) {
     return text;
 }
 
-/// Two significant digits.
+/// A number with two significant digits.
 std::string width_text(double width) { return !std::isfinite(width) ? "unknown" : formatted("%.*g", 2, width); }
 
 /// `0.1984 ± 0.0081`: as many decimals as show two digits of the half-width.
@@ -43,7 +43,7 @@ std::string look_text(const InterimAnalysis& look, const StoppingRule& rule) {
            (look.met ? "precise enough" : prediction_text(look, rule));
 }
 
-/// Progress over all looks: trials that have been run, of those that the last look predicted.
+/// Progress over all interim analyses: trials that have been run, of those that the last analysis predicted.
 class AnalysisProgress {
 public:
     AnalysisProgress(bool quiet, const StoppingRule& rule) : quiet_(quiet), rule_(rule), line_(quiet) {}
@@ -67,8 +67,8 @@ private:
     bool quiet_;
     const StoppingRule& rule_;
     ProgressLine line_;
-    Progress before_, now_;      ///< of earlier looks, and of the one under way
-    std::int64_t expected_ = 0;  ///< trials still to run, as the last look predicted
+    Progress before_, now_;      ///< of earlier analyses, and of the current one
+    std::int64_t expected_ = 0;  ///< trials still to run, as predicted by the last analysis
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace credence {
 
 namespace {
 
-/// MPI's own errors end the job, as its default is.
+/// MPI's own errors end the job, which is MPI's default.
 class MpiTransport : public Transport {
 public:
     MpiTransport() {
@@ -22,7 +22,7 @@ public:
         MPI_Comm_size(MPI_COMM_WORLD, &size_);
     }
     ~MpiTransport() override {
-        if (abandoned_) return;  // the launcher ends a job of which a process ended without MPI_Finalize
+        if (abandoned_) return;  // the launcher ends a job in which a process ended without MPI_Finalize
         for (Sent& sent : on_the_way_) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
         MPI_Finalize();
     }
@@ -67,7 +67,7 @@ public:
     void abandon() override { abandoned_ = true; }
 
 private:
-    /// The bytes stay where they are until MPI has sent them.
+    /// The bytes must stay in place until MPI has sent them.
     struct Sent {
         std::string bytes;
         MPI_Request request;

@@ -1,5 +1,5 @@
 #pragma once
-// The ranks of an MPI job [cluster/ranks.hpp]. mpi_transport.cpp where MPI is built in, no_mpi.cpp where it is not.
+// The ranks of an MPI job [src/cluster/ranks.hpp]. mpi_transport.cpp is built with MPI, no_mpi.cpp without it.
 
 #include "cluster/ranks.hpp"
 
@@ -9,10 +9,10 @@
 namespace credence {
 
 /// Starts MPI, and ends it with the object. Null where the program was built without MPI, and where this process has
-/// started MPI before: that can be done once.
+/// started MPI before: MPI can be started only once.
 std::unique_ptr<Transport> start_mpi();
 
-/// The library and its version; `none` where the program was built without MPI. Starts nothing.
+/// The MPI library and its version; `none` where the program was built without MPI. Does not start MPI.
 std::string mpi_library();
 
 }  // namespace credence

@@ -8,7 +8,7 @@ namespace credence::hdf5 {
 
 namespace {
 
-/// Deflate, the strongest of the usual filters, never shrinks by more.
+/// Deflate, the strongest of the usual filters, never compresses by more than this.
 constexpr hsize_t largest_compression = 1100;
 
 }  // namespace
@@ -31,7 +31,7 @@ Dataset::Dataset(const Handle& group, const std::string& name)
     for (const hsize_t extent : extents_) count_ *= extent;
 }
 
-/// How the values are kept; throws where that is in other files.
+/// The layout of the stored values; throws where they are in other files.
 H5D_layout_t Dataset::own_layout(const Handle& creation) const {
     const H5D_layout_t layout = H5Pget_layout(creation.id());
     if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0)
@@ -39,18 +39,18 @@ H5D_layout_t Dataset::own_layout(const Handle& creation) const {
     return layout;
 }
 
-/// Throws where the file is too small to hold what the extents promise.
+/// Throws where the file is too small to hold as much as the extents say.
 void Dataset::check_storage(H5D_layout_t layout) const {
     if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
     const hsize_t stored = H5Dget_storage_size(dataset_.id()), file = file_size(dataset_);
     if (stored == 0) throw Error(place_, "has no values");
-    // Chunks that were never written take no room: what they would hold is a claim.
+    // Chunks that were never written take no space in the file, so their extents cannot be checked against its size.
     hsize_t room = (layout == H5D_CHUNKED ? std::min(stored, file) * largest_compression : file) /
                    std::max<hsize_t>(H5Tget_size(type_.id()), 1);
     for (const hsize_t extent : extents_) room /= extent;
     if (room == 0) throw Error(place_, extents_text(extents_) + " does not fit into what is stored");
     if (layout == H5D_CHUNKED) return;
-    hsize_t needed = H5Tget_size(type_.id());  // HDF5 itself would read on behind what is stored
+    hsize_t needed = H5Tget_size(type_.id());  // HDF5 itself would read beyond the stored bytes
     for (const hsize_t extent : extents_) needed *= extent;
     if (stored < needed) throw Error(place_, extents_text(extents_) + " is more than is stored");
 }

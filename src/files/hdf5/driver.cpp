@@ -12,7 +12,7 @@ namespace credence::hdf5 {
 
 namespace {
 
-/// What HDF5 holds of an open file: its own part first.
+/// HDF5's structure for an open file; HDF5's own part must come first.
 struct Driven {
     H5FD_t own;
     ByteFile* bytes;
@@ -73,7 +73,7 @@ H5FD_class_t driver_class() {
     H5FD_class_t driver{};
 #if H5_VERSION_GE(1, 13, 0)
     driver.version = H5FD_CLASS_VERSION;
-    driver.value = static_cast<H5FD_class_value_t>(512);  // the first that HDF5 leaves to others for tests and private use
+    driver.value = static_cast<H5FD_class_value_t>(512);  // the first number that HDF5 reserves for tests
 #endif
     driver.name = "credence";
     driver.maxaddr = largest_address;
@@ -93,7 +93,7 @@ H5FD_class_t driver_class() {
     return driver;
 }
 
-/// Registered once for the process; HDF5 forgets it at its exit.
+/// Registers the driver once for the process; HDF5 unregisters it at exit.
 hid_t driver_id() {
     static const H5FD_class_t driver = driver_class();
     static const hid_t id = H5FDregister(&driver);

@@ -1,14 +1,14 @@
 #pragma once
-// HDF5's way to the disk. HDF5 may crash at its exit where the system refused it a write; here it never learns
-// of that: the first error is kept for us, and what follows goes nowhere.
+// An HDF5 file driver that writes through a ByteFile. HDF5 may crash at exit after the system refused a write; through
+// this driver HDF5 never sees such an error: the ByteFile keeps the first one and ignores later writes.
 
 #include "files/system/byte_file.hpp"
 #include "files/hdf5/handle.hpp"
 
 namespace credence::hdf5 {
 
-/// A new HDF5 file, readable by every release from 1.8 on, whose bytes go into `bytes`, which must outlive it. After
-/// closing it ask `bytes` whether they are there.
+/// A new HDF5 file, readable by every release from 1.8 on, whose bytes are written to `bytes`, which must outlive it.
+/// After closing it, check `bytes` for an error.
 Handle new_file(ByteFile& bytes);
 
 }  // namespace credence::hdf5

@@ -22,7 +22,7 @@ QuietErrors::~QuietErrors() {
 
 namespace {
 
-/// HDF5 tells of the system's errors in the words of its descriptions alone: `..., errno = 24, error message = ...`.
+/// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`.
 herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
     if (const std::size_t at = said.rfind(number); at != std::string::npos)

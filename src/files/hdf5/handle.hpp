@@ -1,6 +1,6 @@
 #pragma once
-// HDF5's C API behind values that close themselves. (HighFive is not in every distribution, and HDF5's own C++
-// API has no dimension scales.) Keep all HDF5 calls on one thread. Writing: hdf5_write.hpp; reading: hdf5_read.hpp.
+// RAII wrappers for HDF5's C API. (HighFive is not in every distribution, and HDF5's own C++ API has no dimension
+// scales.) Make all HDF5 calls on one thread. Writing: write.hpp; reading: read.hpp.
 
 #include <hdf5.h>
 
@@ -12,20 +12,20 @@
 
 namespace credence::hdf5 {
 
-/// What HDF5 refused, or what a file gets wrong, as `place: problem`. The store makes an InputError or a Failure of it.
+/// An error of HDF5 or of a file's content, as `place: problem`. The store translates it to an InputError or a Failure.
 class Error : public std::runtime_error {
 public:
     Error(const std::string& place, const std::string& problem, std::string remedy = {})
         : std::runtime_error(place + ": " + problem), remedy_(std::move(remedy)) {}
-    /// Empty where only the usual one helps.
+    /// The remedy; empty where only the usual one helps.
     const std::string& remedy() const { return remedy_; }
 
 private:
     std::string remedy_;
 };
 
-/// Stops HDF5 from printing its error stack, as long as it lives; for good where it ends by an exception, since a
-/// damaged file can keep the library from closing, and at exit it would print that too.
+/// Stops HDF5 from printing its error stack while the object exists; if the scope is left by an exception, for good,
+/// since a damaged file can keep the library from closing, and HDF5 would print that at exit.
 class QuietErrors {
 public:
     QuietErrors();
@@ -39,15 +39,15 @@ private:
     int exceptions_;
 };
 
-/// The error of the call to HDF5 that failed last. Where the system was the reason (no more files may be open, a disk that
-/// cannot be read) it says so, and else `problem`. Any other call to HDF5 in between forgets it.
+/// The error of the HDF5 call that failed last: the system's reason if there was one (too many open files, a disk that
+/// cannot be read), else `problem`. It must be called before any other call to HDF5.
 Error failure(const std::string& place, const std::string& problem);
 
 /// Owns one HDF5 identifier. Where closing can lose data, call close(), which checks; the destructor cannot.
 class Handle {
 public:
     using Close = herr_t (*)(hid_t);
-    /// Throws Error(place, problem) where `id` is none.
+    /// Throws Error(place, problem) where `id` is invalid.
     Handle(hid_t id, Close close, const std::string& place, const std::string& problem);
     Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
     Handle& operator=(Handle&&) = delete;
@@ -64,7 +64,7 @@ private:
 /// Throws Error(place, problem) where an HDF5 call returned a failure.
 void check(herr_t returned, const std::string& place, const std::string& problem);
 
-/// A number's type in files, little-endian everywhere, and in memory.
+/// The HDF5 type of a number in files, always little-endian, and in memory.
 struct Type {
     hid_t file, memory;
 };
@@ -85,8 +85,8 @@ inline Type type_of<std::uint64_t>() { return {H5T_STD_U64LE, H5T_NATIVE_UINT64}
 
 using Extents = std::vector<hsize_t>;
 
-/// Where something is, for messages: `/group`, `/group/name`, `/group@attribute`. Names come from files: what could
-/// upset a terminal is escaped, and long ones are cut.
+/// The place of an object for messages: `/group`, `/group/name`, `/group@attribute`. Names come from files: control
+/// characters are escaped, and long names are cut.
 std::string place_of(const Handle& object);
 std::string place_of(const Handle& object, const std::string& name);
 std::string attribute_place(const Handle& object, const std::string& name);

@@ -16,7 +16,7 @@ Handle open_attribute(const Handle& object, const std::string& name) {
     return {H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it"};
 }
 
-/// What HDF5 answers to whether there is such a thing; throws where it cannot tell.
+/// HDF5's answer to whether something exists; throws where HDF5 reports an error instead.
 bool found(htri_t answer, const std::string& place) {
     check(answer, place, "cannot be looked up");
     return answer > 0;
@@ -59,7 +59,7 @@ const std::string& hard(const Handle& group, const std::string& name) {
 
 namespace {
 
-/// The first bytes of a file, as far as it has them. Throws Error.
+/// The first bytes of a file, fewer where it is shorter. Throws Error.
 std::string start_of(const std::string& path, std::size_t most) {
     try {
         return start_of_file(path, most);
@@ -75,16 +75,16 @@ std::string start_of(const std::string& path, std::size_t most) {
 
 Handle open_file(const std::string& path) {
     const std::string whole = "the file", signature = "\x89HDF\r\n\x1a\n", start = start_of(path, signature.size());
-    // A workspace that MATLAB saved is HDF5 behind a header of its own; its variables have no attribute on the root.
+    // A workspace saved by MATLAB is HDF5 after a header of its own; its variables have no attribute on the root.
     if (start.starts_with("MATLAB"))
         throw Error(whole, "is a MATLAB workspace", "Write the record with h5create, h5write and h5writeatt");
     if (start != signature) throw Error(whole, "is not an HDF5 file", "Give an HDF5 file");
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "/", "HDF5 gives no properties");
 #if H5_VERSION_GE(1, 10, 7) && !(H5_VERSION_GE(1, 12, 0) && !H5_VERSION_GE(1, 12, 1))
-    // Finished files appear whole, under their name; locks only fail on file systems that have none.
+    // No lock is needed: finished files appear whole under their name, and locking fails on some file systems.
     check(H5Pset_file_locking(access.id(), false, true), "/", "HDF5 refuses its access properties");
 #endif
-    // A merge has a thousand files open: what the library keeps of each is not to make up its memory.
+    // A merge has up to a thousand files open, so the library's cache for each must be small.
     check(H5Pset_evict_on_close(access.id(), true), "/", "HDF5 refuses its access properties");
     return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, whole, "is truncated or damaged"};
 }
@@ -103,7 +103,7 @@ std::vector<std::string> link_names(const Handle& group) {
         };
         std::string name(get(nullptr, 0), '\0');
         get(name.data(), name.size() + 1);
-        // HDF5 writes no such name, and would take it for a path, which could lead through links to other files.
+        // HDF5 writes no such name, and would interpret it as a path, which could lead through links to other files.
         if (name.find('/') != std::string::npos) throw Error(place_of(group, name), "has a name with a slash");
         names.push_back(hard(group, name));
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Reading HDF5. Files are hostile until shown otherwise: kind, type, rank, extents and storage are checked
-// before anything is allocated. HDF5's parser itself has known overflows on crafted files; newer releases have fewer.
+// Reading HDF5. Files are not trusted: kind, type, rank, extents and storage are checked before anything is allocated.
+// HDF5's own parser has known overflows on crafted files; newer releases have fewer.
 
 #include <credence/error.hpp>
 
@@ -8,26 +8,26 @@
 
 namespace credence::hdf5 {
 
-// All but `read_file` throw Error.
+// All functions but `read_file` throw Error.
 
 /// Opens a file for reading, after checks of our own: a regular file that starts with HDF5's signature.
 Handle open_file(const std::string& path);
 
-/// Of the file that the object is in.
+/// Path of the file that contains the object.
 hsize_t file_size(const Handle& object);
 
-/// What a type is called in messages, such as `64-bit floats`.
+/// The name of a type in messages, such as `64-bit floats`.
 std::string kind_text(hid_t type);
 
-/// Names of a group's links, and of an object's attributes, in the order in which they were made. Links other than hard
-/// ones could lead to other files and are refused.
+/// Names of a group's links, and of an object's attributes, in the order of their creation. Links other than hard ones
+/// could lead to other files and are refused.
 std::vector<std::string> link_names(const Handle& group);
 std::vector<std::string> attribute_names(const Handle& object);
 bool has_link(const Handle& group, const std::string& name);
 bool has_attribute(const Handle& object, const std::string& name);
 
-/// `name`; throws unless it is a hard link. Soft ones could lead anywhere, external ones to other files:
-/// nothing is to be opened by name without this.
+/// Returns `name`; throws unless it is a hard link. Soft links could lead anywhere, external ones to other files: no
+/// object may be opened by name without this check.
 const std::string& hard(const Handle& group, const std::string& name);
 
 Handle open_group(const Handle& parent, const std::string& name);
@@ -45,21 +45,21 @@ T read_number(const Handle& object, const std::string& name) {
     return value;
 }
 
-/// A dataset whose storage could be what its extents say.
+/// A dataset whose storage is consistent with its extents.
 class Dataset {
 public:
     Dataset(const Handle& group, const std::string& name);
 
     const std::string& place() const { return place_; }
     const Extents& extents() const { return extents_; }
-    /// For its attributes.
+    /// The dataset's handle, for its attributes.
     const Handle& object() const { return dataset_; }
     /// Whether the type in the file is exactly T's.
     template <class T>
     bool holds() const {
         return has_type(type_of<T>().file);
     }
-    /// Throws where the extents are others; the message shows both.
+    /// Throws where the extents differ; the message shows both.
     void require_extents(const Extents& extents) const;
 
     /// All values, row-major; the type in the file must be exactly T's.
@@ -70,7 +70,7 @@ public:
         read_into(type_of<T>().memory, values.data());
         return values;
     }
-    /// Of a list: values first ... first + count - 1, which are there; the type as for read().
+    /// Of a one-dimensional dataset: values first ... first + count - 1, which must exist; the type as for read().
     template <class T>
     std::vector<T> read_some(hsize_t first, hsize_t count) const {
         require<T>();
@@ -103,7 +103,7 @@ private:
 /// `[3, 2]`
 std::string extents_text(const Extents& extents);
 
-/// What `read` returns of a file. Throws its Error as InputError `FILE: PLACE: PROBLEM. REMEDY.`
+/// The result of `read` on a file. Throws its Error as InputError `FILE: PLACE: PROBLEM. REMEDY.`
 template <class Read>
 auto translated(const std::string& path, const std::string& usual_remedy, Read read) {
     try {
@@ -115,7 +115,7 @@ auto translated(const std::string& path, const std::string& usual_remedy, Read r
     }
 }
 
-/// Opens a file and returns what `read` makes of it, its errors translated.
+/// Opens a file and returns the result of `read` on it, its errors translated.
 template <class Read>
 auto read_file(const std::string& path, const std::string& usual_remedy, Read read) {
     return translated(path, usual_remedy, [&] { return read(open_file(path)); });

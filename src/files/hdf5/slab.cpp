@@ -24,7 +24,7 @@ std::size_t element_count(const Handle& attribute, const std::string& place) {
     return static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space.id()), 0));
 }
 
-/// Without nulls and spaces, which languages pad with.
+/// The text without the nulls and spaces that languages pad with.
 std::string without_padding(const std::string& text) { return trimmed(text.substr(0, text.find('\0'))); }
 
 std::vector<std::string> variable_texts(const Handle& attribute, const Handle& type, std::size_t count,
@@ -67,7 +67,7 @@ RealDataset::RealDataset(const Handle& group, const std::string& name, Numbers n
     require_filters(creation);
 }
 
-/// Throws where the values are compressed in a way that this HDF5 cannot undo.
+/// Throws where the values are compressed with a filter that this HDF5 does not have.
 void RealDataset::require_filters(const Handle& creation) const {
     for (int i = 0; i < H5Pget_nfilters(creation.id()); ++i) {
         unsigned flags = 0, settings = 0;

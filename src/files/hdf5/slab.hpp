@@ -1,12 +1,12 @@
 #pragma once
-// Reading what other programs wrote: parts of datasets of floating-point numbers, stored in any way, and text
-// of any kind. Checks as in hdf5_read.hpp.
+// Reading files of other programs: parts of datasets of floating-point numbers, stored in any way, and text of any
+// kind. The checks are those of read.hpp.
 
 #include "files/hdf5/read.hpp"
 
 namespace credence::hdf5 {
 
-/// Which numbers a dataset may hold.
+/// The numbers that a dataset may contain.
 enum class Numbers { floating, any };
 
 /// A dataset of numbers of any size that is read in parts, as doubles.
@@ -18,7 +18,7 @@ public:
     const Extents& extents() const { return checked_.extents(); }
     /// Distance of 1 from the next number in the file's floating type, at least 2^-52.
     double epsilon() const { return epsilon_; }
-    /// What is stored together: the extents of a chunk, or 1 in each dimension.
+    /// The extents of a chunk, or 1 in each dimension where the storage is not chunked.
     const Extents& chunk() const { return chunk_; }
 
     /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
@@ -33,8 +33,8 @@ private:
     double epsilon_ = 0;
 };
 
-/// An attribute of text: fixed or variable length, ASCII or UTF-8, a scalar or a list, whose entries are joined by
-/// commas. Without what pads it.
+/// A text attribute without padding: fixed or variable length, ASCII or UTF-8, a scalar or a list, whose entries are
+/// joined by commas.
 std::string read_any_text(const Handle& object, const std::string& name);
 
 }  // namespace credence::hdf5

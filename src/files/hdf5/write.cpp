@@ -20,7 +20,7 @@ Handle creation_properties(hid_t kind, const std::string& place) {
     return properties;
 }
 
-/// No dimensions: a scalar.
+/// A scalar: no dimensions.
 Handle dataspace(const Extents& extents, const std::string& place) {
     const hid_t space = extents.empty()
                             ? H5Screate(H5S_SCALAR)
@@ -40,7 +40,7 @@ Handle new_group(const Handle& parent, const std::string& name) {
 void write_text(const Handle& object, const std::string& name, const std::string& text) {
     const std::string place = attribute_place(object, name), problem = "HDF5 could not make this attribute";
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, place, problem);
-    // HDF5 has no empty text: it becomes one null, which is padding.
+    // HDF5 has no empty text: it is stored as one null, which is padding.
     check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)), place, problem);
     check(H5Tset_cset(type.id(), H5T_CSET_UTF8), place, problem);
     check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), place, problem);
@@ -61,7 +61,7 @@ Handle new_dataset(const Handle& group, const std::string& name, Type type, cons
                    const Description& description) {
     const std::string place = place_of(group, name), problem = "HDF5 could not make this dataset";
     const Handle space = dataspace(extents, place), creation = creation_properties(H5P_DATASET_CREATE, place);
-    // Every value is written; without this HDF5 would write its fill values first.
+    // Every value is written, so HDF5 need not write its fill values first.
     check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER), place, problem);
     Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.file, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                    H5Dclose, place, problem);

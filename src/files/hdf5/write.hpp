@@ -1,6 +1,6 @@
 #pragma once
-// Writing HDF5 that is netCDF-4 as well. The same calls give the same bytes: no object times,
-// creation order tracked, contiguous data, no filters.
+// Writing HDF5 that is netCDF-4 as well. The same calls give the same bytes: no object times, creation order tracked,
+// contiguous data, no filters.
 
 #include "files/hdf5/handle.hpp"
 
@@ -8,12 +8,12 @@
 
 namespace credence::hdf5 {
 
-/// What every variable says of itself.
+/// The attributes that every variable has.
 struct Description {
     std::string long_name, units;
 };
 
-/// A dimension that variables lie along, with its coordinate: an HDF5 dimension scale, a netCDF dimension.
+/// A dimension of variables, with its coordinate: an HDF5 dimension scale, a netCDF dimension.
 struct Dimension {
     hsize_t size;
     Handle scale;
@@ -22,10 +22,10 @@ using Dimensions = std::vector<const Dimension*>;
 
 Handle new_group(const Handle& parent, const std::string& name);
 
-/// An attribute of fixed-length UTF-8, the one kind of text that every reader gets right.
+/// A text attribute of fixed-length UTF-8, the one kind of text that every reader supports.
 void write_text(const Handle& object, const std::string& name, const std::string& text);
 
-// The plain functions below are what the templates stand on.
+// The functions on which the templates below are built.
 void write_attribute(const Handle& object, const std::string& name, Type type, const void* values,
                      const Extents& extents);
 Handle new_dataset(const Handle& group, const std::string& name, Type type, const Extents& extents,
@@ -43,16 +43,16 @@ void write_number(const Handle& object, const std::string& name, T value) {
     write_attribute(object, name, type_of<T>(), &value, {});
 }
 
-/// An attribute that is an array.
+/// An array attribute.
 template <class T>
 void write_numbers(const Handle& object, const std::string& name, const std::vector<T>& values) {
     write_attribute(object, name, type_of<T>(), values.data(), {values.size()});
 }
 
-/// Rows that a dataset along one dimension is written in: they bound the memory that long ones take.
+/// Number of rows by which a dataset along one dimension is written: this bounds the memory that long ones take.
 inline constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
 
-/// A dataset along one dimension of `count` values, `values(first, count)` giving some of them at a time.
+/// A dataset of `count` values along one dimension; `values(first, count)` returns some of them.
 template <class T, class Values>
 Handle new_long_dataset(const Handle& group, const std::string& name, std::int64_t count,
                         const Description& description, Values values) {
@@ -71,7 +71,7 @@ Dimension new_dimension(const Handle& group, const std::string& name, const std:
                         name, coordinate.size());
 }
 
-/// A variable along dimensions of the same group; `values`, row-major, must fill them.
+/// A variable along dimensions of the same group; `values`, row-major, must have as many values as these.
 template <class T>
 Handle new_variable(const Handle& group, const std::string& name, const std::vector<T>& values,
                     const Dimensions& dimensions, const Description& description) {

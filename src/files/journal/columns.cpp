@@ -1,4 +1,4 @@
-// Where the journal has the columns of a run.
+// Reading a run's columns and totals from its journal.
 
 #include "files/journal/journal.hpp"
 
@@ -10,7 +10,7 @@ namespace credence {
 
 namespace {
 
-/// An arm's columns while they are in the journal, in the results file that it grows, or in both.
+/// An arm's columns whose values are in the journal, in the results file that the journal extends, or in both.
 class ColumnsOfRun : public KeptColumns {
 public:
     ColumnsOfRun(const Journal& journal, std::size_t scenario, std::size_t arm)
@@ -24,7 +24,7 @@ private:
     std::size_t scenario_, arm_;
 };
 
-/// A scenario's totals and details, likewise.
+/// A scenario's totals and details, stored likewise.
 class TotalsOfRun : public KeptTotals {
 public:
     TotalsOfRun(const Journal& journal, std::size_t scenario) : journal_(journal), scenario_(scenario) {}
@@ -37,8 +37,7 @@ private:
 
 }  // namespace
 
-/// From here on the study's columns, where they are kept, are read from where the journal has them, and so are totals that
-/// are not in memory.
+/// Makes the study read its columns, if trials are kept, from the journal, and likewise totals that are not in memory.
 void Journal::keep(Study& study) {
     kept_.clear();
     computed_by_ = study.computed_by;
@@ -76,8 +75,8 @@ void Journal::read_values(std::int64_t position, ColumnType type, double* values
     }
 }
 
-/// Of `left` rows from row `skip` of block `at` on, those in the results file that can be read there at once: blocks that
-/// follow each other here may do so there.
+/// How many of `left` rows, from row `skip` of block `at` on, can be read in one go from the results file: blocks that
+/// are adjacent here may be adjacent there.
 std::int64_t Journal::rows_in_file(const Kept& kept, std::size_t at, std::int64_t skip, std::int64_t left) {
     const BlockPlace& place = kept.rows[at];
     std::int64_t some = std::min(place.trials - skip, left);

@@ -111,7 +111,7 @@ void put_commit_head(ByteWriter& to, const CommitHead& head) {
 
 namespace {
 
-/// Padded with nulls to its size; what is longer is cut.
+/// The text padded with nulls to `size`, or cut to it.
 void put_release(ByteWriter& to, std::string release) {
     release.resize(commit_release_size, '\0');
     to.put_raw(release.data(), release.size());
@@ -179,7 +179,7 @@ CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t tria
 
 namespace {
 
-/// Ranges of a study's blocks, and in `start.blocks` those that have values.
+/// Ranges of a study's blocks, and in `start.blocks` those blocks that have values.
 void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, CommitStart& start) {
     for (; count > 0; --count) {
         const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};

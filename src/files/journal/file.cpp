@@ -32,7 +32,7 @@ JournalBytes::JournalBytes(std::string path, Descriptor file) : path_(std::move(
 }
 
 std::optional<JournalBytes> JournalBytes::open(const std::string& path) {
-    // Not to wait for somebody at the other end of a pipe.
+    // Without O_NONBLOCK, opening a pipe would wait for its other end.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     if (file.get() < 0 && errno == ENOENT) return std::nullopt;
     if (file.get() < 0)
@@ -88,7 +88,7 @@ void JournalFile::append(const std::vector<std::string>& pieces) {
         size_ = end;
         return;
     }
-    // Where even this fails the tail is torn, and cut when the journal is opened again.
+    // If even this fails the tail is torn, and will be cut when the journal is opened again.
     [[maybe_unused]] const int cut = ftruncate(file_.get(), static_cast<off_t>(size_));
     fail_to_write(path_, error);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of a journal on the disk: appended, synced, cut where they are torn.
+// The bytes of a journal on the disk: appended, synced, and cut where they are torn.
 
 #include "files/system/system_file.hpp"
 
@@ -10,19 +10,19 @@
 
 namespace credence {
 
-/// A file to read, as long as it was when it was opened.
+/// A file for reading; its size is fixed when it is opened.
 class JournalBytes {
 public:
-    /// Opens it for reading only and without a lock, so that whoever writes it neither waits nor fails; nothing where
-    /// there is none. Throws InputError where it cannot be read.
+    /// Opens it read-only and without a lock, so that a program that writes it neither waits nor fails. Returns nothing
+    /// if there is no file. Throws InputError where it cannot be read.
     static std::optional<JournalBytes> open(const std::string& path);
 
     const std::string& path() const { return path_; }
     std::int64_t size() const { return size_; }
-    /// Exactly `size` bytes from `position` on. Throws InputError where they are not there or cannot be read.
+    /// Exactly `size` bytes from `position` on. Throws InputError where the file is shorter or cannot be read.
     void read(std::int64_t position, void* bytes, std::size_t size) const;
     std::string read(std::int64_t position, std::int64_t size) const;
-    /// Seconds since something was written into it, by the system's clock; at least 0.
+    /// Seconds since the file was last written, by the system's clock; at least 0.
     double seconds_since_change() const;
 
 protected:
@@ -33,19 +33,20 @@ protected:
     std::int64_t size_ = 0;
 };
 
-/// A file that is only ever appended to, locked against a second writer while it is open.
+/// An append-only file, locked against a second writer while it is open.
 class JournalFile : public JournalBytes {
 public:
-    /// Opens it, or makes it with these permissions. Throws InputError where another program holds it, Failure where the system refuses.
+    /// Opens the file, or creates it with these permissions. Throws InputError where another program holds it, Failure
+    /// where the system refuses.
     JournalFile(const std::string& path, mode_t mode);
 
-    /// Appends and syncs: when it returns the bytes are on the disk. Throws Failure where the system refuses; then what
-    /// had been there before is there still, and nothing else. Throws it too where another program cut or lengthened the
-    /// file; then nothing is written.
+    /// Appends and syncs: when it returns, the bytes are on the disk. Throws Failure where the system refuses; the file
+    /// is then as it was before the call. Also throws Failure, without writing, where another program shortened or
+    /// lengthened the file.
     void append(const std::vector<std::string>& pieces);
-    /// Leaves the first `size` bytes.
+    /// Truncates the file to its first `size` bytes.
     void cut(std::int64_t size);
-    /// Removes it, unless its name leads to another file by now. Throws Failure.
+    /// Removes the file, unless its name by now leads to another one. Throws Failure.
     void remove();
 };
 

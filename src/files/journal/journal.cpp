@@ -71,9 +71,9 @@ bool Journal::due(std::int64_t held) const {
     if (committing_) return false;
     if (pending_size_ + static_cast<std::size_t>(held) > too_much) return true;
     if (commit_every_ > 0) return pending_blocks_ >= static_cast<std::size_t>(commit_every_);
-    // Totals are as large after one block as after a thousand: they are not to make up most of the journal. Where they
-    // make up all of it, a hundredth of the time that the run took so far is at stake at most, and their number hardly
-    // grows with that time.
+    // Totals are as large after one block as after a thousand, so they should not make up most of the journal. Where
+    // they would make up all of it, the interval between commits grows with the run: at most a hundredth of the run's
+    // time so far can be lost, and the number of commits hardly grows with that time.
     const Seconds waited = std::chrono::steady_clock::now() - last_commit_,
                   longest = keeps_trials() ? most : std::max(most, Seconds(last_commit_ - begun_) / 100);
     return waited > least && (pending_size_ > totals_size_ / 4 || waited > longest);
@@ -99,7 +99,7 @@ void Journal::put_commit(std::size_t scenario, const Study& study) {
     start.release = release_;
     note_computed(computed_by_, release_, scenario, kept.pending);
     totals_size_ += totals.size();
-    // Moved out: values are large, and a string that is only cleared would keep its room, one for every scenario.
+    // Moved out: values are large, and a string that is only cleared would keep its capacity, one for every scenario.
     batch_.push_back({commit_start_bytes(static_cast<std::uint32_t>(scenario), start, keep,
                                          kept.pending_values.size() + totals.size()),
                       kept.pending_values.take(), totals.take()});
@@ -111,7 +111,7 @@ void Journal::prepare(const Study& study) {
     totals_size_ = 0;
     for (std::size_t s = 0; s < kept_.size(); ++s)
         if (!kept_[s].pending.empty()) put_commit(s, study);
-    if (batch_.empty() && study.trials > asked_) put_commit(0, study);  // what was asked for is worth a record without blocks
+    if (batch_.empty() && study.trials > asked_) put_commit(0, study);  // commits the number without blocks
     asked_ = std::max(asked_, study.trials);
     pending_size_ = pending_blocks_ = 0;
     last_commit_ = std::chrono::steady_clock::now();
@@ -143,8 +143,8 @@ void Journal::check_unchanged() const {
         end = scan_commits(file_, header_size_, layouts(),
                            [&](const FoundCommit& record) { seal = seal_with(seal, record.checksum); });
         if (end == file_.size() && seal == seal_) return;
-    } catch (const BadBytes&) {  // whole records, but not this study's
-    } catch (const InputError&) {  // it ends too early
+    } catch (const BadBytes&) {  // whole commits, but not of this study
+    } catch (const InputError&) {  // the results file is too short
     }
     throw Failure("cannot read back " + file_.path() + " (another program changed it, or the disk damaged it). What is " +
                   "damaged is to be computed again.");

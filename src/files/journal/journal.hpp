@@ -1,6 +1,6 @@
 #pragma once
-// The journal of a run: what the engine finished, committed while the run goes on. docs/durability.md says what
-// it promises.
+// The journal of a run: finished blocks, committed to the disk during the run. docs/durability.md describes its
+// guarantees.
 
 #include "files/journal/file.hpp"
 #include "files/journal/commit.hpp"
@@ -13,76 +13,77 @@
 
 namespace credence {
 
-/// Where the values of a block are: in the journal, or in the results file that the journal grows.
+/// The place of a block's values: in the journal, or in the results file that the journal extends.
 struct BlockPlace {
     std::int64_t trials = 0;
-    std::int64_t position = 0;  ///< in the journal: of the block's first byte; in the file: of its first row
+    std::int64_t position = 0;  ///< in the journal: of the block's first byte; in the results file: of its first row
     bool in_file = false;
 };
 
-/// Which blocks are there. Where no trial is kept, those alone have a place that have details, or are partial: what the
-/// others take does not grow with their number.
+/// The blocks of a journal and their places. If no trial is kept, only blocks with details and partial blocks have an
+/// entry of their own, so that memory does not grow with the number of the other blocks.
 struct PlacedBlocks {
     BlockRanges blocks;
     std::map<std::int64_t, BlockPlace> places;
 
     void put(std::int64_t block, const BlockPlace& place);
-    /// Of a study of `trials` trials: blocks of which no trial is kept. Those of them that have details have a place already.
+    /// Adds blocks without kept trials, of a study of `trials` trials. Those of them with details must have a place
+    /// already.
     void put(const BlockRange& range, std::int64_t trials, const BlockLayout& layout);
-    /// The others' place is the one to believe.
+    /// Adds the blocks of `others`; where both have a block, the others' place is taken.
     void put(const PlacedBlocks& others);
     void remove(std::int64_t block);
     std::int64_t trials_of(std::int64_t block) const;
     std::int64_t trials() const;
-    /// The study that has just these blocks.
+    /// Number of trials of the smallest study that has all these blocks.
     std::int64_t trials_up_to() const { return blocks.empty() ? 0 : blocks.back() * block_size + trials_of(blocks.back()); }
-    /// Whether it has these with as many trials.
+    /// Whether `other` has the same blocks with as many trials.
     bool has(const PlacedBlocks& others) const;
 };
 
-/// Where the journal has the last totals of a scenario.
+/// The position of a scenario's last totals in the journal.
 struct JournalTotals {
     std::int64_t position = 0, size = 0;
 
-    /// Whether any record is of that scenario.
+    /// Whether any commit is of that scenario.
     bool found() const { return position > 0; }
 };
 
-/// What a journal says of one scenario.
+/// The journal's content for one scenario.
 struct JournalScenario {
     PlacedBlocks placed;
     std::int64_t asked = 0;    ///< trials that the study was asked for at the last totals
     std::int64_t counted = 0;  ///< trials in the last totals
     JournalTotals totals;
-    Provenance computed_by;    ///< of this scenario alone
+    Provenance computed_by;    ///< provenance of this scenario alone
 };
 
 class Journal : public BlockKeeper {
 public:
-    /// Opens the journal at `path`, or makes it with these permissions, and locks it. Throws InputError where another program holds it, or it is
-    /// no journal of this version.
+    /// Opens the journal at `path`, or creates it with these permissions, and locks it. Throws InputError where another
+    /// program holds it or it is not a journal of this version.
     explicit Journal(const std::string& path, mode_t mode = 0666);
 
-    /// The study that it belongs to; nothing where it is new, or was torn before anything could be committed.
+    /// The journal's study; nothing where the journal is new, or was torn before anything could be committed.
     const std::optional<JournalHeader>& header() const { return header_; }
 
-    /// Begins it anew, for `study`.
+    /// Starts the journal over, for `study`.
     void begin(const JournalHeader& header, Study& study);
-    /// Goes on with it: adds what was committed to `study`, which holds what is in the results file that it grows. A torn
-    /// tail is left out, and cut. Throws InputError where it is damaged.
+    /// Continues the journal: adds its commits to `study`, which holds the content of the results file that the journal
+    /// extends. A torn tail is ignored, and cut. Throws InputError where the journal is damaged.
     void load(Study& study);
     bool has_commits() const { return file_.size() > header_size_; }
-    /// Bytes of the torn tail that load() cut.
+    /// Size in bytes of the torn tail that load() cut.
     std::int64_t torn() const { return torn_; }
     void remove() { file_.remove(); }
-    /// Throws Failure unless the file is what was read from it when it was opened and written since, byte by byte.
+    /// Throws Failure unless the file's bytes are those that were read when it was opened and those written since.
     void check_unchanged() const;
     /// Which release computed which blocks of the study.
     const Provenance& computed_by() const { return computed_by_; }
 
-    /// Blocks that make a commit due; 0: half a second, and more where there is little to commit.
+    /// Number of blocks after which a commit is made; 0: half a second, and more where there is little to commit.
     void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
-    /// What the run works on, and the release that computes it, for the records from here on.
+    /// The shard that the run computes, and its release, for all commits from here on.
     void works_on(const Shard& shard, const std::string& release) {
         shard_ = shard;
         release_ = release;
@@ -97,24 +98,24 @@ public:
     void commit() override;
     void finished(const Study& study) override;
 
-    /// The totals and details that are committed.
+    /// The committed totals and details.
     void load_totals(std::size_t scenario, ScenarioResults& results) const;
 
-    /// Values of a column by row, once finished() has said which blocks are there.
+    /// Values of a column by row; valid after finished() has set the rows of the blocks.
     std::vector<double> values(std::size_t scenario, std::size_t arm, std::size_t column, std::int64_t first,
                                std::int64_t count) const;
 
 private:
-    /// A scenario: how its blocks lie, where they are, and what the engine gave since the last commit.
+    /// A scenario: the layout of its blocks, their places, and what is waiting for the next commit.
     struct Kept {
         BlockLayout layout;
         std::vector<ColumnType> types;
-        std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that is grown
-        std::shared_ptr<const KeptTotals> totals_in_file;         ///< likewise; nullptr: there is none
+        std::vector<std::shared_ptr<const KeptColumns>> in_file;  ///< by arm, of the results file that it extends
+        std::shared_ptr<const KeptTotals> totals_in_file;         ///< likewise; nullptr: there are no totals
         PlacedBlocks placed;
-        std::int64_t counted = 0;                                 ///< trials in them
-        JournalTotals totals;                                     ///< over them; none: those of the results file
-        std::vector<BlockPlace> rows;                             ///< of those that are there, in order; if trials are kept
+        std::int64_t counted = 0;                                 ///< trials in the last totals
+        JournalTotals totals;                                     ///< the last ones; nothing: the results file has them
+        std::vector<BlockPlace> rows;                             ///< of the blocks, in order; if trials are kept
         std::vector<std::int64_t> pending;                        ///< blocks
         ByteWriter pending_values;
     };
@@ -131,13 +132,13 @@ private:
     JournalFile file_;
     std::optional<JournalHeader> header_;
     std::int64_t asked_ = 0, torn_ = 0, commit_every_ = 0, header_size_ = 0;
-    std::uint32_t seal_ = 0;  ///< checksum of the header and of the checksums of all records
+    std::uint32_t seal_ = 0;  ///< checksum of the header and of the checksums of all commits
     Shard shard_;
     std::string release_ = unknown_release;
     Provenance computed_by_;
     std::vector<Kept> kept_;
 
-    /// A record to be committed, its checksum still missing.
+    /// A commit to be written, its checksum still missing.
     struct PreparedCommit {
         std::string start, values, totals;
 

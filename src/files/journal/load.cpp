@@ -1,4 +1,4 @@
-// Reading a journal back: which blocks were committed, and the totals over them.
+// Reading a journal back: its committed blocks and the totals over them.
 
 #include "files/journal/journal.hpp"
 
@@ -17,7 +17,7 @@ std::vector<BlockLayout> Journal::layouts() const {
     return layouts;
 }
 
-/// Reads all records up to a torn one, which is cut with what is behind it.
+/// Reads all commits up to a torn one, which is cut together with everything after it.
 std::vector<JournalScenario> Journal::scan(const Study& study) {
     std::vector<JournalScenario> found(study.scenarios.size());
     const std::vector<BlockLayout> layouts = this->layouts();
@@ -45,7 +45,7 @@ std::vector<JournalScenario> Journal::scan(const Study& study) {
     return found;
 }
 
-/// Errors and NEES of the blocks that have them and are in the journal.
+/// Errors and NEES of the blocks that have details and are in the journal.
 void Journal::read_details(std::size_t scenario, ScenarioResults& results) const {
     const Kept& kept = kept_[scenario];
     for (std::size_t at = 0; at < results.blocks.size() && kept.layout.detailed(results.blocks[at]); ++at) {
@@ -63,8 +63,8 @@ void Journal::read_details(std::size_t scenario, ScenarioResults& results) const
 
 namespace {
 
-/// Adds the journal's blocks to those of the file. A partial one that the study of the last totals has larger had been
-/// taken back before, and is left out. Throws BadBytes where blocks and totals do not agree.
+/// Adds the journal's blocks to those of the file. A partial block that is larger in the study of the last totals had
+/// been removed from the totals before, and is left out. Throws BadBytes where blocks and totals do not agree.
 void add_places(PlacedBlocks& placed, const JournalScenario& found) {
     placed.put(found.placed);
     std::vector<std::int64_t> taken_back;
@@ -105,7 +105,8 @@ void Journal::load(Study& study) {
         const std::vector<JournalScenario> found = scan(study);
         for (std::size_t s = 0; s < found.size(); ++s) {
             PlacedBlocks& placed = kept_[s].placed;
-            // The run may have ended, so that the results file holds all that the journal has, and only that had to go.
+            // The run may have ended, so that the results file holds everything and only the journal's removal was
+            // missing.
             if (!found[s].totals.found() || placed.has(found[s].placed)) continue;
             ScenarioResults& results = study.scenarios[s];
             add_places(placed, found[s]);

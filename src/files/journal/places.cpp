@@ -1,4 +1,4 @@
-// Which blocks a journal has, and where.
+// The blocks of a journal and their places.
 
 #include "files/journal/journal.hpp"
 
@@ -13,7 +13,7 @@ void PlacedBlocks::put(std::int64_t block, const BlockPlace& place) {
 
 void PlacedBlocks::put(const BlockRange& range, std::int64_t trials, const BlockLayout& layout) {
     blocks.add(range);
-    // One that was partial may be whole now.
+    // A block that was partial may be complete now.
     for (auto at = places.lower_bound(std::max(range.first, layout.detailed_blocks()));
          at != places.end() && at->first <= range.last;)
         at = places.erase(at);

@@ -11,7 +11,7 @@ namespace {
 constexpr auto head_size = static_cast<std::int64_t>(commit_head_size),
                tail_size = static_cast<std::int64_t>(commit_tail_size);
 
-/// The checksum that follows these bytes of the file; nothing where theirs is another.
+/// The checksum that follows these bytes of the file; nothing where it does not match them.
 std::optional<std::uint32_t> right_checksum(const JournalBytes& file, std::int64_t begin, std::int64_t end) {
     constexpr std::int64_t at_once = std::int64_t{1} << 20;
     std::uint32_t crc = 0, stored = 0;
@@ -23,7 +23,7 @@ std::optional<std::uint32_t> right_checksum(const JournalBytes& file, std::int64
     return crc == stored ? std::optional(stored) : std::nullopt;
 }
 
-/// The head of the record that begins at `position`; nothing where it is torn.
+/// The head of the commit that begins at `position`; nothing where it is torn.
 std::optional<CommitHead> find_head(const JournalBytes& file, std::int64_t position) {
     const std::int64_t left = file.size() - position - head_size - tail_size;
     if (left < static_cast<std::int64_t>(commit_start_size)) return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<CommitHead> find_head(const JournalBytes& file, std::int64_t posit
     }
 }
 
-/// The record that begins at `position`; nothing where it is torn. Throws BadBytes for one that cannot be.
+/// The commit that begins at `position`; nothing where it is torn. Throws BadBytes for an invalid one.
 std::optional<FoundCommit> find_record(const JournalBytes& file, std::int64_t position,
                                        const std::vector<BlockLayout>& layouts) {
     const std::optional<CommitHead> head = find_head(file, position);
@@ -82,7 +82,7 @@ std::optional<FoundHeader> find_header(const JournalBytes& file) {
         found.size = static_cast<std::int64_t>(size);
         return found;
     } catch (const BadBytes& bad) {
-        // A header is on the disk before the first record is written: one that is torn has nothing behind it.
+        // The header is on the disk before the first commit is written: a torn header has nothing after it.
         if (file.size() <= static_cast<std::int64_t>(size)) return std::nullopt;
         refuse_damaged(file.path(), std::string("its header ") + bad.what());
     }

@@ -15,7 +15,7 @@ void put_sum(ByteWriter& to, const ExactSum& sum) {
 }
 
 ExactSum get_sum(ByteReader& from) {
-    constexpr std::uint64_t most_parts = 64;  // 2098 bits of doubles make no more than 40 that do not overlap
+    constexpr std::uint64_t most_parts = 64;  // the 2098 bits of doubles give at most 40 parts that do not overlap
     const std::uint64_t count = from.get_count();
     if (count == 0 || count > most_parts) throw BadBytes("a sum has an impossible number of parts");
     return ExactSum::from_parts(from.get_all<double>(count));
@@ -35,7 +35,8 @@ std::int64_t get_number(ByteReader& from) {
     return static_cast<std::int64_t>(value);
 }
 
-/// Counts of which long runs are 0, as those of cells are at first: each 0 is followed by the number of further ones.
+/// Writes counts with long runs of 0, such as those of cells early in a run: each 0 is followed by the number of
+/// further ones.
 void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
     for (auto count = counts.begin(); count != counts.end();) {
         to.put_count(static_cast<std::uint64_t>(*count));

@@ -1,5 +1,5 @@
 #pragma once
-// A scenario's totals as bytes: what a journal's commit says of all blocks up to it.
+// A scenario's totals as bytes: the part of a commit that sums up all blocks so far.
 
 #include <credence/results.hpp>
 
@@ -7,11 +7,11 @@
 
 namespace credence {
 
-/// Everything of the results that grows with series and steps and not with trials; the errors of detailed trials too
-/// are left out.
+/// Writes the parts of the results whose size depends on series and steps but not on trials; so the errors of detailed
+/// trials are left out.
 void put_totals(ByteWriter& to, const ScenarioResults& results);
 
-/// Reads them into results of the same scenario. Throws BadBytes where they are not its totals, or cannot be.
+/// Reads them into results of the same scenario. Throws BadBytes where they are not its totals or are invalid.
 void get_totals(ByteReader& from, ScenarioResults& results);
 
 }  // namespace credence

@@ -12,7 +12,7 @@ namespace credence {
 
 namespace {
 
-/// Throws unless the file is of the study that the first one is of.
+/// Throws unless the file is of the same study as the first one.
 void check_same_study(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t file,
                       std::size_t first_file) {
     const auto refuse = [&](const std::string& why) {
@@ -43,7 +43,7 @@ std::string ranges_text(const BlockRanges& blocks) {
 
 namespace {
 
-/// Throws unless trials of the two files may stand in one.
+/// Throws unless trials of the two files may be merged.
 void check_releases(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t a,
                     std::size_t b) {
     for (const ComputedBy& one : other.computed_by)
@@ -53,7 +53,7 @@ void check_releases(const Study& first, const Study& other, const std::vector<st
                              " of the other; draws and columns may differ between them). Run one of them again.");
 }
 
-/// What files that are added one after the other make.
+/// The study that results from files that are added one after the other.
 class Merger {
 public:
     explicit Merger(const std::vector<std::string>& paths)
@@ -70,7 +70,7 @@ public:
         }
     }
 
-    /// Whether a file has a block that another had before.
+    /// Whether a file has a block that an earlier one had.
     bool shares(const Study& part) const {
         for (std::size_t s = 0; s < scenarios_.size() && s < part.scenarios.size(); ++s)
             if (!part.scenarios[s].blocks.common(scenarios_[s].blocks()).empty()) return true;
@@ -94,14 +94,14 @@ private:
     }
 
     const std::vector<std::string>& paths_;
-    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for what is read when the results are written
+    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for reading the files at the end
     std::size_t first_ = 0;
     Study study_;
     std::vector<ScenarioMerger> scenarios_;
 };
 
-/// The files by the number of their blocks, those with few first: files that make up another one come before it, and what
-/// they have in common need not be computed.
+/// The files by increasing number of blocks: files that together make up another one come before it, and blocks that
+/// they share with it need not be computed again.
 std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
     std::vector<std::pair<std::int64_t, std::size_t>> sizes;
     for (std::size_t file = 0; file < paths.size(); ++file) {

@@ -8,7 +8,7 @@ namespace credence {
 
 namespace {
 
-/// One arm's columns, some rows from each of several files.
+/// One arm's columns, with rows from several files.
 class GatheredColumns : public KeptColumns {
 public:
     void add(std::shared_ptr<const KeptColumns> source, std::int64_t first, std::int64_t rows) {
@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    /// Rows `begin` ... here are rows `first` ... there.
+    /// Maps rows from `begin` on here to rows from `first` on there.
     struct Span {
         std::shared_ptr<const KeptColumns> source;
         std::int64_t begin, first, rows;

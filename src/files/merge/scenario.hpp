@@ -1,5 +1,5 @@
 #pragma once
-// One scenario of a merge.
+// Merges the files' content for one scenario.
 
 #include <credence/study.hpp>
 
@@ -12,24 +12,24 @@
 
 namespace credence {
 
-/// One scenario of the study, as the files bring it.
+/// One scenario of the study, collected from the files.
 class ScenarioMerger {
 public:
-    /// Of this scenario of a study of so many trials; `paths` are all files.
+    /// Constructs this scenario of a study of `trials` trials; `paths` are all files.
     ScenarioMerger(const ScenarioResults& like, std::int64_t trials, std::uint64_t root_seed,
                    const std::shared_ptr<const std::vector<std::string>>& paths);
 
     const BlockRanges& blocks() const { return results_.blocks; }
 
-    /// Adds what a file has and no other had before. Throws InputError where columns that others had too are not the same.
+    /// Adds the blocks of a file that no earlier file had. Throws InputError where columns of a shared block differ.
     void add(const ScenarioResults& from, std::size_t file);
 
-    /// The columns stay in the files, and so do totals that are too large for `in_memory`. Throws InputError where totals
-    /// and errors of several files contradict each other.
+    /// Leaves the columns in the files, and totals that are too large for `in_memory`. Throws InputError where totals
+    /// or errors of several files contradict each other.
     ScenarioResults merged(TotalsInMemory& in_memory);
 
 private:
-    /// Where a block is: its file, its first row there, and its trials.
+    /// The place of a block: its file, its first row there, and its trials.
     struct Found {
         std::size_t file;
         std::int64_t row, trials;

@@ -12,7 +12,7 @@ namespace credence {
 
 namespace {
 
-/// A scenario's totals in bytes that are the same where the totals are.
+/// A scenario's totals as bytes, equal exactly where the totals are equal.
 std::string totals_of(const ScenarioResults& results) {
     ByteWriter bytes;
     put_totals(bytes, results);
@@ -42,7 +42,7 @@ std::string place_text(const ScenarioResults& results, const ArmResults& arm, st
            results.scenario.name + "/" + arm.name;
 }
 
-/// Adds one file after the other.
+/// Adds up the totals of the files, one after the other.
 class MergedTotals::Adding {
 public:
     Adding(const MergedTotals& merged, ScenarioResults& results)
@@ -83,7 +83,7 @@ private:
         return from;
     }
 
-    /// Throws unless errors that an earlier file has too are the same.
+    /// Throws unless errors that an earlier file has as well are the same.
     void check_details(std::size_t place, const ScenarioResults& from, const BlockRanges& again) const {
         for (const std::int64_t block : again)
             for (std::size_t a = 0; a < from.arms.size(); ++a) {
@@ -101,8 +101,8 @@ private:
         return runner.run(merged_.root_seed_, block, trials_of(block));
     }
 
-    /// Adds the totals of a file that shares blocks with others. They must be what those of the others say, with those of
-    /// the blocks that the others do not have computed; so it does not matter which file comes first.
+    /// Adds the totals of a file that shares blocks with others. They must equal the others' totals plus those of the
+    /// blocks that only this file has, which are computed again; so the order of the files does not matter.
     void add_shared(std::size_t place, const ScenarioResults& from, const BlockRanges& fresh) {
         ScenarioResults expected = empty_results(from.scenario, from.keep);
         BlockRanges left = from.blocks;
@@ -128,7 +128,7 @@ private:
             refuse_contradiction(path_of(place), others, "their totals of " + from.scenario.name + " contradict each other");
     }
 
-    /// Throws unless the totals of a file that shares only some of its blocks are those of all of them.
+    /// Throws unless the totals of a file that shares only some of its blocks equal the totals of all its blocks.
     void check_computed(std::size_t place) {
         if (computed_[place]) return;
         computed_[place] = true;

@@ -16,7 +16,7 @@ namespace credence {
 /// `trials 512 to 767 of b/fixed.ekf`
 std::string place_text(const ScenarioResults& results, const ArmResults& arm, std::int64_t block, std::int64_t trials);
 
-/// Totals and details that several files have together, read from them one after the other when they are loaded.
+/// The merged totals and details of several files, read from these one after the other when they are loaded.
 class MergedTotals : public KeptTotals {
 public:
     MergedTotals(std::int64_t trials, std::uint64_t root_seed,
@@ -25,11 +25,11 @@ public:
 
     void add(const ScenarioResults& from, std::size_t file);
 
-    /// Throws InputError where a file does not agree with its columns, or several contradict each other.
+    /// Throws InputError where a file does not agree with its columns, or files contradict each other.
     void load(ScenarioResults& results) const override;
 
 private:
-    /// What a file has of the scenario.
+    /// A file's part of the scenario.
     struct Part {
         std::size_t file;
         BlockRanges blocks;

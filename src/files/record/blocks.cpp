@@ -1,4 +1,4 @@
-// The attribute `blocks`: parts of the state that are judged by themselves.
+// The attribute `blocks` of a record: component groups that are evaluated by themselves.
 
 #include <credence/scenario.hpp>
 #include <credence/text.hpp>

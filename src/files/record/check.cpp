@@ -1,5 +1,5 @@
-// What a step of a record holds: a covariance that is not symmetric is refused by dataset, trial and step; what is not
-// finite breaks the step, as a filter's failure and not the record's.
+// Checks the values of a step of a record. A covariance that is not symmetric is refused, with its dataset, trial and
+// step; a value that is not finite makes the trial fail at this step, as a failure of the filter and not of the record.
 
 #include <credence/text.hpp>
 
@@ -34,7 +34,8 @@ void refuse_asymmetry(const char* dataset, const RecordStep& step, int i, int j,
                 "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
 }
 
-/// The part of a matrix [size, size] in these rows and columns, made symmetric; false where some of it is not finite.
+/// Copies the submatrix of a matrix [size, size] with these rows and columns, made symmetric; false where some value is
+/// not finite.
 bool read_symmetric(const char* dataset, const RecordStep& step, const double* values, std::ptrdiff_t size,
                     const std::vector<int>& rows, Eigen::MatrixXd& symmetric) {
     const auto at = [&](int i, int j) { return values[i * size + j]; };
@@ -47,7 +48,7 @@ bool read_symmetric(const char* dataset, const RecordStep& step, const double* v
         for (Eigen::Index b = 0; b <= a; ++b) {
             const int i = rows[static_cast<std::size_t>(b)], j = rows[static_cast<std::size_t>(a)];
             const double above = at(i, j), below = at(j, i), difference = std::abs(above - below);
-            // First the cheap bound; the other one forgives the rounding of entries that should be 0.
+            // The cheap bound comes first; the other one allows for the rounding of entries that should be 0.
             if (difference > largest_asymmetry * std::max(std::abs(above), std::abs(below)) &&
                 !(difference <= largest_asymmetry * std::sqrt(std::abs(at(i, i))) * std::sqrt(std::abs(at(j, j)))))
                 refuse_asymmetry(dataset, step, i, j, above, below);
@@ -63,7 +64,8 @@ std::vector<int> counted_up(int count) {
     return all;
 }
 
-/// The observed rows of the innovation, and their covariance. What is wrong with them; empty where nothing is.
+/// Copies the observed rows of the innovation, and their covariance. Returns what is wrong with them; empty where
+/// nothing is.
 std::string read_innovation(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
     checked.rows.clear();
     for (int row = 0; row < shape.m; ++row)
@@ -77,7 +79,7 @@ std::string read_innovation(const RecordStep& step, const RecordShape& shape, Ch
                : "the innovation covariance is not finite";
 }
 
-/// The same of the error and its covariance, some of which is a number.
+/// Does the same for the error and its covariance, of which some value is a number.
 std::string read_state(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
     const std::ptrdiff_t n = shape.n;
     if (!any_number(step.error, n)) return "the error is NaN, and the covariance is not";

@@ -101,7 +101,7 @@ std::vector<ComponentGroup> read_blocks(const Handle& root, int n) {
     return parse_blocks("", n, place);
 }
 
-/// The dataset `steps` [trial]: how many steps each run has.
+/// The dataset `steps` [trial]: the number of steps of each run.
 std::vector<int> read_steps(const RealDataset& dataset, const RecordShape& shape) {
     const Extents& extents = dataset.extents();
     const Extents all{static_cast<hsize_t>(shape.trials)};
@@ -159,7 +159,7 @@ void RecordFile::add_innovations() {
     shape_.innovation_epsilon = innovation_covariance_->epsilon();
 }
 
-/// The errors alone are read, and mostly only the first of them: a trial with the last step of all ends the search.
+/// Only the errors are read, and usually only the first trial: the search ends at a trial that has all steps.
 int RecordFile::longest_trial() const {
     int longest = 0;
     std::vector<double> errors;
@@ -176,7 +176,7 @@ int RecordFile::longest_trial() const {
     return longest;
 }
 
-/// Steps up to the last one of a part that some trial has, counted from the first of all.
+/// The number of steps, counted from the first of all, up to the last one that some trial of the part has.
 int RecordFile::last_step(const RecordPart& part, std::vector<double>& errors) const {
     read(error_, part, errors);
     const auto n = static_cast<std::size_t>(shape_.n), steps = static_cast<std::size_t>(part.steps);
@@ -191,7 +191,7 @@ RecordPart RecordFile::part_at(std::int64_t trial, int step) const {
     const auto steps = static_cast<int>(std::clamp<std::int64_t>(part_numbers_ / of_step, 1, shape_.steps - step));
     if (step > 0 || steps < shape_.steps) return {trial, 1, step, steps};
     std::int64_t trials = std::max<std::int64_t>(part_numbers_ / (of_step * steps), 1);
-    // Whole chunks, each of which is then uncompressed once.
+    // Whole chunks are read, so that each is decompressed once.
     const auto together = single_ ? 1 : static_cast<std::int64_t>(covariance_.chunk()[0]);
     if (trials > together) trials -= trials % together;
     return {trial, std::min(trials, shape_.trials - trial), 0, steps};

@@ -11,7 +11,7 @@
 
 namespace credence {
 
-/// A part that is read at once: whole trials, or some steps of one.
+/// A part of the record that is read at once: whole trials, or some steps of one.
 struct RecordPart {
     std::int64_t first_trial = 0, trials = 0;
     int first_step = 0, steps = 0;
@@ -28,12 +28,12 @@ struct RecordValues {
 /// All functions throw hdf5::Error.
 class RecordFile {
 public:
-    /// `part_numbers`: as many numbers are read at once, 64 MiB of doubles.
+    /// `part_numbers`: how many numbers are read at once, 64 MiB of doubles by default.
     explicit RecordFile(const hdf5::Handle& root, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
     const RecordShape& shape() const { return shape_; }
 
-    /// The part that starts at a trial and step, as large as allowed, but at least a step.
+    /// The part that starts at a trial and step, as large as allowed, but at least one step.
     RecordPart part_at(std::int64_t trial, int step) const;
     void read(const RecordPart& part, RecordValues& values) const;
 
@@ -46,12 +46,12 @@ private:
     hdf5::RealDataset error_, covariance_;
     std::optional<hdf5::RealDataset> innovation_, innovation_covariance_;
     std::int64_t part_numbers_;
-    bool single_ = false;            ///< one trial, without a dimension for it
+    bool single_ = false;            ///< one trial, without a dimension for trials
     RecordShape shape_;
 };
 
-/// The whole state as `all`, then the blocks that a text names, such as `pose 0:3, feature_1 3:5`, of a state of n
-/// components. Throws hdf5::Error at `place`.
+/// The whole state as `all`, then the component groups that a text names, such as `pose 0:3, feature_1 3:5`, of a state
+/// of n components. Throws hdf5::Error at `place`.
 std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
 
 }  // namespace credence

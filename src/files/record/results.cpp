@@ -1,4 +1,4 @@
-// What a record's results are before the first trial: the same lists as a run has, declared for a record.
+// The empty results of a record: the same declarations as a run has.
 
 #include <credence/slam_columns.hpp>
 #include <credence/text.hpp>

@@ -10,10 +10,10 @@
 
 namespace credence {
 
-/// Index of the block `pose`; of the whole state, 0, where there is none.
+/// Index of the group `pose`, or 0, the whole state, if there is no such group.
 std::size_t pose_block(const RecordShape& shape);
 
-/// Results with one arm, all of whose totals are 0, columns filled and details NaN; without cells and distances.
+/// Results with one arm: all totals 0, columns filled, details NaN; without distribution cells and distances.
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path);
 

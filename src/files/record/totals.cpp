@@ -14,7 +14,7 @@ namespace credence {
 
 namespace {
 
-constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< of NEES that are kept, and of cells
+constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< limit on the NEES values, and on the cells
 constexpr std::size_t most_troubles = 20;
 
 std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
@@ -39,7 +39,7 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
 
 void RecordTotals::add(const RecordStep& step) {
     if (step.step == 0) start_trial();
-    if (!failed(status_)) add_covered(step);  // what a filter says after it failed is not looked at
+    if (!failed(status_)) add_covered(step);  // the filter's values after a failure are ignored
     if (step.step + 1 < shape_.steps) return;
     if (!failed(status_)) check_end(step.trial);
     end_trial(step.trial);
@@ -55,7 +55,7 @@ void RecordTotals::add_covered(const RecordStep& step) {
     products_.leave_out(size(step.step));
 }
 
-/// A trial that ends before it should has failed, unless the record declares that it is a shorter one.
+/// Ends a trial. One that has fewer steps than it should has failed, unless the record declares a lower number.
 void RecordTotals::check_end(std::int64_t trial) {
     if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
     const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);

@@ -1,5 +1,5 @@
 #pragma once
-// What the trials of a record add up to.
+// The totals over the trials of a record.
 
 #include <credence/record.hpp>
 
@@ -14,7 +14,7 @@
 
 namespace credence {
 
-/// Takes a record's steps one after the other, and makes results of them.
+/// Receives a record's steps one after the other, and makes results of them.
 class RecordTotals {
 public:
     /// `path` names the scenario.
@@ -48,19 +48,19 @@ private:
     StepEvaluator judge_;
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
-    std::vector<std::vector<double>> nees_;      ///< [steps] of the whole state, all trials; for the exact distance
-    std::vector<double> bounds_;                 ///< [blocks, levels] NEES below them counts as covered
+    std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
+    std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
 
-    // Of the trial under way.
+    // State of the current trial.
     CheckedStep checked_;
     Status status_ = Status::completed;
-    RecordTrouble trouble_;                      ///< why it failed, if it did
+    RecordTrouble trouble_;                      ///< why the trial failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
     LagProducts products_;
 };
 
-/// Reads a whole record, part by part. The same for parts of any size.
+/// Reads a whole record, part by part. The result does not depend on the size of the parts.
 Record read_record(const RecordFile& file, const std::string& path,
                          const std::function<void(const Progress&)>& progress = {});
 

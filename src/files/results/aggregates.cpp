@@ -50,7 +50,7 @@ void write_statuses(const Handle& group, const ArmAggregates& aggregates) {
     hdf5::new_variable(group, "status_count", aggregates.statuses, {&code}, {"trials by how they ended", "1"});
 }
 
-/// Counts and exact totals of figures, along `along` and the parts.
+/// Writes counts and exact totals of columns, along `along` and the parts.
 template <class T, class Get>
 void write_moments(const Handle& group, const std::string& name, hdf5::Dimensions along, const Dimension& part,
                    const std::string& what, const std::vector<T>& items, const Get& moments) {
@@ -86,7 +86,7 @@ void write_differences(const Handle& group, const Dimension& column, const Dimen
     write_trials("difference_above", &DifferenceTotals::above, "trials in which this arm's figure is higher");
 }
 
-/// Counts and exact totals as write_moments wrote them.
+/// Reads counts and exact totals as write_moments wrote them.
 std::vector<ExactMoments> read_moments(const Handle& group, const std::string& name, Extents extents, hsize_t parts) {
     const auto counts = read_as<std::int64_t>(group, name + "_count", extents);
     extents.push_back(parts);
@@ -146,7 +146,7 @@ BlockRanges read_block_ranges(const Handle& group, std::int64_t asked) {
                last = read_as<std::int64_t>(group, "last_block", dataset.extents());
     BlockRanges blocks;
     for (std::size_t i = 0; i < first.size(); ++i) {
-        const std::int64_t least = i == 0 ? 0 : last[i - 1] + 2;  // ranges that touch would be one
+        const std::int64_t least = i == 0 ? 0 : last[i - 1] + 2;  // adjacent ranges would be one range
         if (first[i] < least || last[i] < first[i] || last[i] >= block_count(asked))
             throw Error(dataset.place(), "and last_block are no ranges of the study's blocks, rising and apart");
         blocks.add(BlockRange{first[i], last[i]});

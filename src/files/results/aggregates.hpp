@@ -1,5 +1,5 @@
 #pragma once
-// What an arm's group holds in the place of columns where no trial is kept [docs/results-format.md, Aggregates].
+// The aggregates that an arm's group holds instead of columns if no trial is kept [docs/results-format.md, Aggregates].
 
 #include <credence/results.hpp>
 
@@ -14,18 +14,19 @@ namespace credence {
 /// Names of the datasets that belong to the arm at `place` in the scenario, coordinates included.
 std::vector<std::string> aggregates_links(std::size_t place);
 
-/// The most parts that one of its exact totals has.
+/// The largest number of parts of any of its exact totals.
 std::size_t largest_part_count(const ArmAggregates& aggregates);
 
-/// The blocks that are there, as ranges.
+/// Writes the blocks that are present, as ranges.
 void write_block_ranges(const hdf5::Handle& group, const BlockRanges& blocks);
-/// Reads them, of a study that was asked for `asked` trials. Throws Error where they are no ranges, rising and apart.
+/// Reads the ranges, of a study that was asked for `asked` trials. Throws Error unless they are increasing and
+/// separate.
 BlockRanges read_block_ranges(const hdf5::Handle& group, std::int64_t asked);
 
 void write_aggregates(const hdf5::Handle& group, const hdf5::Dimension& part, const ScenarioResults& results,
                       const ArmResults& arm);
-/// Those of the next arm of `results`, whose trials are known. Throws Error where they do not agree with them, or with
-/// each other.
+/// Reads the aggregates of the next arm of `results`, whose trials are known. Throws Error where they do not agree with
+/// these, or with each other.
 ArmAggregates read_aggregates(const hdf5::Handle& group, const ScenarioResults& results, hsize_t parts);
 
 }  // namespace credence

@@ -11,10 +11,10 @@ namespace credence {
 
 namespace {
 
-/// Which steps of a series a column is the sum of, over `per` of the series's values.
+/// The steps over which a series adds up to a column: all, or the last one alone.
 enum class Steps { all, last };
 
-/// A column that says of each trial what the totals of a series say of all trials.
+/// A column that has for each trial what the totals of a series have for all trials.
 struct Relation {
     std::size_t column, series;
     Steps steps;
@@ -33,7 +33,7 @@ std::optional<std::size_t> column_named(const ScenarioResults& results, const st
     return std::nullopt;
 }
 
-/// Those of the columns and series that worlds have in common, and that this one has.
+/// The pairs of columns and series that several worlds have, as far as this one has them.
 std::vector<Relation> relations(const ScenarioResults& results) {
     std::vector<Relation> all;
     const auto add = [&](const std::string& name, std::optional<std::size_t> series, Steps steps, double per) {
@@ -86,7 +86,7 @@ Sums sums_of_series(const SeriesTotals& totals, Steps steps) {
     return {sum.rounded(), totals.run_square_sum.rounded()};
 }
 
-/// The columns were rounded, and their sums are. What is not finite says nothing.
+/// The columns are rounded, so their sums are; values that are not finite are not compared.
 bool agree(double column, double series) {
     constexpr double tolerance = 1e-9;
     return !std::isfinite(column) || !std::isfinite(series) || std::abs(column - series) <= tolerance * std::abs(column);

@@ -12,7 +12,7 @@ using hdf5::Dataset;
 using hdf5::Error;
 using hdf5::Handle;
 
-/// Rows that are read at once where all are looked at: they bound the memory that long columns take.
+/// Number of rows that are read at once where all are checked: it bounds the memory that long columns take.
 constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
 
 template <class T>
@@ -34,7 +34,7 @@ std::vector<double> read_rows(const Dataset& dataset, const Column& column, std:
     return values;
 }
 
-/// The columns of an arm in a file that stays open for them.
+/// The columns of an arm, in a file that stays open for them.
 class ColumnsOfFile : public KeptColumns {
 public:
     ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns)
@@ -80,7 +80,7 @@ BlockRanges read_blocks(const Handle& group, std::int64_t asked) {
     if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
     const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
     BlockRanges blocks;
-    std::int64_t next = 0, end = 0;  // the trial that must come, and the first beyond its block
+    std::int64_t next = 0, end = 0;  // the next trial, and the end of its block
     for (std::int64_t first = 0; first < rows; first += rows_at_once) {
         const auto count = static_cast<hsize_t>(std::min(rows_at_once, rows - first));
         for (const std::int64_t trial : dataset.read_some<std::int64_t>(static_cast<hsize_t>(first), count)) {

@@ -40,7 +40,7 @@ std::vector<Component> read_components(const Handle& arm) {
     return components;
 }
 
-/// A dataset along the trials, as a column; nothing where it is no such thing.
+/// A dataset along the trials, as a column; nothing where it is another dataset.
 std::optional<Column> column_of(const Handle& arm, const std::string& name) {
     const hdf5::Dataset dataset(arm, name);
     const Handle& object = dataset.object();
@@ -69,7 +69,7 @@ std::vector<Column> read_columns(const Handle& arm) {
     return columns;
 }
 
-/// The series of trials that an arm has totals of, as columns; nothing but their names and units is told of them.
+/// The series of an arm that has totals only, as columns; only their names and units are known.
 std::vector<Column> read_aggregated_columns(const Handle& arm) {
     const hdf5::Dataset scale(arm, "column");
     const std::vector<std::string> names = words(hdf5::read_text(scale.object(), "column_names")),
@@ -84,7 +84,7 @@ std::vector<Column> read_aggregated_columns(const Handle& arm) {
     return columns;
 }
 
-/// What the file of a program with another world says of a scenario.
+/// The declaration of a scenario, read from the file of a program that has another world.
 ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>& settings, Keep keep) {
     ScenarioResults results;
     results.keep = keep;

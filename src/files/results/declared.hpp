@@ -1,6 +1,6 @@
 #pragma once
-// What a scenario in a results file declares: by its world, or where this program does not have that world, by
-// what the file says of itself.
+// A scenario's declaration in a results file: by its world or, if this program does not have that world, by the file's
+// own content.
 
 #include <credence/results.hpp>
 

@@ -24,7 +24,7 @@ const std::string& first_nees(const ScenarioResults& results) { return results.a
 std::string coverage_name(const Series& series) { return series.name + "_covered"; }
 std::string cells_name(const ScenarioResults& results) { return first_nees(results) + "_cells"; }
 
-/// They were rounded to single precision when they were kept. NaNs come with different bits from different processors.
+/// The values were rounded to single precision when they were stored. The bits of NaN depend on the processor.
 std::vector<float> single(const std::vector<double>& values) {
     std::vector<float> singles;
     singles.reserve(values.size());

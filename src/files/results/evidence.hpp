@@ -1,5 +1,5 @@
 #pragma once
-// What an arm's group holds beside columns and totals: coverage, the shape of NEES, whiteness, and the errors
+// The parts of an arm's group beside columns and totals: coverage, the distribution of NEES, whiteness, and the errors
 // of the detailed trials [docs/results-format.md, Coverage, Shape, Whiteness, Errors].
 
 #include <credence/results.hpp>
@@ -17,13 +17,13 @@ struct EvidenceDimensions {
     const hdf5::Dimension& part;
 };
 
-/// Names of the datasets that belong to it, coordinates included.
+/// Names of these datasets, coordinates included.
 std::vector<std::string> evidence_links(const ScenarioResults& results);
 
 void write_evidence(const hdf5::Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm);
 
-/// Fills what `write_evidence` wrote; results.trials and arm.counted are known. Throws Error where it is damaged.
+/// Reads what `write_evidence` wrote; results.trials and arm.counted are known. Throws Error where it is damaged.
 void read_evidence(const hdf5::Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm);
 
 }  // namespace credence

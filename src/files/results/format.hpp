@@ -1,5 +1,5 @@
 #pragma once
-// What the two files that the store writes have in common. docs/results-format.md describes them.
+// Definitions shared by the two kinds of file that the store writes. docs/results-format.md describes the files.
 
 #include <credence/error.hpp>
 #include <credence/store.hpp>
@@ -18,14 +18,14 @@ namespace credence {
 
 inline const std::string results_format = "credence results", trajectories_format = "credence trajectories";
 inline const std::string run_group = "run";
-/// Facts of /run that say which release computed which blocks, and which one wrote the file.
+/// Facts in the group /run: which release computed which blocks, and which one wrote the file.
 inline const std::string computed_by_fact = "computed_by", version_fact = "credence_version",
                          revision_fact = "git_revision";
 
-/// NaNs come with different bits from different processors; files hold one of them.
+/// The bits of NaN depend on the processor; files hold one fixed NaN.
 inline double one_nan(double value) { return value == value ? value : nan; }
 
-/// The group /run would be mistaken for a scenario, and the other way round.
+/// Refuses the name of the group /run for a scenario.
 inline void refuse_reserved_name(const Scenario& scenario) {
     if (scenario.name == run_group)
         throw invalid_value("scenario.name", scenario.name, "the file keeps that group for facts of the machine",
@@ -38,7 +38,8 @@ inline void write_header(const hdf5::Handle& root, const std::string& format, co
     hdf5::write_text(root, "title", title);
 }
 
-/// Blocks of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the whole state.
+/// The component groups of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the
+/// whole state.
 inline std::string blocks_text(const std::vector<ComponentGroup>& blocks) {
     std::vector<std::string> texts;
     for (const ComponentGroup& block : blocks)
@@ -72,7 +73,7 @@ hdf5::Dimension numbered(const hdf5::Handle& group, const std::string& name, T f
     return hdf5::new_dimension(group, name, values, {long_name, "1"});
 }
 
-/// What the codes of a variable mean that are statuses.
+/// The meanings of the codes of a status variable.
 inline void write_status_flags(const hdf5::Handle& variable) {
     std::vector<std::int8_t> codes;
     for (std::size_t code = 0; code < status_names().size(); ++code) codes.push_back(static_cast<std::int8_t>(code));
@@ -80,7 +81,7 @@ inline void write_status_flags(const hdf5::Handle& variable) {
     hdf5::write_text(variable, "flag_meanings", joined(status_names(), " "));
 }
 
-/// What `units` says of a state, whose components differ in units where one is a heading.
+/// The attribute `units` of a state, whose components differ in units if one is a heading.
 inline std::string state_units(const std::vector<Component>& components) {
     const std::string& first = components.front().unit;
     const bool one = std::all_of(components.begin(), components.end(),
@@ -88,7 +89,7 @@ inline std::string state_units(const std::vector<Component>& components) {
     return one ? first : "see component_units";
 }
 
-/// A dimension along the components of the state, which says what they are and in which units.
+/// A dimension along the components of the state, with their names and units.
 inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const std::vector<Component>& components,
                                                const std::string& name, const std::string& long_name) {
     std::vector<std::string> names, units;
@@ -102,7 +103,7 @@ inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const 
     return dimension;
 }
 
-/// Builds an HDF5 file aside and puts it under its name. HDF5 itself only refuses for want of memory.
+/// Writes an HDF5 file aside and renames it to its name. HDF5 itself only fails for want of memory.
 template <class Build>
 void write_file(const Output& output, Build build) {
     write_durably(output, [&](int descriptor) {

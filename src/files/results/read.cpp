@@ -24,7 +24,7 @@ using hdf5::Error;
 using hdf5::Extents;
 using hdf5::Handle;
 
-/// Throws unless the group holds exactly what it should.
+/// Throws unless the group holds exactly the expected members.
 void require_links(const Handle& group, std::vector<std::string> expected) {
     std::vector<std::string> found = hdf5::link_names(group);
     std::sort(found.begin(), found.end());
@@ -46,7 +46,7 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
-/// Names of the datasets that the group of the next arm holds.
+/// Names of the datasets in the group of the next arm.
 std::vector<std::string> arm_links(const ScenarioResults& results) {
     std::vector<std::string> names{"step", "part"};
     if (results.keep == Keep::trials) {
@@ -66,7 +66,7 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
     return names;
 }
 
-/// Throws where the totals are of another number of trials than those that did not fail.
+/// Throws where the totals are not of all trials that did not fail.
 void check_counted(const Handle& group, const ArmResults& arm, std::int64_t counted) {
     if (counted != arm.counted)
         throw Error(hdf5::attribute_place(group, "counted_trials"),
@@ -81,13 +81,13 @@ void check_columns(const Handle& group, const ScenarioResults& results, const Ar
     }
 }
 
-/// A study and the file that it is read from.
+/// A study that is being read, and its file.
 struct Opened {
     std::shared_ptr<const Handle> file;
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
     Keep keep = Keep::trials;
-    std::optional<std::int64_t> most_totals;  ///< bytes of them that are in memory; nothing: they are not looked at
+    std::optional<std::int64_t> most_totals;  ///< most bytes of totals to load; nothing: they are not read
 };
 
 SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts) {
@@ -99,14 +99,14 @@ SeriesTotals read_series(const Handle& group, const Series& series, hsize_t step
     return totals;
 }
 
-/// How many parts an exact total has.
+/// Number of parts of an exact total.
 hsize_t read_parts(const Handle& group) {
     const hsize_t parts = read_numbered<std::int32_t>(group, "part", 0);
     if (parts == 0) throw Error(hdf5::place_of(group, "part"), "is empty");
     return parts;
 }
 
-/// Totals, but those of the columns, and details.
+/// Reads totals, except those of the columns, and details.
 void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const hsize_t parts = read_parts(group);
     for (const Series& series : results.all_series)
@@ -114,7 +114,7 @@ void read_totals(const Handle& group, const ScenarioResults& results, ArmResults
     read_evidence(group, results, parts, arm);
 }
 
-/// Those of a scenario in a file that stays open for them.
+/// The totals and details of a scenario, in a file that stays open for them.
 class TotalsOfFile : public KeptTotals {
 public:
     TotalsOfFile(const Opened& source, const ScenarioResults& results) : source_(source), blocks_(results.blocks) {
@@ -145,7 +145,7 @@ private:
     std::vector<ArmAggregates> aggregates_;  ///< likewise
 };
 
-/// The first arm tells which trials are there, the others must agree.
+/// Reads from the first arm which trials are present; the others must agree.
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
                     const Opened& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
@@ -201,7 +201,7 @@ void check_header(const Handle& root) {
                     "Use the release that wrote the file, or run the study again");
 }
 
-/// Whether every trial that was asked for is there. Throws where the file says so of one that lacks some.
+/// Whether every trial that was asked for is present. Throws where the file says so but some are missing.
 bool read_complete(const Handle& root, const Study& study) {
     const int complete = hdf5::read_number<std::int8_t>(root, "complete");
     if (complete != 0 && complete != 1) throw Error("/@complete", "is neither 0 nor 1");
@@ -211,7 +211,7 @@ bool read_complete(const Handle& root, const Study& study) {
     return complete == 1;
 }
 
-/// Where the file does not say which release computed its blocks, the one that wrote it did.
+/// Where the file does not name the release that computed its blocks, it was the one that wrote the file.
 Provenance computed_by(const Study& study, const RunFacts& run) {
     const auto fact = [&](const std::string& name) {
         const auto found = std::find_if(run.begin(), run.end(), [&](const auto& one) { return one.first == name; });
@@ -256,7 +256,7 @@ Opened open_results(const std::string& path, std::optional<std::int64_t> most_to
     check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
-    // Only a file that keeps no trials says what it keeps.
+    // Only a file that keeps no trials has this attribute.
     if (!hdf5::has_attribute(*source.file, "keep")) return source;
     if (hdf5::read_text(*source.file, "keep") != keep_name(Keep::aggregates))
         throw Error("/@keep", "is not aggregates");

@@ -1,5 +1,5 @@
 #pragma once
-// Exact sums as a file keeps them: a row of parts each [docs/results-format.md, Exact totals].
+// Exact sums in a file: a row of parts each [docs/results-format.md, Exact totals].
 
 #include <credence/detail/exact_sum.hpp>
 
@@ -13,10 +13,10 @@ namespace credence {
 /// The exact parts of sums, one sum a row, padded with zeros.
 std::vector<double> parts_of(const std::vector<ExactSum>& sums, std::size_t width);
 
-/// Rows of exact parts as sums. A sum has one form only: anything else was not written by this program.
+/// Converts rows of exact parts to sums. A sum has exactly one valid form; any other was not written by this program.
 std::vector<ExactSum> read_sums(const hdf5::Handle& group, const std::string& name, const hdf5::Extents& extents);
 
-/// A sum of whole numbers as one; throws Error naming the series where it is none.
+/// Converts a sum of whole numbers to an integer; throws Error naming the series where it is not whole.
 std::int64_t whole_number(const ExactSum& sum, const std::string& name);
 std::vector<ExactSum> read_whole_sums(const hdf5::Handle& group, const std::string& name, hsize_t steps);
 
@@ -27,7 +27,7 @@ std::vector<T> read_as(const hdf5::Handle& group, const std::string& name, const
     return dataset.read<T>();
 }
 
-/// Throws unless a coordinate counts on from `first`.
+/// Throws unless a coordinate counts up from `first`.
 template <class T>
 void check_numbered(const hdf5::Handle& group, const std::string& name, T first, hsize_t count) {
     for (const T value : read_as<T>(group, name, {count}))

@@ -1,5 +1,5 @@
 #pragma once
-// What a scenario's group says of its place in a grid, for readers that do not read the scenario's text.
+// A scenario's place in a sweep as attributes of its group, for readers that do not parse the scenario's text.
 
 #include <credence/sweep.hpp>
 
@@ -7,11 +7,11 @@
 
 namespace credence {
 
-/// The attributes `sweep_of`, `sweep_keys` and `sweep.KEY` for every key, a number where the value is one, else text.
-/// None where the point is of no grid.
+/// Writes the attributes `sweep_of`, `sweep_keys` and `sweep.KEY` for every key, as a number where the value is one,
+/// else as text. Writes nothing where the scenario is not a point of a sweep.
 void write_sweep(const hdf5::Handle& group, const SweepPoint& point);
 
-/// Throws hdf5::Error unless the group has just these attributes.
+/// Throws hdf5::Error unless the group has exactly these attributes.
 void check_sweep(const hdf5::Handle& group, const SweepPoint& point);
 
 }  // namespace credence

@@ -69,7 +69,7 @@ std::string role_name(SeriesRole role) {
 
 std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : "(" + unit + ")^2"; }
 
-/// What a reader needs to know of a series beside its total.
+/// The attributes of a series beside its total.
 void write_role(const Handle& variable, const Series& series) {
     hdf5::write_text(variable, "figure", series.name);
     hdf5::write_text(variable, "role", role_name(series.role));
@@ -125,7 +125,7 @@ Dimension new_trial_dimension(const Handle& group, const ScenarioResults& result
 void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
     const Handle group = hdf5::new_group(scenario_group, arm.name);
     hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
-    std::optional<Dimension> trial;  // the first link, where the trials are kept
+    std::optional<Dimension> trial;  // the first link, if trials are kept
     if (results.keep == Keep::trials)
         trial.emplace(new_trial_dimension(group, results));
     else

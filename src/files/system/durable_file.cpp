@@ -21,7 +21,8 @@ namespace {
 
 const std::string suffix = ".credence-partial";
 
-/// Gives the file aside its name, unless another file is there than may be replaced. Returns 0 or an error of the system.
+/// Renames the temporary file to its name, unless another file exists there than may be replaced. Returns 0 or an error
+/// of the system.
 int put_in_place(const std::string& aside, const Output& output) {
     const std::optional<FileIdentity> now = identity_of(output.target);
     if (now && output.there && now != output.there)
@@ -32,7 +33,8 @@ int put_in_place(const std::string& aside, const Output& output) {
     return error;
 }
 
-/// Writes aside and renames. The lock is held beyond the renaming, so that nobody writes into the finished file.
+/// Writes aside and renames. The lock is held until after the renaming, so that no other program writes into the
+/// finished file.
 void write_and_rename(const Output& output, const std::function<int(int descriptor)>& write) {
     const std::string path = output.target + suffix;
     const Descriptor file = open_new_locked(path, output.path);

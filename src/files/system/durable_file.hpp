@@ -1,5 +1,5 @@
 #pragma once
-// A file that appears under its name only when it is whole and on the disk.
+// A file that appears under its name only when it is complete and on the disk.
 
 #include <credence/store.hpp>
 
@@ -8,11 +8,12 @@
 
 namespace credence {
 
-/// Makes a file: `write` fills an empty one aside, `FILE.credence-partial`, given its descriptor, and returns 0 or an
-/// error of the system; it is synced and renamed, and the folder synced. It has the owner and the permissions of the
-/// file that it replaces. A crash leaves what was there before, and at worst the file aside, which the next writing
-/// removes. Throws Failure where the system refuses or another file is there than may be replaced, and what `write`
-/// throws; then what was there is untouched and nothing is left aside.
+/// Writes a file: `write` fills an empty temporary one, `FILE.credence-partial`, given its descriptor, and returns 0 or
+/// an error of the system; the temporary file is then synced and renamed, and the folder synced. The file gets the
+/// owner and the permissions of the file that it replaces. After a crash the old file is unchanged; at worst the
+/// temporary file remains, which the next writing removes. Throws Failure where the system refuses or another file
+/// exists there than may be replaced, and whatever `write` throws; the old file is then unchanged and the temporary one
+/// removed.
 void write_durably(const Output& output, const std::function<int(int descriptor)>& write);
 
 }  // namespace credence

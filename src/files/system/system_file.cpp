@@ -48,7 +48,7 @@ bool same_file(const Descriptor& opened, const std::string& path) {
 namespace {
 
 void lock_for_writing(const Descriptor& file, const std::string& target) {
-    // File systems without locks are no reason not to write.
+    // On file systems without locks the file is written unlocked.
     if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         throw InputError("cannot write " + target +
                          " (another program is writing it). Let it end, or write to another place.");
@@ -88,7 +88,7 @@ mode_t permissions_of(const std::string& path) {
 void take_owner_and_permissions(const Descriptor& file, const std::string& other) {
     struct stat own {}, theirs {};
     if (fstat(file.get(), &own) != 0 || stat(other.c_str(), &theirs) != 0) return;
-    [[maybe_unused]] int refused = 0;  // only root may give a file away, and not every file system has permissions
+    [[maybe_unused]] int refused = 0;  // only root may change a file's owner, and not every file system has permissions
     if (own.st_uid != theirs.st_uid || own.st_gid != theirs.st_gid)
         refused = fchown(file.get(), theirs.st_uid, theirs.st_gid);
     refused = fchmod(file.get(), theirs.st_mode & 07777);
@@ -104,7 +104,7 @@ int rename_to_free_name(const std::string& from, const std::string& to) {
 }
 
 std::filesystem::path followed(std::filesystem::path path) {
-    constexpr int most = 40;  // links that the system follows
+    constexpr int most = 40;  // number of links that the system follows
     std::error_code trouble;
     for (int links = 0; links < most && std::filesystem::is_symlink(path, trouble); ++links)
         path = path.parent_path() / std::filesystem::read_symlink(path, trouble);

@@ -29,7 +29,8 @@ struct TrajectoryGroup {
         return numbered<std::int32_t>(group, name, 0, count, long_name);
     }
 
-    /// A variable [pose, dimensions...] of what `get` gives for each pose, a matrix or vector; NaN where that is empty.
+    /// Writes a variable [pose, dimensions...] with the value of `get` for each pose, a matrix or vector; NaN where
+    /// that is empty.
     template <class Get>
     void per_pose(const std::string& name, hdf5::Dimensions dimensions, const hdf5::Description& description,
                   Get get) const {
@@ -48,7 +49,7 @@ struct TrajectoryGroup {
         hdf5::write_numbers<double>(variable, "_FillValue", {one_nan(NAN)});
     }
 
-    /// The same for one number a pose.
+    /// The same for a scalar at each pose.
     template <class Get>
     void per_pose_number(const std::string& name, const hdf5::Description& description, Get get) const {
         per_pose(name, {}, description, [&](const TrajectoryStep& s) { return Eigen::Matrix<double, 1, 1>(get(s)); });
@@ -61,7 +62,7 @@ struct TrajectoryGroup {
     std::string length_unit, state_unit, covariance_unit;
 };
 
-/// Whether there was a step to this pose: not to pose 0.
+/// Whether a step led to this pose: none leads to pose 0.
 inline bool arrived(const TrajectoryStep& step) { return step.predicted_mean.size() > 0; }
 
 }  // namespace credence

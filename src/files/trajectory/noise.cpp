@@ -46,7 +46,7 @@ public:
         return static_cast<int>(extents[axis]);
     }
 
-    /// Width 0: there is no such axis.
+    /// Width 0: the array has no such axis.
     std::vector<double> read(int poses, int width, int components) const {
         Extents extents{static_cast<hsize_t>(poses), static_cast<hsize_t>(components)};
         if (width > 0) extents.insert(extents.begin() + 1, static_cast<hsize_t>(width));

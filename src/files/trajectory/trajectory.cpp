@@ -12,7 +12,7 @@ using hdf5::Dimension;
 using hdf5::Handle;
 using Step = TrajectoryStep;
 
-/// The trial's columns, as attributes of the group, and where its noise came from.
+/// Writes the trial's columns, and the source of its noise, as attributes of the group.
 void write_columns(const TrajectoryGroup& to) {
     hdf5::write_text(to.group, "source", to.trajectory.source);
     const std::vector<Column> columns = trial_columns(to.trajectory.scenario);

@@ -1,4 +1,4 @@
-// `--arms A,B` as it is written.
+// Parses `--arms A,B`.
 
 #include <algorithm>
 #include <credence/error.hpp>
@@ -18,7 +18,7 @@ InputError refused(const std::string& text, const std::string& why) {
     return invalid_value("--arms", text, why, how_to_write);
 }
 
-/// `ARM` or `FILE:ARM`; of an arm alone the file is `own`, and there is none where that is not clear.
+/// Parses `ARM` or `FILE:ARM`; an arm without a file is of the file `own`, and is refused where that is not given.
 ArmChoice read_arm(const std::string& part, const std::string& text, const std::vector<std::string>& paths,
                    std::optional<std::size_t> own) {
     const std::size_t colon = part.rfind(':');
@@ -49,7 +49,7 @@ ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& pa
     const std::vector<std::string> parts = split_list(text);
     if (parts.size() != 2) throw refused(text, "not two arms with a comma between them");
     if (parts[0].empty() || parts[1].empty()) throw refused(text, "an empty name");
-    // An arm alone is of the first file or, of two files with both arms alone, B is of the second.
+    // An arm without a file is of the first file or, of two files with both arms given so, B is of the second.
     const bool alone = parts[0].find(':') == std::string::npos && parts[1].find(':') == std::string::npos;
     std::optional<std::size_t> own_a, own_b;
     if (paths.size() == 1)

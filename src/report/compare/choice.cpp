@@ -28,7 +28,7 @@ std::string contents(const StudyFile& file) {
     return file.path + " has " + joined(arm_names(file)) + " in " + joined(scenarios);
 }
 
-/// The arm that a name means, its own or the only one of that controller; nullptr for none.
+/// The arm that a name denotes: its own name, or that of the only arm of a controller; nullptr for none.
 const ArmResults* named_arm(const ScenarioResults& results, const std::string& name, const ArmsChoice& choice) {
     const std::vector<const ArmResults*> meant = arms_meant(results, name);
     if (meant.size() > 1) {
@@ -41,7 +41,7 @@ const ArmResults* named_arm(const ScenarioResults& results, const std::string& n
     return meant.empty() ? nullptr : meant.front();
 }
 
-/// Collects the pairs of two files, or of one with itself.
+/// Collects the pairs of two files, or of one file with itself.
 class Chooser {
 public:
     Chooser(const std::vector<StudyFile>& files, std::vector<std::string>& left_out)
@@ -66,7 +66,7 @@ public:
                              contents(files_[0]) + ".");
     }
 
-    /// Every arm of a later file against the first file's of the same name.
+    /// Pairs every arm of a later file with the first file's arm of the same name.
     void same_arms(std::size_t later) {
         const std::size_t before = pairs_.size();
         for_matches(later, 0, [&](const ScenarioResults& a, const ScenarioResults& b) {

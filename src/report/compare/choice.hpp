@@ -1,5 +1,5 @@
 #pragma once
-// Which arms of which files are compared.
+// Selects the arms, and their files, that are compared.
 
 #include <credence/compare.hpp>
 #include <optional>
@@ -14,7 +14,7 @@ struct ChosenPair {
     const StudyFile &file_a, &file_b;
 };
 
-/// What files are called: their stems, or their paths where two stems are the same.
+/// The names of files: their stems, or their paths where two stems are the same.
 std::vector<std::string> file_labels(const std::vector<std::string>& paths);
 
 /// Checks that the files can be compared, and lists the pairs that were chosen. Scenarios without a partner are
@@ -25,10 +25,10 @@ std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const 
 /// Throws InputError where the files' root seeds differ.
 void check_same_draws(const std::vector<StudyFile>& files);
 
-/// Throws InputError naming the first key that gives the scenarios of two files another truth or other draws.
+/// Throws InputError naming the first key by which the scenarios of two files have different truths or draws.
 void check_same_world(const ChosenPair& pair);
 
-/// The keys in which two resolved scenarios differ, but for titles and published figures.
+/// The keys in which two resolved scenarios differ, except for titles and published values.
 std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b);
 
 }  // namespace credence

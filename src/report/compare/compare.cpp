@@ -10,7 +10,7 @@ namespace credence {
 
 namespace {
 
-/// `statuses`: of the trials that are compared.
+/// Counts of the arm; `statuses`: of the trials that are compared.
 ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<double>& statuses) {
     ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
     for (const double value : statuses) {
@@ -21,7 +21,7 @@ ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const s
     return side;
 }
 
-/// Where no trial is kept; all of them are compared.
+/// The same where no trial is kept; all trials are compared.
 ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& file, const Comparison& comparison) {
     const ArmAggregates& aggregates = compared.arm.aggregates;
     ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials,
@@ -36,7 +36,7 @@ ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& fi
     return side;
 }
 
-/// The arms' own means of every figure, over the pairs that its difference is of.
+/// The arms' own means of every column, over the pairs of its difference.
 void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials& common) {
     const std::vector<Column>& columns = chosen.a.results.columns;
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -50,7 +50,7 @@ void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials&
     }
 }
 
-/// Two shards of one study, say, share the draws of none of their trials.
+/// Arms of different files. Two shards of one study, for example, have no trial in common.
 void require_common_trials(const ChosenPair& chosen, const CommonTrials& common) {
     if (common.count() > 0 || chosen.a.results.trials == 0 || chosen.b.results.trials == 0) return;
     throw InputError(chosen.file_a.path + " and " + chosen.file_b.path + ": have no trial of " +
@@ -88,7 +88,8 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     return pair;
 }
 
-/// Of `comparisons` at once: Bonferroni over their t intervals, and the bootstrap's own 95 % where there is one.
+/// Whether a difference is shown, as one of `comparisons`: Bonferroni over their t intervals, and the bootstrap's own
+/// 95 % where there is one.
 Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
     const PairedComparison& paired = pair.comparison.columns.front().paired;
     if (pair.not_run()) return Conclusion::not_run;
@@ -103,7 +104,7 @@ Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
     return Conclusion::not_shown;
 }
 
-/// Holm's correction over everything that is shown, as the pairs of a report have it.
+/// Holm's correction over all comparisons that are shown, as for the pairs of a report.
 void correct_together(std::vector<ComparedPair>& pairs) {
     std::vector<Comparison> comparisons;
     for (ComparedPair& pair : pairs) comparisons.push_back(std::move(pair.comparison));

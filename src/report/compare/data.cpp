@@ -1,4 +1,4 @@
-// The comparison for programs: JSON and CSV.
+// Machine-readable output of a comparison: JSON and CSV.
 
 #include <cmath>
 #include <credence/compare.hpp>
@@ -41,7 +41,7 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     return json;
 }
 
-/// Quoted where CSV needs it [RFC 4180]: labels hold the names of files.
+/// Quoted where CSV needs it [RFC 4180]: labels contain file names.
 std::string csv_text(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -70,7 +70,7 @@ std::string csv_row(const ComparedPair& pair, std::size_t column) {
 std::string compare_json(const CompareReport& report) {
     Json array = Json::array();
     for (const ComparedPair& pair : report.pairs) array.push_back(pair_json(pair, report.root_seed));
-    // A file's name may be no UTF-8.
+    // The name of a file may not be UTF-8.
     return array.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,4 +1,4 @@
-// The comparison as one page: conclusions, then each pair's tables and charts, and where it came from.
+// The comparison as one page: conclusions, then each pair's tables and charts, and the sources.
 
 #include <credence/compare.hpp>
 
@@ -16,7 +16,7 @@ using namespace page;
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-/// A text whose lines stay lines.
+/// A text whose line breaks are kept.
 Html lines(const std::string& text, const Html& classes) {
     return text.empty() ? Html() : element("p", escaped(text), "class=\""_html + classes + "\""_html) + "\n"_html;
 }
@@ -44,7 +44,7 @@ Html means_table(const ComparedPair& pair) {
     return table.html();
 }
 
-/// What the pairs say.
+/// The conclusions of the pairs.
 Html pair_evidence(const ComparedPair& pair, std::size_t number) {
     const Comparison& comparison = pair.comparison;
     return difference_table(comparison) + means_table(pair) +

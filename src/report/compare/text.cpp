@@ -1,4 +1,4 @@
-// The comparison for people: conclusions first, then the figures.
+// The comparison as text: conclusions first, then the numbers.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ int decimals_of(const PairedComparison& paired) {
     return decimals_for(half_width(paired.difference.ci95));
 }
 
-/// `10000 pairs`, or from the fewest to the most; of several comparisons that have run also how many.
+/// `10000 pairs`, or the lowest and highest number; of several comparisons also the number of those that have run.
 std::string pairs_text(const CompareReport& report) {
     std::vector<std::int64_t> pairs;
     for (const ComparedPair& pair : report.pairs)
@@ -30,14 +30,14 @@ std::string pairs_text(const CompareReport& report) {
            (pairs.size() > 1 ? " in each of " + std::to_string(pairs.size()) + " comparisons" : "");
 }
 
-/// Which of the two has no trial yet.
+/// Which of the two arms has no trial yet.
 std::string not_run_text(const ComparedPair& pair) {
     if (pair.b.trials > 0) return pair.comparison.a + " is not run yet";
     return (pair.a.trials > 0 ? "" : pair.comparison.a + " and ") + pair.comparison.b +
            (pair.a.trials > 0 ? " is" : " are") + " not run yet";
 }
 
-/// How the ranks stand to a mean difference that is not shown.
+/// How Wilcoxon's test relates to a mean difference that is not shown.
 std::string despite(const Comparison& comparison) {
     const PairedComparison& paired = comparison.columns.front().paired;
     if (!(comparison.columns.front().holm_p <= 0.05)) return "";
@@ -61,7 +61,7 @@ std::string row_label(const ComparedColumn& column) {
     return "    " + padded(column.unit == "1" ? column.name : column.name + " [" + column.unit + "]", 30, false);
 }
 
-/// How large the differences are.
+/// The table of the differences' sizes.
 std::string sizes(const ComparedPair& pair) {
     std::string text = "  " + padded("how much", 32, false) + padded("A", 11) + padded("B", 11) +
                        padded("A - B ± 95 %", 22) + padded("bootstrap 95 %", 24) + padded("median", 12) + "\n";
@@ -79,7 +79,7 @@ std::string sizes(const ComparedPair& pair) {
     return text;
 }
 
-/// How sure they are, and how regular.
+/// The table of the differences' certainty and regularity.
 std::string tests(const ComparedPair& pair) {
     std::string text = "  " + padded("how surely", 32, false) + padded("A below", 11) + padded("A above", 11) +
                        padded("equal", 10) + padded("Wilcoxon z", 12) + padded("p (Holm)", 12) + padded("d_z", 9) +

@@ -1,5 +1,5 @@
 #pragma once
-// Words that every rendering of a comparison shares.
+// Texts that every format of a comparison uses.
 
 #include <credence/compare.hpp>
 
@@ -7,16 +7,16 @@
 
 namespace credence {
 
-/// What is compared, and what the intervals mean.
+/// What is compared, and the meaning of the intervals.
 std::string compare_head(const CompareReport& report);
 
 /// Failed and diverged trials, studies that are not complete, scenarios that are left out; a line each.
 std::string compare_notes(const CompareReport& report);
 
-/// One sentence on the first figure.
+/// One sentence on the first column.
 std::string conclusion_text(const ComparedPair& pair);
 
-/// What is compared, where that is not plain from the arms' names; the scenario's name and title in the first line.
+/// What is compared, where the arms' names do not show it; the scenario's name and title in the first line.
 std::string pair_head(const ComparedPair& pair);
 
 }  // namespace credence

@@ -9,7 +9,7 @@ namespace credence {
 namespace {
 
 /// Whether scenarios of different files may differ in a key and still have the same truth and the same draws. Every
-/// other key shapes the world.
+/// other key changes the world.
 bool may_differ(const std::string& key) {
     if (key == "scenario.name" || key == "scenario.title") return true;
     const std::string section = key.substr(0, key.find('.'));

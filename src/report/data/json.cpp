@@ -47,7 +47,7 @@ Json accuracy_json(const Accuracy& accuracy) {
             {"rmse_by_step", accuracy.rmse},         {"predicted_by_step", accuracy.predicted}};
 }
 
-/// What a block's NEES is in any chart.
+/// The members for a group's NEES in any chart.
 template <class Ratios>
 Json ratios_json(const Ratios& of) {
     return {{"block", of.block},

@@ -13,13 +13,13 @@ using Json = nlohmann::ordered_json;
 
 inline Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
 
-/// Everything of an arm's evidence, by step where it has steps.
+/// All of an arm's evidence, by step where it has steps.
 Json evidence_json(const Evidence& evidence);
 
-/// The place of a scenario in its grid: numbers as numbers.
+/// The place of a scenario in its sweep: numbers as numbers.
 Json sweep_json(const SweepPoint& sweep);
 
-/// A figure's name to all that the pairs say of it.
+/// An object with a member for each column of the pairs.
 Json comparison_json(const Comparison& comparison);
 
 }  // namespace credence

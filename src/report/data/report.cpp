@@ -1,4 +1,4 @@
-// The report for programs: JSON and CSV.
+// Machine-readable output of a report: JSON and CSV.
 
 #include <credence/report.hpp>
 
@@ -68,7 +68,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     return json;
 }
 
-/// One row, with `end` behind its figures; cells that are no numbers stay empty.
+/// One row, with `end` after its numbers; NaN and infinity give empty cells.
 std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
                     const std::optional<PublishedPlace>& published, const std::string& end) {
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
@@ -80,7 +80,7 @@ std::string csv_row(std::vector<std::string> cells, const Summary& s, const std:
     return joined(cells, ",") + "\n";
 }
 
-/// Rows of an arm's evidence. What a figure is of stands behind a colon, and the step behind a second one.
+/// Rows of an arm's evidence. The group or part is appended to the name after a colon, the step after a second one.
 class EvidenceRows {
 public:
     EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}

@@ -1,4 +1,4 @@
-// The page's last parts: the scenario, where the figures came from, how to get them again, what the terms mean.
+// The page's last sections: the scenario, the sources of the numbers, the commands to reproduce them, and a glossary.
 
 #include <credence/text.hpp>
 
@@ -26,7 +26,7 @@ std::string limits_options(const Limits& limits) {
     return " --margin " + to_text(limits.margin) + (usual ? "" : " --failed " + to_text(limits.failed));
 }
 
-/// The command that makes a study's file from the scenarios on this page.
+/// The command that makes the study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
     std::string line = "credence run";
     for (const Scenario& scenario : report.scenarios) line += " " + scenario.name + ".ini";
@@ -94,7 +94,7 @@ V_B)/V_(A−B).</dd>
 Html command(const std::string& line) { return element("pre", element("code", escaped(line))) + "\n"_html; }
 
 Html scenario_part(const Part& part) {
-    if (!part.report.root_seed) return {};  // a record tells nothing of its world
+    if (!part.report.root_seed) return {};  // a record does not describe its world
     const Html text = element("pre", element("code", escaped(scenario_text(part.scenario))), "tabindex=\"0\""_html);
     return "<h3>Scenario</h3>\n"_html + folded("The scenario as resolved, every key of it: save it as " +
                                                    part.scenario.name + ".ini to run it again",

@@ -1,7 +1,7 @@
 #pragma once
-// A small chart room: scales with ticks at round numbers, and marks that become inline SVG. Colours, widths
-// and fonts are classes, so that the page's style sheet decides on light, dark and print. All lengths are in units of
-// the drawing's viewBox, y downwards.
+// Charts: scales with ticks at round numbers, and marks as inline SVG. Colours, widths and fonts are classes, so that
+// the page's style sheet sets them for light, dark and print. All lengths are in units of the drawing's viewBox, y
+// downwards.
 
 #include "report/html/html.hpp"
 
@@ -13,7 +13,7 @@ namespace credence {
 /// normal: by the quantile z of the standard normal with P(|Z| <= z) = value, for shares from 0 to 1.
 enum class ScaleKind { linear, logarithmic, normal };
 
-/// Maps [low, high] onto [from, to]; values beyond are drawn at the end that they are beyond.
+/// Maps [low, high] onto [from, to]; values beyond an end are drawn at that end.
 struct Scale {
     ScaleKind kind = ScaleKind::linear;
     double low = 0, high = 1, from = 0, to = 1;
@@ -41,7 +41,7 @@ struct Range {
 /// Which of `count` points in a row to draw: all, or about `most` at equal distances, the first and the last included.
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most);
 
-/// The same for a line: of each stretch its lowest and its highest value stay.
+/// The same for a line: of each stretch its lowest and its highest value are kept.
 std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most);
 
 struct ChartPoint {
@@ -54,7 +54,7 @@ enum class Anchor { start, middle, end };
 /// second six have these once more, with other dashes and hollow marks.
 std::string series_class(std::size_t series);
 
-/// One drawing. `classes` name what the style sheet knows; a `hover` text shows where the pointer rests.
+/// One drawing. `classes` are names from the style sheet; a `hover` text appears under the pointer.
 class Svg {
 public:
     Svg(double width, double height) : width_(width), height_(height) {}
@@ -70,7 +70,7 @@ public:
     void text(ChartPoint at, Anchor anchor, const std::string& text, const std::string& classes = "label");
     /// With `title` and `description` as its text alternative; `id` is unique on the page.
     Html html(const std::string& id, const std::string& title, const std::string& description) const;
-    /// As a sign beside words that say the same; of class `classes`.
+    /// As an icon beside words with the same meaning; of class `classes`.
     Html sign(const std::string& classes) const;
 
     double width() const { return width_; }

@@ -1,4 +1,4 @@
-// Scales, their ticks, and which points of many are drawn.
+// Scales, their ticks, and the selection of points where there are many.
 
 #include "report/html/chart.hpp"
 
@@ -11,7 +11,7 @@ namespace credence {
 
 namespace {
 
-/// Where a value lies on an axis whose ends are equally far from it in the scale's own measure.
+/// Position of a value on an axis, in the scale's own measure.
 double measure(ScaleKind kind, double value) {
     if (kind == ScaleKind::logarithmic) return std::log10(value);
     if (kind == ScaleKind::normal) return normal_quantile(1 - value);

@@ -1,4 +1,5 @@
-// The page's charts over all steps: the verdict as a picture, coverage, whiteness; and how charts stand on the page.
+// The page's charts over all steps: the verdict as a picture, coverage, whiteness; and the layout of charts on the
+// page.
 
 #include "report/html/chart.hpp"
 #include <credence/text.hpp>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double width = 360, left = 96, right = width - 12, top = 34, row_gap = 7, arm_height = 13;
 
-/// The labels of rows, and where they are.
+/// The labels of rows, and their positions.
 struct Rows {
     std::vector<std::string> names;
     std::size_t arms;
@@ -44,7 +45,7 @@ const GroupEvidence* block_named(const ArmReport& arm, const std::string& name) 
     return nullptr;
 }
 
-/// The blocks of the first arm that has any.
+/// The component groups of the first arm that has any.
 Rows rows_of(const Part& part) {
     Rows rows{{}, part.arms.size()};
     for (const ArmReport* arm : part.arms) {
@@ -54,7 +55,7 @@ Rows rows_of(const Part& part) {
     return rows;
 }
 
-/// Calls visit(row, arm, block) for each block that an arm has.
+/// Calls visit(row, arm, block) for each component group that an arm has.
 template <class Visit>
 void each_block(const Part& part, const Rows& rows, const Visit& visit) {
     for (std::size_t row = 0; row < rows.names.size(); ++row)
@@ -68,7 +69,7 @@ std::string interval_text(const Interval& interval) {
                                     : ", 95 % " + short_number(interval.low) + " to " + short_number(interval.high);
 }
 
-/// The region within the margin, and on which side is what.
+/// Draws the region within the margin, and the labels of both sides.
 void draw_margin(Svg& svg, const Scale& x, double margin, double bottom) {
     svg.box({x(1 - margin), top}, {x(1 + margin), bottom}, "margin",
             "within the margin: " + short_number(1 - margin) + " to " + short_number(1 + margin));

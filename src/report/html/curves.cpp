@@ -14,7 +14,7 @@ namespace {
 constexpr double width = 360, height = 200, left = 52, right = width - 12, top = 24, bottom = height - 36;
 constexpr std::size_t most_panels = 12;
 
-/// A name's figure at one point.
+/// A curve's value at one point.
 struct Dot {
     std::size_t place;  ///< of the point's value along the axis
     Summary summary;
@@ -30,7 +30,7 @@ public:
         if (all_.margin > 0)
             svg_.box({left, y_(*all_.reference - all_.margin)}, {right, y_(*all_.reference + all_.margin)}, "margin",
                      "within the margin");
-        draw_axes(title.empty() ? "" : all_.label);  // the caption says it where there is no title
+        draw_axes(title.empty() ? "" : all_.label);  // without a title the caption has the label
         if (all_.reference) svg_.line({left, y_(*all_.reference)}, {right, y_(*all_.reference)}, "ideal");
         for (std::size_t i = 0; i < dots.size(); ++i) draw_curve(i, dots[i]);
         const std::string where = title.empty() ? "" : " at " + title;
@@ -55,7 +55,7 @@ private:
         }
     }
 
-    /// A line through the means with its band; of values that are no numbers, or of a single one, marks and whiskers.
+    /// A line through the means with its band; marks and whiskers at single points, and where values are missing.
     void draw_curve(std::size_t number, const std::vector<Dot>& dots) {
         const std::string series = series_class(number);
         std::vector<ChartPoint> middle, upper, lower;
@@ -101,7 +101,7 @@ Scale x_scale(const GridAxis& axis) {
     return range.scale(left, right, evenly_by_ratio(axis.numbers) ? logarithmic : INFINITY);
 }
 
-/// Over all panels, so that they can be compared.
+/// Ranges over all panels, so that these can be compared.
 Range y_range(const SweptCurves& all, const std::vector<std::vector<std::vector<Dot>>>& panels) {
     Range range;
     if (all.reference)

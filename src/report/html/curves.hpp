@@ -13,20 +13,21 @@
 
 namespace credence::page {
 
-/// A figure of a grid to be drawn: one curve for each name, one panel for what the other keys have.
+/// A quantity to be drawn over a sweep: one curve for each name, one panel for each combination of the other keys'
+/// values.
 struct SweptCurves {
     const Grid& grid;
     std::size_t axis;                 ///< that the curves run along
     std::vector<std::string> names;   ///< of the arms, or of the pairs
-    std::string label;                ///< of the figure
+    std::string label;                ///< of the quantity
     std::optional<double> reference;  ///< drawn as a line
     double margin = 0;                ///< about the reference; 0: none
     double logarithmic_from = 0;      ///< the ratio of the largest to the smallest beyond which the scale is logarithmic
-    /// Mean and interval of a name at a point; nothing where there is none.
+    /// Mean and interval of a name at a point; nothing where there are none.
     std::function<std::optional<Summary>(const GridPoint&, const std::string&)> at;
 };
 
-/// Its panels, on the same scales: the first of them where there are very many. `id` is unique on the page.
+/// The panels, on the same scales: only the first of them where there are very many. `id` is unique on the page.
 Html swept_panels(const SweptCurves& curves, const std::string& id);
 
 }  // namespace credence::page

@@ -1,4 +1,4 @@
-// The page's histograms: figures of trials, and differences of pairs.
+// The page's histograms: columns of trials, and differences of pairs.
 
 #include "report/html/chart.hpp"
 #include <credence/text.hpp>
@@ -36,13 +36,13 @@ double largest_share(const Histogram& histogram) {
 
 std::string percent_text(double share) { return number(100 * share, share < 0.1 ? 2 : 1) + " %"; }
 
-/// What a bin holds; one whole number stands for itself.
+/// The range of a bin as text; one whole number is shown by itself.
 std::string bin_text(double low, double high) {
     if (high - low == 1 && low + 0.5 == std::nearbyint(low + 0.5)) return short_number(low + 0.5);
     return short_number(low) + " to " + short_number(high);
 }
 
-/// Bars that stand on `foot`.
+/// Bars that start at `foot`.
 void draw_bars(Svg& svg, const Scale& x, const Histogram& histogram, double foot, const std::string& classes,
                const std::string& name) {
     const double largest = largest_share(histogram);
@@ -55,7 +55,7 @@ void draw_bars(Svg& svg, const Scale& x, const Histogram& histogram, double foot
     svg.line({x.from, foot}, {x.to, foot}, "axis");
 }
 
-/// Over all of the range; wider where it is that of a bin or two, as of values that do not vary.
+/// The whole range; wider where it is only a bin or two, such as for values that do not vary.
 Scale scale_over(Range edges, BinWidths widths, std::size_t bins) {
     const bool ratio = widths == BinWidths::ratio;
     if (bins < 5) {

@@ -1,4 +1,4 @@
-// The page's tables of what an arm's errors and innovations say of its filter.
+// The page's tables of an arm's evidence: its errors and innovations.
 
 #include <credence/text.hpp>
 
@@ -51,7 +51,7 @@ Html blocks_table(const Part& part) {
     });
 }
 
-/// Says which blocks have no rows of their own.
+/// Names the component groups that have no rows of their own.
 Html omitted_blocks(const Part& part) {
     std::size_t omitted = 0;
     for (const ArmReport* arm : part.arms)

@@ -26,7 +26,7 @@ Part part_of(const Report& report, const Scenario& scenario) {
     return part;
 }
 
-/// Nothing is loaded from anywhere, whatever the page's texts say.
+/// The content security policy: nothing is loaded from anywhere, whatever the page's texts contain.
 Html head(const std::string& title) {
     return R"(<meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -64,7 +64,7 @@ Html contents(const Report& report) {
            "\n</nav>\n"_html;
 }
 
-/// All that the trials of a scenario say.
+/// All sections on the trials of a scenario.
 Html evidence_of_trials(const Part& part) {
     if (!has_run(part.report, part.scenario.name)) return {};
     return figure_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);

@@ -1,4 +1,4 @@
-// The page's charts by step and by lag: a panel for each block of the state, each group of rows, each arm.
+// The page's charts by step and by lag: a panel for each component group, each group of rows, each arm.
 
 #include "report/html/chart.hpp"
 
@@ -29,7 +29,7 @@ struct Panel {
 
 Scale across(std::size_t steps) { return {ScaleKind::linear, 0.5, static_cast<double>(steps) + 0.5, left, right}; }
 
-/// Over all panels, so that they can be compared.
+/// Ranges over all panels, so that these can be compared.
 Scale upward(const std::vector<Panel>& panels) {
     Range range;
     range.include(1);
@@ -74,8 +74,8 @@ std::string hover(const Series& series, std::size_t k) {
            short_number(ratio.simultaneous_band[k].low) + " to " + short_number(ratio.simultaneous_band[k].high) + ")";
 }
 
-/// A line and its marks: of the series at `place` among more than two, marks at steps of its own, so that none hides
-/// another's, and at the last.
+/// A line and its marks: of the series at `place` among more than two, marks at different steps, so that none hides
+/// another, and at the last.
 void draw_series(Svg& svg, const Axes& axes, const Series& series, std::size_t place, std::size_t among) {
     const std::vector<double>& values = series.ratio->ratio;
     const auto at = [&](std::size_t k) {

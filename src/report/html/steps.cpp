@@ -1,4 +1,4 @@
-// The page's tables by step: every figure that the charts draw, and those behind the findings.
+// The page's tables by step: every value that the charts draw, and those behind the findings.
 
 #include "report/html/chart.hpp"
 #include <credence/text.hpp>
@@ -22,7 +22,7 @@ Html cell(const Interval& interval) {
     return escaped(short_number(interval.low) + " to " + short_number(interval.high));
 }
 
-/// The caption, and which steps have a row.
+/// The caption, and the steps that have a row.
 std::string captioned(const std::string& caption, int steps) {
     const std::size_t count = static_cast<std::size_t>(steps);
     if (count <= most_rows) return caption;

@@ -1,6 +1,6 @@
-// What the page looks like. Colours: Okabe and Ito's, made darker (on light) or lighter (on dark) until text in them
-// has a contrast of 4.5 : 1, the last two of arms, which no text has, of 3 : 1; arms differ by the shape of their marks and the
-// dash of their lines as well.
+// The page's style sheet. Colours: Okabe and Ito's, made darker (on light) or lighter (on dark) until text in them has
+// a contrast of 4.5 : 1, the last two arms' colours, which are not used for text, of 3 : 1; arms differ by their marks
+// and the dash of their lines as well.
 
 #include "report/html/page.hpp"
 

@@ -1,4 +1,4 @@
-// The page's part on grids: curves along a swept key, and a table by point.
+// The page's section on sweeps: curves along a swept key, and a table by point.
 
 #include <credence/text.hpp>
 
@@ -15,7 +15,7 @@ namespace credence::page {
 
 namespace {
 
-/// A figure of an arm or a pair; nothing where it has no values.
+/// A quantity of an arm or a pair; nothing where it has no values.
 template <class Part>
 std::optional<Summary> summary_of(const Part* part, const std::string& figure) {
     if (part != nullptr)
@@ -24,7 +24,7 @@ std::optional<Summary> summary_of(const Part* part, const std::string& figure) {
     return std::nullopt;
 }
 
-/// A grid on the page.
+/// A sweep on the page.
 class GridPart {
 public:
     GridPart(const Report& report, const SweptReport& swept, const Grid& grid, std::size_t number)
@@ -53,7 +53,7 @@ private:
                "</a>"_html;
     }
 
-    /// The shown figures that some point has of these arms or pairs.
+    /// The shown quantities that some point has of these arms or pairs.
     template <class Find>
     std::vector<SweptColumn> figures_of(const std::vector<std::string>& names, const Find& find) const {
         for (const GridPoint& point : grid_.points)
@@ -106,7 +106,7 @@ private:
         std::size_t number = 0;
         for (const SweptColumn& one : figures_of(arms_, arm)) {
             const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
-            constexpr double spread = 20;  // beyond it the small ones could not be told from 0
+            constexpr double spread = 20;  // beyond it the small values could not be distinguished from 0
             const SweptCurves drawn{grid_, curve_axis(grid_), arms_, figure_words(one.name, one.unit),
                                     is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.limits.margin : 0,
                                     spread, [&](const GridPoint& point, const std::string& name) {

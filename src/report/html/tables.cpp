@@ -1,4 +1,4 @@
-// The page's tables of figures that trials have: each arm's, and the differences of pairs.
+// The page's tables of trial columns: each arm's, and the differences of pairs.
 
 #include <credence/text.hpp>
 
@@ -13,7 +13,7 @@ namespace credence::page {
 
 namespace {
 
-/// All names of figures that some arm has values of, in their order.
+/// All names of columns for which some arm has values, in their order.
 std::vector<std::string> names_of(const Part& part) {
     std::vector<std::string> names;
     if (part.arms.empty()) return names;

@@ -14,7 +14,7 @@ namespace credence::page {
 
 namespace {
 
-/// A shape for each verdict, so that it is told without colour.
+/// A symbol for each verdict, so that it can be read without colour.
 Html shape_of(Verdict verdict) {
     switch (verdict) {
         case Verdict::consistent:
@@ -33,7 +33,7 @@ Html shape_of(Verdict verdict) {
     return "?"_html;
 }
 
-/// Why an arm has its verdict, in one line.
+/// The reasons for an arm's verdict, in one line.
 std::string why(const ArmReport& arm) {
     if (arm.not_run()) return no_claim_text(arm);
     const std::vector<Reason> reasons = reasons_of(arm);

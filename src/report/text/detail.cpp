@@ -59,7 +59,7 @@ std::string block_row(const GroupEvidence& block) {
            padded(with_interval(block.accuracy.ratio, block.accuracy.ratio_ci95), 20) + "\n";
 }
 
-/// What NEES would be in other charts, behind the blocks' own.
+/// NEES in other charts, after the groups' own.
 std::string charts_part(const Evidence& evidence) {
     if (evidence.charts.empty()) return "";
     std::vector<std::string> parts;
@@ -116,7 +116,8 @@ bool has_published(const Report& report, const std::string& scenario) {
     return false;
 }
 
-/// The figures of a scenario's trials, trace(P) at the end and over the run first; the ratios stand beside the verdict.
+/// The columns of a scenario's trials, trace(P) at the end and over the run first; the ratios are shown beside the
+/// verdict.
 std::vector<std::string> detailed_figures(const Report& report, const std::string& scenario) {
     std::vector<std::string> names{"trace_P", "mean_trace_P"};
     for (const ArmReport& arm : report.arms)

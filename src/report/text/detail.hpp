@@ -7,7 +7,7 @@
 
 namespace credence {
 
-/// Figures of the arms and their paired differences, and where each arm's filter is off.
+/// Columns of the arms and their paired differences, and the steps at which each arm's filter is inconsistent.
 std::string scenario_detail(const Report& report, const Scenario& scenario);
 
 }  // namespace credence

@@ -1,4 +1,4 @@
-// The report for people: verdicts first, then why, then where (report_text_detail.cpp).
+// The report as text: verdicts first, then their reasons, then the steps (src/report/text/detail.cpp).
 
 #include <credence/report.hpp>
 #include <credence/text.hpp>
@@ -15,7 +15,7 @@ namespace credence {
 
 namespace {
 
-/// Why an arm has its verdict; JSON has every finding with its interval.
+/// The reasons for an arm's verdict; JSON has every finding with its interval.
 std::string why(const ArmReport& arm) {
     constexpr std::size_t indent = 6;
     std::string text;
@@ -24,7 +24,7 @@ std::string why(const ArmReport& arm) {
     return text;
 }
 
-/// Arms of scenarios that are in no grid: a grid has a table of its own.
+/// Arms of scenarios that are not in a sweep: a sweep has a table of its own.
 std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
     std::set<std::string> swept;
     for (const Scenario& scenario : report.scenarios)

@@ -1,4 +1,4 @@
-// The text report's tables by grid point.
+// The text report's tables by point of a sweep.
 
 #include <credence/text.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// What a table has of one point, behind the values of its keys.
+/// A table's content for one point, after the values of its keys.
 struct PointRow {
     const GridPoint* point;
     Cells cells;
@@ -29,7 +29,7 @@ Cells joined_cells(Cells cells, const Cells& more) {
     return cells;
 }
 
-/// The values of the keys in columns before the others.
+/// Writes the values of the keys in columns before the others.
 TextTable with_key_columns(const Grid& grid, const Cells& heads, const std::vector<PointRow>& rows,
                            const std::string& alignment) {
     TextTable table(std::string(grid.axes.size(), 'r') + alignment);
@@ -43,7 +43,7 @@ TextTable with_key_columns(const Grid& grid, const Cells& heads, const std::vect
     return table;
 }
 
-/// The values of the keys in a line before each row, for keys that columns have no room for.
+/// Writes the values of the keys in a line before each row, where they do not fit into columns.
 TextTable with_key_lines(const Grid& grid, const Cells& heads, const std::vector<PointRow>& rows,
                          const std::string& alignment) {
     TextTable table("l" + alignment);

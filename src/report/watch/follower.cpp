@@ -50,7 +50,7 @@ void JournalFollower::read_file(const std::string& path) {
                          "). Put that back, or remove the journal.");
     for (std::size_t s = 0; s < followed_.size(); ++s) {
         followed_[s].in_file = blocks_of(stored.scenarios[s]);
-        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has others
+        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has other counts
             study_.scenarios[s].arms[a].aggregates = stored.scenarios[s].arms[a].aggregates;
     }
 }
@@ -60,7 +60,7 @@ std::string JournalFollower::seal_of(const JournalBytes& journal) const {
 }
 
 bool JournalFollower::goes_on_with(const JournalBytes& journal) const {
-    // Before the first record nothing tells a run's journal from that of the next one.
+    // Before the first commit a run's journal cannot be distinguished from that of the next run.
     const auto header_end = static_cast<std::int64_t>(start_.size());
     return position_ > header_end && journal.size() >= position_ && journal.read(0, header_end) == start_ &&
            seal_of(journal) == seal_;
@@ -99,7 +99,7 @@ WatchedSums JournalFollower::sums(std::size_t scenario) const {
     return sums;
 }
 
-/// The same that a run which goes on with the journal asks for, and that totals and columns agree.
+/// Checks that the study is the one that a resumed run would ask for, and that totals and columns agree.
 void JournalFollower::check(std::size_t scenario) {
     Followed& followed = followed_[scenario];
     if (!followed.totals) return;
@@ -107,7 +107,7 @@ void JournalFollower::check(std::size_t scenario) {
     ByteReader from(followed.totals->data(), followed.totals->size());
     load_totals(results);
     get_totals(from, results);
-    drop_totals(results);  // counted and aggregates are left
+    drop_totals(results);  // counted and aggregates are kept
     followed.totals.reset();
     if (followed.already_in_file()) return;
     if (followed.trials() != followed.counted) throw BadBytes("totals and blocks do not agree");
@@ -136,7 +136,7 @@ void JournalFollower::tell(Snapshot& look) const {
         };
         scenario.trials = over_both([](const WatchedBlocks& part) { return part.trials(); });
         scenario.blocks = over_both([](const WatchedBlocks& part) { return part.blocks(); });
-        // What is there already, and what the shard lacks.
+        // Blocks that are present already, and those that the shard lacks.
         scenario.trials_asked = scenario.trials + trials_of_shard(shard_, asked_) -
                                 over_both([&](const WatchedBlocks& part) { return part.trials_of(shard_); });
         scenario.blocks_asked = scenario.blocks + blocks_of_shard(shard_, asked_) -

@@ -1,5 +1,5 @@
 #pragma once
-// What has been read of a run's journal, look by look.
+// Reads a run's journal incrementally, snapshot by snapshot.
 
 #include "report/watch/watch.hpp"
 
@@ -8,32 +8,32 @@
 
 namespace credence {
 
-/// A scenario's part of a look, without its figures.
+/// A scenario's part of a snapshot, without the values of its columns.
 WatchedScenario described(const ScenarioResults& results);
 
-/// Its arms, with the figures of these sums.
+/// The arms of the snapshot, with the columns' values from these sums.
 std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const WatchedSums& sums);
 
-/// What has been read of one journal.
+/// The content that has been read of one journal.
 class JournalFollower {
 public:
-    /// `results` is the path of the results file, which the journal may grow.
+    /// `results` is the path of the results file, which the journal may extend.
     JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results);
 
-    /// Whether the journal begins with all that was read.
+    /// Whether the journal begins with everything that was read before.
     bool goes_on_with(const JournalBytes& journal) const;
-    /// Reads what was appended. Throws BadBytes.
+    /// Reads what was appended since. Throws BadBytes.
     void read(const JournalBytes& journal);
     void tell(Snapshot& look) const;
 
 private:
-    /// What is there of a scenario.
+    /// The state of a scenario.
     struct Followed {
         WatchedBlocks in_file, in_journal;
         std::int64_t counted = 0;           ///< trials in the last totals
-        std::optional<std::string> totals;  ///< that came since the last look
+        std::optional<std::string> totals;  ///< that were committed since the last snapshot
 
-        /// The run had ended, and only the journal had still to go.
+        /// The run has ended, and only the journal's removal was missing.
         bool already_in_file() const { return in_file.contains(in_journal); }
         std::int64_t trials() const { return in_file.trials() + (already_in_file() ? 0 : in_journal.trials()); }
     };
@@ -42,11 +42,11 @@ private:
     void take(const JournalBytes& journal, const FoundCommit& record);
     void check(std::size_t scenario);
     WatchedSums sums(std::size_t scenario) const;
-    /// The checksum of what was read last.
+    /// The checksum of the last commit that was read.
     std::string seal_of(const JournalBytes& journal) const;
 
     JournalHeader header_;
-    Study study_;  ///< empty: what its results look like
+    Study study_;  ///< without blocks: the structure of its results
     std::vector<BlockLayout> layouts_;
     std::vector<Followed> followed_;
     std::string start_, seal_;

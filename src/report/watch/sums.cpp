@@ -24,7 +24,7 @@ std::vector<double> figure_of(const ColumnOf& column, std::size_t arm, std::size
 
 bool is_of(const Shard& shard, std::int64_t block) { return block % shard.count == shard.index; }
 
-/// How many blocks are a shard's.
+/// Number of a shard's blocks.
 std::int64_t count_of(const BlockRanges& blocks, const Shard& shard) {
     std::int64_t count = 0;
     for (const BlockRange& range : blocks.ranges())

@@ -1,5 +1,5 @@
 #pragma once
-// What a look keeps of the trials that it has read: sums, and which blocks they are of.
+// The data that snapshots keep of the trials they have read: sums, and the blocks of these trials.
 
 #include <credence/study.hpp>
 
@@ -29,27 +29,27 @@ struct WatchedSums {
 using ColumnOf = std::function<std::vector<double>(std::size_t arm, std::size_t column)>;
 WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const ColumnOf& column);
 
-/// Of results that keep no trial.
+/// The sums of results that keep no trial.
 WatchedSums sums_of_aggregates(const ScenarioResults& results);
 
-/// Those of rows of stored results, a part of them at a time. Where no trial is kept only their number is told.
+/// The sums of rows of stored results, read in parts. Where no trial is kept only their number is known.
 WatchedSums sums_of_rows(const ScenarioResults& results, std::int64_t first, std::int64_t count);
 
-/// A scenario's blocks and their sums. Only the last block may be partial, and it may still be taken back.
+/// A scenario's blocks and their sums. Only the last block may be partial, and it may be replaced later.
 struct WatchedBlocks {
     struct Partial {
         std::int64_t index = 0;
         WatchedSums sums;
     };
     BlockRanges whole;
-    WatchedSums sums;  ///< of the whole ones
+    WatchedSums sums;  ///< of the complete blocks
     std::optional<Partial> partial;
 
-    /// Throws BadBytes for a whole block that is there already.
+    /// Throws BadBytes for a complete block that was added before.
     void add(std::int64_t index, WatchedSums sums);
-    /// The same of blocks of a study of `trials` trials of which no trial is kept.
+    /// The same for blocks, of a study of `trials` trials, of which no trial is kept.
     void add(const BlockRange& range, std::int64_t trials);
-    /// A study that was asked for so many trials computes its partial block again where that becomes larger.
+    /// Prepares for a new number of trials: a partial block that becomes larger is computed again.
     void asked(std::int64_t trials);
     std::int64_t trials() const { return sums.trials + (partial ? partial->sums.trials : 0); }
     std::int64_t blocks() const { return whole.count() + (partial ? 1 : 0); }

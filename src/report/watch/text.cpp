@@ -1,4 +1,4 @@
-// A look at a run, for people and for programs.
+// A snapshot of a run, as text and as JSON.
 
 #include "report/watch/watch.hpp"
 
@@ -23,7 +23,7 @@ std::string shard_text(const Snapshot& look) {
            std::to_string(look.trials) + " trials a scenario";
 }
 
-/// What the run is at.
+/// The state of the run.
 std::string state_text(const Snapshot& look) {
     const std::string trials = of_text(look.trials_done(), look.trials_asked()) + " trials";
     switch (look.state) {
@@ -41,7 +41,7 @@ std::string state_text(const Snapshot& look) {
     return text + "; last commit " + duration_text(look.seconds_since_commit) + " ago";
 }
 
-/// What to do where the run may have ended without an end.
+/// Advice where the run may have ended without finishing.
 std::string advice(const Snapshot& look) {
     constexpr double long_time = 60;
     if (look.state == RunState::incomplete && look.shard.count == 1)

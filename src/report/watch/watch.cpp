@@ -13,7 +13,7 @@ namespace credence {
 
 namespace {
 
-/// The shard whose blocks these are, all of them and no others; that of the whole study where there is none such.
+/// The shard that has exactly these blocks; the whole study where there is no such shard.
 Shard shard_of(const ScenarioResults& results, std::int64_t trials) {
     const BlockRanges& blocks = results.blocks;
     if (blocks.size() < 2) return {};
@@ -74,7 +74,8 @@ std::optional<Snapshot> RunWatch::look_at_journal() {
             follower_.reset();
             if (attempt > 0) throw;
         }
-        // It may have been cut, begun anew or finished while it was read: once more from the start.
+        // The journal may have been cut, started over or finished while it was read, so it is read once more from the
+        // start.
     }
 }
 

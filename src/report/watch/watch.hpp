@@ -1,6 +1,6 @@
 #pragma once
-// Following a run: what is committed so far, with intervals, read from FILE.h5.journal while the run goes on
-// and from FILE.h5 when it is done [docs/durability.md, Following a run].
+// Watching a run: everything committed so far, with intervals, read from FILE.h5.journal during the run and from
+// FILE.h5 afterwards [docs/durability.md, Following a run].
 
 #include <credence/columns.hpp>
 #include <credence/statistics.hpp>
@@ -13,11 +13,11 @@
 
 namespace credence {
 
-/// The columns whose means a look gives: all figures of a trial but mean_trace_P. The first, trace_P in every world, is
-/// the one that pairs are compared by.
+/// The columns whose means a snapshot shows: all numbers of a trial but mean_trace_P. Pairs are compared by the first
+/// one, which is trace_P in every world.
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 
-/// One arm, over its trials so far; failed ones are in no figure.
+/// One arm, over its trials so far; failed ones are left out of the means.
 struct WatchedArm {
     std::string name;
     std::int64_t failed = 0, diverged = 0;  ///< trials
@@ -29,19 +29,19 @@ struct WatchedArm {
 struct WatchedScenario {
     std::string name;
     std::vector<Column> columns;                     ///< of the watched columns
-    std::int64_t trials = 0, trials_asked = 0;       ///< committed, and all that the run will have in the end
+    std::int64_t trials = 0, trials_asked = 0;       ///< committed, and the final number
     std::int64_t blocks = 0, blocks_asked = 0;       ///< of 256 trials, likewise
     std::vector<WatchedArm> arms;
 };
 
 enum class RunState {
-    begun,       ///< nothing of its journal can be read yet
-    running,     ///< there is a journal; whether somebody writes it shows in seconds_since_commit
+    begun,       ///< its journal cannot be read yet
+    running,     ///< there is a journal; seconds_since_commit shows whether the run is alive
     complete,    ///< the results file has every trial that was asked for
     incomplete,  ///< the results file is that of a shard, or of a run that was stopped
 };
 
-/// A look at a run.
+/// A snapshot of a run.
 struct Snapshot {
     std::string path;                        ///< of the results file
     RunState state = RunState::begun;
@@ -49,33 +49,34 @@ struct Snapshot {
     Shard shard;                             ///< of them; of a finished part, if its blocks are those of a shard
     std::vector<WatchedScenario> scenarios;
     double seconds_since_commit = 0;         ///< while there is a journal
-    std::optional<double> trials_per_second; ///< over the looks of the last minute; none at the first
+    std::optional<double> trials_per_second; ///< over the snapshots of the last minute; none at the first
 
     bool ended() const { return state == RunState::complete || state == RunState::incomplete; }
     /// Over all scenarios.
     std::int64_t trials_done() const;
     std::int64_t trials_asked() const;
-    /// Seconds; none where the rate is not known or 0.
+    /// Seconds; nothing where the rate is unknown or 0.
     std::optional<double> time_left() const;
 };
 
 class JournalFollower;
 
-/// Follows the run that writes the results file `path`. It writes nothing and locks nothing: the run does not notice. A
-/// look reads what was appended to the journal since the last one; memory does not grow with the trials.
+/// Watches the run that writes the results file `path`. It neither writes nor locks anything, so the run is not
+/// affected. A snapshot reads what was appended to the journal since the last one; memory does not grow with the
+/// trials.
 class RunWatch {
 public:
     explicit RunWatch(std::string path);
     RunWatch(RunWatch&&) noexcept;
     ~RunWatch();
 
-    /// Throws InputError where there is neither a journal nor a results file, or what is there is damaged.
+    /// Throws InputError where there is neither a journal nor a results file, or where these are damaged.
     Snapshot look();
 
 private:
     std::string path_;
     std::unique_ptr<JournalFollower> follower_;  ///< of the journal, while there is one
-    /// When a look was taken, and the trials that it found.
+    /// When a snapshot was taken, and the number of its trials.
     struct Moment {
         double seconds = 0;
         std::int64_t trials = 0;
@@ -87,7 +88,7 @@ private:
     void time(Snapshot& look);
 };
 
-/// For people: a table, its lines some 120 characters wide.
+/// The snapshot as text: a table with lines of about 120 characters.
 std::string watch_text(const Snapshot& look);
 /// An array with an object per scenario and arm; NaN is null.
 std::string watch_json(const Snapshot& look);

@@ -1,28 +1,30 @@
 #pragma once
-// What an estimator is, and the one that most are compared with.
+// The contract of an estimator, and the (extended) Kalman filter, with which most are compared.
 //
-// An estimator is a class template E<Layout, Real> that a trial carries in its workspace. It holds what it must remember
-// from pose to pose beside the belief, and provides:
+// An estimator is a class template E<Layout, Real> that a trial keeps in its workspace. It holds the state that it
+// needs from pose to pose beside the belief, and provides:
 //
 //   void start(const Layout&, const Belief&, const Truth&)
-//       at pose 0, with the belief as initialised: sets everything that is remembered.
+//       called at pose 0, with the initialised belief; sets all of the estimator's own state.
 //   void predict(Belief&, const FilterParameters&, const Layout&, const Command<Real>&, const Truth&, int k)
-//       the belief of pose k - 1 becomes the predicted one of pose k.
+//       turns the belief of pose k - 1 into the predicted one of pose k.
 //   auto linearised(const Belief& predicted, const Layout&, const Truth&) const
-//       a function (j, sighting) -> Linearised, with a member `frame`: the rotation from the body frame into the one in
-//       which its rows and innovations are.
+//       returns a function (j, sighting) -> Linearised, with a member `frame`: the rotation from the body frame into
+//       the frame of its rows and innovations.
 //   void update(Belief&, const FilterParameters&, const Layout&, const Sighting<Real>*, const EdgeMeasurement&,
 //               const Linearisation&, Update&)
-//       the predicted belief becomes the updated one; `update` gets the correction, the NIS of the first linearisation,
-//       its rows, and whether every S was positive definite.
+//       turns the predicted belief into the updated one; `update` receives the correction, the NIS of the first
+//       linearisation, its rows, and whether every S was positive definite.
 //   void initialise(Belief&, const FilterParameters&, const Layout&, int j, const Sighting<Real>&, const Truth&)
-//       after the update, feature j enters the belief where it is seen for the first time, in place of whatever was
-//       believed of it; in a world where features are not all known from the start, and with a heading.
+//       called after the update: adds feature j to the belief where it is seen for the first time, replacing its
+//       earlier estimate. Only worlds in which features are not all known from the start, and that have a heading, call
+//       it.
 //
-// Shapes, units and frames are those of filter.hpp and update.hpp. The truth is that of pose k: an estimator that looks
-// at it cannot be had in the world, and says so. An estimator must not draw, must not branch on a Real (several trials
-// run at once), and writes nothing but the belief, the update and itself. What the judge takes as its error is
-// x^ - x, heading wrapped [judge.hpp], whatever chart its own mathematics live in.
+// Dimensions, units and frames are those of filter.hpp and update.hpp. The truth is that of pose k: an estimator that
+// uses it cannot be implemented on a robot, and its documentation must say so. An estimator must not draw random
+// numbers, must not branch on a Real (several trials run at once), and modifies only the belief, the update and itself.
+// Its error is always evaluated as x^ - x, heading wrapped (src/slam/trial/step_evaluation.hpp), whatever chart its own
+// equations use.
 
 #include "slam/initialise.hpp"
 #include "slam/update.hpp"
@@ -32,7 +34,7 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// The extended Kalman filter, and in the translation model the Kalman filter [model.md, Filter].
+/// The extended Kalman filter, which in the translation model is the Kalman filter [docs/model.md, Filter].
 template <class Layout, class Real>
 struct KalmanFilter {
     using State = Belief<Real, Layout::capacity>;
@@ -65,7 +67,7 @@ struct KalmanFilter {
     }
 };
 
-/// Whether E provides what is written above; where not, the compiler says what is missing.
+/// Whether E meets the contract above; where it does not, the compiler reports what is missing.
 template <class E, class Layout, class Real>
 constexpr bool meets_the_contract() {
     using State = Belief<Real, Layout::capacity>;

@@ -1,5 +1,5 @@
 #pragma once
-// The estimators of estimator_list.hpp, chosen by name.
+// Selects an estimator of estimator_list.hpp by name.
 
 #include "slam/estimators/first_estimates.hpp"
 #include "slam/estimators/ideal.hpp"
@@ -8,7 +8,7 @@
 
 namespace credence {
 
-/// An estimator as something to pass: tag::type<Layout, Real>.
+/// An estimator as a tag that can be passed as an argument: tag::type<Layout, Real>.
 template <template <class, class> class Type>
 struct EstimatorTag {
     template <class Layout, class Real>
@@ -17,12 +17,12 @@ struct EstimatorTag {
 
 inline namespace CREDENCE_TARGET {
 
-/// The process model's own estimator, which alone runs where features are written out.
+/// The process model's own estimator, the only one for which loops over features are written out.
 constexpr Estimator own_estimator(Process process) {
     return process == Process::heading ? Estimator::ekf : Estimator::kf;
 }
 
-/// Calls use(EstimatorTag) with the one of that name for this process.
+/// Calls use(EstimatorTag) with the tag of the named estimator for this process.
 template <Process process, class Use>
 auto with_estimator(Estimator estimator, const Use& use) {
     switch (estimator) {

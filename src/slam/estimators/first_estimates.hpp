@@ -1,6 +1,6 @@
 #pragma once
-// The first-estimates-Jacobian filter [Huang, Mourikis, Roumeliotis 2010]: every Jacobian at the first estimate
-// that there was of a variable, so that what cannot be observed stays so.
+// The first-estimates-Jacobian filter [Huang, Mourikis, Roumeliotis 2010]: every Jacobian is evaluated at the first
+// estimate of each variable, so that unobservable directions stay unobservable.
 
 #include "slam/estimators/estimator.hpp"
 
@@ -24,9 +24,9 @@ struct AtFirstEstimates {
     }
 };
 
-/// F[r, theta] = J (r^-_k - r^-_{k-1}), the predicted positions of both poses. A feature that does not walk is one
-/// variable: its first estimate is the one that it entered with, carried along with its known motion. One that walks is
-/// a new variable at every pose, whose first estimate is the predicted one.
+/// F[r, theta] = J (r^-_k - r^-_{k-1}), from the predicted positions of both poses. A feature that does not walk is one
+/// variable: its first estimate is the one with which it was initialised, moved along its known motion. A feature that
+/// walks is a new variable at every pose, whose first estimate is the predicted one.
 template <class Layout, class Real>
 struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;

@@ -1,7 +1,8 @@
 #pragma once
-// The ideal extended Kalman filter: Jacobians at the true state [Huang, Mourikis, Roumeliotis 2010]. It looks at
-// the truth, so nobody can have it; and where the errors curve the measurement it is no gold standard: the extended
-// Kalman filter linearises at one end of the error, this one at the other [docs/estimators.md].
+// The ideal extended Kalman filter: Jacobians at the true state [Huang, Mourikis, Roumeliotis 2010]. It uses the truth,
+// so it cannot be implemented on a robot. Where the measurement is nonlinear over the range of the errors it is not
+// optimal either: the extended Kalman filter linearises at one end of the error, this one at the other
+// [docs/estimators.md].
 
 #include "slam/estimators/estimator.hpp"
 
@@ -27,8 +28,8 @@ struct AtTruth {
     }
 };
 
-/// F[r, theta] = J (r_k - r_{k-1}) with the true displacement, its noise included: with R(theta) v in its place, what is
-/// not observable leaks away.
+/// F[r, theta] = J (r_k - r_{k-1}) with the true displacement, its noise included. With R(theta) v in its place, the
+/// filter would gain information in unobservable directions.
 template <class Layout, class Real>
 struct IdealFilter : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;
@@ -55,7 +56,7 @@ struct IdealFilter : KalmanFilter<Layout, Real> {
     }
 
 private:
-    Vector2<Real> position_{};  ///< true, of the pose before
+    Vector2<Real> position_{};  ///< true position at the previous pose
 };
 
 }  // namespace CREDENCE_TARGET

@@ -10,7 +10,7 @@ namespace credence {
 
 inline namespace CREDENCE_TARGET {
 
-/// The error in the invariant chart: V(-a)^-1 = V(a) / |V(a)|^2, V being a rotation times a factor. Shape [n].
+/// The error in the invariant chart: V(-a)^-1 = V(a) / |V(a)|^2, V being a rotation times a factor. [n].
 template <class Layout, class Real>
 void invariant_error(const Layout& layout, const Real* error, Real* invariant) {
     const Real turn = error[Layout::heading];
@@ -39,7 +39,7 @@ template <class Layout, class Real, int capacity>
     Real invariant[capacity];
     invariant_error(layout, error, invariant);
     InvariantNees<Real> nees;
-    const auto whole = [&](int last) {  // rolled: few scenarios ask for it
+    const auto whole = [&](int last) {  // rolled loops: few scenarios ask for this chart
         Real value{};
         nested_squared_errors(belief.covariance, invariant, 0, last, work,
                               [&](int, const SquaredError<Real>& sum) { value = sum.value; });

@@ -1,17 +1,17 @@
 #pragma once
-// The iterated extended Kalman filter [Bell, Cathey 1993]: the update is linearised anew where it led, until it
-// is the best point of the measurements and the prediction together.
+// The iterated extended Kalman filter [Bell, Cathey 1993]: the update is linearised again at its own result, until that
+// is the maximum a posteriori estimate of measurements and prediction.
 
 #include "slam/estimators/estimator.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Passes of an update. For a heading noise up to 0.05 the last one changes the mean by less than 3e-4 in the document's
-/// world.
+/// Number of passes of an update. For a heading noise up to 0.05 the last pass changes the mean by less than 3e-4 in
+/// the document's world.
 inline constexpr int iterated_passes = 8;
 
-/// An update has come to rest where its last pass moved no component of the mean by more than this share of its standard
+/// An update has converged where its last pass moved no component of the mean by more than this share of its standard
 /// deviation.
 inline constexpr double settled_share = 0.01;
 
@@ -32,7 +32,7 @@ struct AtIterate {
     }
 };
 
-/// The covariance is that of the last pass, the NIS that of the first: innovations are about what was predicted.
+/// The covariance is that of the last pass. The NIS is that of the first, so that innovations are about the prediction.
 template <class Layout, class Real, int passes>
 struct FilterOfPasses : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;
@@ -58,7 +58,7 @@ struct FilterOfPasses : KalmanFilter<Layout, Real> {
     }
 
 private:
-    /// 1 where the last pass moved a component by more than settled_share of its standard deviation, or to no number.
+    /// 1 where the last pass moved a component by more than settled_share of its standard deviation, or to NaN.
     Real unsettled(const Symmetric<Real, Layout::capacity>& P, int n, const Real* correction) const {
         Mask<Real> settled = all_lanes<Real>();
         for (int i = 0; i < n; ++i) {
@@ -69,7 +69,7 @@ private:
     }
 
     Symmetric<Real, Layout::capacity> predicted_;  ///< P^-
-    Real delta_[Layout::capacity];                 ///< the correction of the pass before
+    Real delta_[Layout::capacity];                 ///< the correction of the previous pass
 };
 
 template <class Layout, class Real>

@@ -1,7 +1,7 @@
 #pragma once
-// The right-invariant extended Kalman filter [Barrau, Bonnabel 2017; Zhang, Wu, Song, Huang, Dissanayake 2017]:
-// the error lives in the group of rigid motions, eta = chi chi^^-1. In the Euclidean chart, in which everything here is
-// kept, that is the extended Kalman filter and two lines after its update [docs/estimators.md].
+// The right-invariant extended Kalman filter [Barrau, Bonnabel 2017; Zhang, Wu, Song, Huang, Dissanayake 2017]: its
+// error is an element of the group of rigid motions, eta = chi chi^^-1. In the Euclidean chart, which this program uses
+// for every belief, it is the extended Kalman filter with two further lines after the update [docs/estimators.md].
 
 #include <credence/detail/elementary.hpp>
 #include "slam/estimators/estimator.hpp"
@@ -18,7 +18,7 @@ Rotation<Real> chord(Real a) {
     return {select(turns, ratio * half_turn.cosine, Real(1)), select(turns, ratio * half_turn.sine, Real(0))};
 }
 
-/// P <- A P A', A = I with the column of theta (1; J s_r; J s_f): what turning the heading's error turns along.
+/// P <- A P A', A = I with the column of theta (1; J s_r; J s_f): the points move along with an error of the heading.
 /// `shift` [n] holds s at the index of each point.
 template <class Layout, class Real, int capacity>
 void turn_covariance(Symmetric<Real, capacity>& P, const Layout& layout, const Real* shift) {
@@ -41,8 +41,8 @@ template <class Layout, class Real>
 struct RightInvariantFilter : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;
 
-    /// The update of the Kalman filter, then: x^ = x^- + V(delta_theta) delta for every point, P <- A P A' with
-    /// s = x^ - x^-.
+    /// The update of the Kalman filter, followed by x^ = x^- + V(delta_theta) delta for every point and P <- A P A'
+    /// with s = x^ - x^-.
     template <class EdgeMeasurement, class Linearisation>
     void update(State& belief, const FilterParameters& filter, const Layout& layout, const Sighting<Real>* sightings,
                 const EdgeMeasurement& edge_measurement, const Linearisation& linearised,

@@ -1,6 +1,6 @@
 #pragma once
-// Who steers. The fixed path is a table; the greedy planner takes, of its candidates, the one whose next
-// trace(P) is least [model.md, Controllers]; horizon.hpp looks further ahead.
+// The controllers. The fixed path is a table; the greedy planner takes the candidate whose next trace(P) is least
+// [docs/model.md, Controllers]; horizon.hpp plans several steps.
 
 #include "slam/update.hpp"
 
@@ -10,9 +10,9 @@ namespace credence {
 
 struct ControlParameters {
     const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
-    const Control* candidates = nullptr;  ///< in the order in which ties are decided
+    const Control* candidates = nullptr;  ///< in the order that decides ties
     int candidate_count = 0;
-    double squared_reach = 0;             ///< of the candidate that moves farthest
+    double squared_reach = 0;             ///< of the candidate with the largest displacement
     int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
 };
 
@@ -23,8 +23,9 @@ Command<Real> command_from(const Control& control) {
     return {Real(control.turn), broadcast<Real>(control.move)};
 }
 
-/// Everything of the next step that no candidate changes: features predicted to pose k, and all edges taken in. (F and
-/// the fresh odometry noise touch the robot's rows only, so edges condition equally well before the robot moves.)
+/// Computes the part of the next step that is the same for all candidates: features predicted to pose k, and all edges
+/// used for the update. (F and the fresh odometry noise affect the robot's rows only, so the edges may be used before
+/// the robot moves.)
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, const FilterParameters& filter,
                                       const Layout& layout, int k, Belief<Real, capacity>& base) {
@@ -39,8 +40,8 @@ CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, cons
     });
 }
 
-/// trace(P) after one step under a candidate: predict, gate and take sigma at the predicted mean, update P. The plain
-/// form, and the oracle of planner.hpp's. `next` is room to work in.
+/// trace(P) after one step under a candidate: predict, gate and compute sigma at the predicted mean, update P. This is
+/// the direct form, and the oracle for the forms of planner.hpp. `next` is workspace.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command,
                                   const FilterParameters& filter, const SensorParameters& sensor,
@@ -59,16 +60,16 @@ CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Comm
     return trace(next.covariance, n);
 }
 
-/// The smaller one; b where a is no number.
+/// The smaller one; b where a is NaN.
 template <class Real>
 Real smaller(Real a, Real b) { return select(a < b, a, b); }
 
-/// More than any cost.
+/// An upper bound on every cost.
 template <class Real>
 Real without_limit() { return Real(std::numeric_limits<double>::infinity()); }
 
-/// Keeps the running minimum and the choice: a candidate replaces it when its cost <= best (1 + 1e-12), so that the
-/// later of equals wins.
+/// Keeps the minimum so far and the choice: a candidate replaces the choice if its cost <= best (1 + 1e-12), so that
+/// the last of equal candidates wins.
 template <class Real>
 struct Choice {
     Command<Real> command;
@@ -76,7 +77,7 @@ struct Choice {
 
     void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
 
-    /// Offers in some lanes only.
+    /// Offers a candidate in some lanes only.
     void offer(const Command<Real>& candidate, Real cost, Mask<Real> offered) {
         const Mask<Real> taken = both(offered, cost <= best * Real(1 + 1e-12));
         command.turn = select(taken, candidate.turn, command.turn);
@@ -94,8 +95,8 @@ Choice<Real> chosen(Mask<Real> first, const Choice<Real>& a, const Choice<Real>&
             select(first, a.best, b.best)};
 }
 
-/// Greedy control from pose k - 1 to k by the plain form, given the belief at pose k - 1. `costs(i, cost)` receives every
-/// candidate's cost. `base` and `next` are room to work in.
+/// Greedy control from pose k - 1 to k by the direct form, given the belief at pose k - 1. `costs(i, cost)` receives
+/// every candidate's cost. `base` and `next` are workspace.
 template <class Layout, class Real, int capacity, class Costs>
 Choice<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlParameters& control,
                            const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,

@@ -1,21 +1,22 @@
 #pragma once
-// Planning several steps ahead, a receding horizon [docs/model.md, Controllers: horizon]. Of all sequences of
-// candidates over the horizon, the one whose sum of trace(P) is least is found; its first control is taken, and at the
-// next pose all is planned anew. On the way nothing is measured: each step is the one that the greedy planner expects
-// of its candidate, from the mean and the covariance that the step before is expected to leave.
+// Planning over several steps with a receding horizon [docs/model.md, Controllers: horizon]. It finds the sequence of
+// candidates over the horizon whose sum of trace(P) is least and takes its first control; at the next pose it plans
+// again. Planning uses no measurements: each step starts from the mean and the covariance that the greedy planner's
+// model expects after the step before.
 
 #include "slam/planning/planner.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// The beliefs along a sequence, before the robot moves on: one for each step but the last, and room for the next one.
+/// The beliefs along a sequence, before the robot moves: one for each step but the last, and workspace for the next
+/// one.
 template <class Layout, class Real>
 struct HorizonWorkspace {
     Belief<Real, Layout::capacity> ahead[largest_horizon];
 };
 
-/// What stays the same along all sequences.
+/// What is the same for all sequences.
 template <class Layout, class Real>
 struct Outlook {
     const ControlParameters& control;
@@ -29,9 +30,10 @@ template <class Layout, class Real, int capacity>
 Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit);
 
-/// Tells each candidate's least sum of trace(P) over `steps` > 1 steps, the candidate being the first of them:
-/// told(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` as for least_sum. A covariance's
-/// trace is positive: where the first one reaches the limit in all lanes, so does the sum, and the candidate is not told.
+/// Computes, for each candidate as the first of `steps` > 1 steps, the least sum of trace(P) over these, and calls
+/// told(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Traces of
+/// covariances are positive: where the first step's trace reaches the limit in all lanes, so does the sum, and told is
+/// not called.
 template <class Layout, class Real, int capacity, class Limit, class Told>
 void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                 Belief<Real, capacity>* ahead, const Limit& limit, Told&& told) {
@@ -40,15 +42,15 @@ void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacit
     for (int i = 0; i < control.candidate_count; ++i) {
         const Command<Real> command = command_from<Real>(control.candidates[i]);
         const Real next = candidate_cost(ahead[0], command, filter, sensor, layout, ahead[1]);
-        // The margin covers the rounding of sums, and what the tie rule takes for equal.
+        // The margin covers the rounding of sums and the tolerance of the tie rule.
         const Real rest = limit() * Real(1 + 1e-9) - next;
         if (any(negated(rest <= Real(0))))
             told(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
     }
 }
 
-/// The least sum of trace(P) over `steps` steps from the belief at pose k - 1. Where it lies above `limit` it need not be
-/// exact, only above it.
+/// The least sum of trace(P) over `steps` steps from the belief at pose k - 1. Sums up to `limit` are exact; above it,
+/// only that they are above it is certain.
 template <class Layout, class Real, int capacity>
 Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit) {
@@ -76,8 +78,8 @@ Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const ControlPara
     return choice.command;
 }
 
-/// Tells what every candidate costs, for whoever wants to know them all: told(i, cost), the trace(P) after its step or,
-/// of more steps, the least sum over them. The planners themselves price few.
+/// Calls told(i, cost) with the cost of every candidate, where all costs are wanted: the trace(P) after its step or,
+/// for several steps, the least sum over them. The planners themselves evaluate few candidates.
 template <class Layout, class Real, int capacity, class Told>
 void price_candidates(const Belief<Real, capacity>& belief, const ControlParameters& control,
                       const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,

@@ -1,8 +1,8 @@
 #pragma once
 // A candidate's cost in the space of the measurements [docs/model.md, Measurement space].
 //
-//   P, u, a, d0, H0 as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: what the fresh
-//   heading noise does to sighting j; sigma^2 its variance
+//   P, u, a, d0, H0 as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: the effect of the
+//   fresh heading noise on sighting j; sigma^2 its variance
 //   B_j = P H0_j' [n, 2], w_j its row of the heading, A_jl = H0_j B_l, G_jl = B_j' B_l - w_j w_l' [2, 2]: the same for
 //   all candidates of a step
 // trace(P+) = trace(T P T') + sigma^2 - trace(S^-1 C), with
@@ -85,7 +85,7 @@ Real halved(Real m) { return Real(0.5) * m; }
 template <class Real>
 Real add_noise(Real m, Real N) { return m + N; }
 
-/// A 2 x 2 block of S or C.
+/// A 2 x 2 submatrix of S or C.
 template <class Layout, class Real>
 using Block2 = std::conditional_t<Layout::has_heading, Matrix2<Real>, Real>;
 
@@ -94,7 +94,7 @@ void set_block(Matrix2<Real>& block, const Matrix2<Real>& value) { block = value
 template <class Real>
 void set_block(Real& block, const Matrix2<Real>& value) { block = value.xx; }
 
-/// What a step's candidates share.
+/// The quantities that are the same for all candidates of a step.
 template <class Layout, class Real>
 struct MeasurementSpace {
     static constexpr int capacity = Layout::feature_capacity;
@@ -106,7 +106,7 @@ struct MeasurementSpace {
     Vector2<Real> B[capacity][Layout::capacity];
 };
 
-/// Room for one candidate.
+/// Workspace for one candidate.
 template <class Layout, class Real>
 struct MeasurementElimination {
     static constexpr int capacity = Layout::feature_capacity;
@@ -115,7 +115,8 @@ struct MeasurementElimination {
     Mask<Real> seen[capacity];
 };
 
-/// Fills the space from a belief whose P has all of the step's noise but the heading's and the sightings'.
+/// Computes the shared quantities from a belief whose P includes all of the step's noise but the heading's and the
+/// sightings'.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void enter_measurement_space(const Belief<Real, capacity>& still, const FilterParameters& filter,
                                            const Layout& layout, MeasurementSpace<Layout, Real>& space) {
@@ -145,7 +146,7 @@ CREDENCE_FLAT void enter_measurement_space(const Belief<Real, capacity>& still, 
     });
 }
 
-/// Gates a candidate and forms its S and C. Sightings that no lane sees are left alone.
+/// Gates a candidate and computes its S and C. Sightings that no lane sees are skipped.
 template <class Layout, class Real>
 CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space, const Vector2<Real>& u,
                                     const FilterParameters& filter, const SensorParameters& sensor,
@@ -182,7 +183,7 @@ CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space,
     });
 }
 
-/// Takes sighting j out of S and C; returns its part of trace(S^-1 C).
+/// Eliminates sighting j from S and C; returns its contribution to trace(S^-1 C).
 template <class Layout, class Real, class Index>
 CREDENCE_INLINE Real take_out(const Layout& layout, Index j, MeasurementElimination<Layout, Real>& work) {
     auto &S = work.S, &C = work.C;

@@ -1,5 +1,6 @@
 #pragma once
-// The greedy planner's fast forms. All of them choose as controller.hpp's plain form does (tests/planner).
+// The greedy planner's fast forms. All of them choose as controller.hpp's direct form does
+// (tests/slam/planner_test.cpp).
 
 #include "slam/planning/screening.hpp"
 #include "slam/planning/visible_sets.hpp"
@@ -9,16 +10,16 @@ inline namespace CREDENCE_TARGET {
 
 template <class Layout, class Real>
 struct PlannerWorkspace {
-    Belief<Real, Layout::capacity> still;  ///< before the robot moves, all of the step's noise added but the heading's
-    Belief<Real, Layout::capacity> next;   ///< after a candidate, where the plain form decides
+    Belief<Real, Layout::capacity> still;  ///< before the robot moves, with all of the step's noise but the heading's
+    Belief<Real, Layout::capacity> next;   ///< after a candidate, where the direct form decides
     ScreeningWorkspace<Layout, Real> screening;
     MeasurementSpace<Layout, Real> space;
     MeasurementElimination<Layout, Real> elimination;
     VisibleSets<Real> sets;
 };
 
-/// Everything of the step that no candidate changes: prepare_candidates, and the robot's fresh position noise, which F
-/// does not touch.
+/// Computes the part of the step that is the same for all candidates: that of prepare_candidates, and the robot's fresh
+/// position noise, which F does not affect.
 template <class Layout, class Real, int capacity>
 void prepare_still(const Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout, int k,
                    Belief<Real, capacity>& still) {
@@ -29,11 +30,11 @@ void prepare_still(const Belief<Real, capacity>& belief, const FilterParameters&
     });
 }
 
-// Each form chooses from `work.still`. `limit` is a known upper bound on the cost: a choice that costs no more, or so little
-// more that the tie rule takes it for equal, is exact; of a dearer one only that it is dearer is certain.
+// Each form chooses from `work.still`. `limit` is a known upper bound on the cost. A choice is exact if its cost is at
+// most `limit`, up to the tolerance of the tie rule; if no candidate's cost is, only that they cost more is certain.
 
-/// What a fast form chose, and the least cost of a candidate that it met on the way: the choice costs no more, unless
-/// rounding has lifted the bounds above the costs.
+/// The choice of a fast form, and the least cost of the candidates that it evaluated: the choice costs no more, unless
+/// rounding has raised the bounds above the costs.
 template <class Real>
 struct FastChoice {
     Choice<Real> choice;
@@ -99,9 +100,9 @@ FastChoice<Real> choose_fast(const ControlParameters& control, const FilterParam
     return choose_by_screening<false>(control, filter, sensor, layout, limit, work);
 }
 
-/// T (1 + s v): a fast form's costs are off by no more than some 50 * 2^-53 of this [docs/model.md, Rounding]. T is at
-/// least the trace before the sightings, s at least the sum of what S is made of but its noise, v at least the inverse of
-/// any eigenvalue of S.
+/// T (1 + s v): the error of a fast form's costs is at most about 50 * 2^-53 times this [docs/model.md, Rounding]. T is
+/// at least the trace before the sightings, s at least the sum of the terms of S without the noise, v at least the
+/// inverse of any eigenvalue of S.
 template <class Layout, class Real>
 CREDENCE_FLAT Real lost_to_rounding(const ControlParameters& control, const FilterParameters& filter,
                                     const SensorParameters& sensor, const Layout& layout,
@@ -122,9 +123,10 @@ CREDENCE_FLAT Real lost_to_rounding(const ControlParameters& control, const Filt
     return fma(s * Real(largest_sighting_value(value_parameters(sensor, filter), sensor)), T, T);
 }
 
-/// The lanes in which a fast form's choice cannot be relied on: rounding may have changed a cost by more than about a part
-/// in 10^10, or no candidate was left that costs as little as one that was met. Where the covariance is not finite the trial
-/// has failed, and where the limit is not positive every candidate lies above it: there the choice does not matter.
+/// The lanes in which a fast form's choice is not reliable: rounding may have changed a cost by more than about one
+/// part in 10^10, or no candidate was left with a cost as low as one that was evaluated. Where the covariance is not
+/// finite the trial has failed, and where the limit is not positive every candidate lies above it: there the choice
+/// does not matter.
 template <class Layout, class Real>
 Mask<Real> doubtful(const FastChoice<Real>& fast, Real limit, Real lost, const PlannerWorkspace<Layout, Real>& work) {
     const Mask<Real> matters = both(work.space.prior.constant < without_limit<Real>(), limit > Real(0));
@@ -133,8 +135,8 @@ Mask<Real> doubtful(const FastChoice<Real>& fast, Real limit, Real lost, const P
     return both(matters, negated(both(accurate, found)));
 }
 
-/// The best control from pose k - 1 to k, given the belief at pose k - 1: by a fast form, and by the plain one in lanes where
-/// that may err.
+/// The best control from pose k - 1 to k, given the belief at pose k - 1: by a fast form, and by the direct one in
+/// lanes where the fast one is not reliable.
 template <class Layout, class Real, int capacity>
 Choice<Real> choose(const Belief<Real, capacity>& belief, const ControlParameters& control,
                     const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,

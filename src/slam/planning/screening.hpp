@@ -4,9 +4,10 @@
 //   P   covariance before the robot moves, all but the fresh heading noise added, edges taken in; heading, position, f
 //   u   a candidate's move in the world, a = J u; d0 = f_j - r before the move; rows H0_j = [-J d0_j, -I, I]
 //   r_j believed variance of sighting j; v_j = 1/(kappa + r_j), 0 where unseen
-// In the old heading H0 does not depend on the candidate. Without the fresh heading noise, and with kappa below every
-// eigenvalue of H0 P H0', trace(P+) is convex in v: its tangent at a reference bounds every candidate from below, for
-// some twenty operations each. Those whose bound lies above the cost of a candidate that is known exactly are out.
+// In the frame of the old heading H0 does not depend on the candidate. Without the fresh heading noise, and with kappa
+// below every eigenvalue of H0 P H0', trace(P+) is convex in v: its tangent at a reference bounds every candidate from
+// below, for some twenty operations each. Candidates whose bound lies above an exact cost that is already known are
+// discarded.
 
 #include "numeric/lane.hpp"
 #include "slam/planning/turned_trace.hpp"
@@ -14,7 +15,7 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Candidates screened at a time.
+/// Number of candidates that are screened at a time.
 inline constexpr int screening_chunk = 128;
 
 template <class Layout, class Real>
@@ -22,8 +23,8 @@ struct ScreeningWorkspace {
     Real value[screening_chunk][Layout::feature_capacity];       ///< v_j of each candidate, where the noise is ranged
     Mask<Real> seen[screening_chunk][Layout::feature_capacity];  ///< where it is constant: whether v_j is not 0
     Symmetric<Real, Layout::capacity> covariance;                ///< of the reference
-    std::uint8_t left[screening_chunk];                          ///< the lanes in which each candidate is left, as bits
-    std::uint64_t queue[lanes<Real>][screening_chunk / 64];      ///< the candidates that are left in each lane, as bits
+    std::uint8_t left[screening_chunk];                          ///< bits of the lanes in which each candidate is left
+    std::uint64_t queue[lanes<Real>][screening_chunk / 64];      ///< bits of the candidates that are left in each lane
 };
 
 /// kappa: with fresh feature noise q, and at most lambda for the largest eigenvalue of the edge graph's Laplacian,
@@ -33,7 +34,7 @@ inline double least_feature_variance(const FilterParameters& filter) {
     return filter.variance_feature > 0 ? 1 / (1 / filter.variance_feature + edges) : 0;
 }
 
-/// What v_j is made of: kappa, and the believed sigma at a range q, offset + slope q but at least near.
+/// The parameters of v_j: kappa, and the assumed sigma at a range q, offset + slope q but at least near.
 struct ValueParameters {
     double kappa = 0, near = 0, offset = 0, slope = 0;
     double constant = 0;  ///< v_j where the noise is constant
@@ -46,8 +47,8 @@ inline ValueParameters value_parameters(const SensorParameters& sensor, const Fi
             factor * sensor.sigma_slope, 1 / (believed * believed + kappa)};
 }
 
-/// v_j at a squared range within the sensor's, not below it: sigma grows with the range, so a range from below gives a
-/// value from above. The margin covers the rounding.
+/// An upper bound on v_j at a squared range within the sensor's: sigma grows with the range, so a lower bound on the
+/// range gives an upper bound on v_j. The margin covers the rounding.
 template <bool ranged, class Real>
 Real greatest_value(const ValueParameters& parameters, Real squared) {
     if constexpr (!ranged) return Real(parameters.constant * (1 + 1e-12));
@@ -62,8 +63,9 @@ inline double largest_sighting_value(const ValueParameters& parameters, const Se
     return 1 / (parameters.near * parameters.near + parameters.kappa);
 }
 
-/// What a move costs the reference, in units of v per |u|^2: a move lets the heading's variance into the position's.
-/// How much of trace(P) one v is worth is guessed: any reference will do, a good one leaves fewer candidates to decide.
+/// The price of a move when the reference is chosen, in units of v per |u|^2: a move lets the heading's variance into
+/// the position's. How much of trace(P) one v is worth is a guess: any reference is valid, a good one leaves fewer
+/// candidates to evaluate.
 template <class Layout, class Real, int capacity>
 Real price_of_moving(const Belief<Real, capacity>& still, const FilterParameters& filter, const Layout& layout,
                      double kappa) {
@@ -83,7 +85,7 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
     Real most = Real(-std::numeric_limits<double>::infinity()), reference = Real(first);
     const Real price = price_of_moving(still, filter, layout, parameters.kappa);
     const Vector2<Real> position = point_at(still.mean, Layout::position);
-    // Copies, of which the compiler knows that no value written here changes them.
+    // Local copies: the compiler knows that no value written here changes them.
     Vector2<Real> feature[Layout::feature_capacity];
     each(zero, layout.features(), [&](auto j) { feature[j] = point_at(still.mean, Layout::feature(j)); });
     for (int i = 0; i < count; ++i) {
@@ -107,7 +109,7 @@ CREDENCE_FLAT Real value_candidates(const Belief<Real, capacity>& still, const R
     return reference;
 }
 
-/// v_j of candidate i, as value_candidates found it.
+/// v_j of candidate i, as computed by value_candidates.
 template <bool ranged, class Layout, class Real, class Index>
 Real value_of(const ScreeningWorkspace<Layout, Real>& work, const ValueParameters& parameters, int i, Index j) {
     if constexpr (ranged) return work.value[i][j];
@@ -144,10 +146,10 @@ TurnedTrace<Real> in_body_frame(const TurnedTrace<Real>& trace, const Rotation<R
 /// The tangent at a reference, by the move in the body frame.
 template <class Layout, class Real>
 struct Tangent {
-    TurnedTrace<Real> rest;                            ///< what no v_j changes
+    TurnedTrace<Real> rest;                            ///< the part that does not depend on any v_j
     TurnedTrace<Real> slope[Layout::feature_capacity]; ///< -d trace / d v_j
 
-    /// The lowest cost that is left to a candidate whose v_j are value(j).
+    /// The lower bound on the cost of a candidate whose v_j are value(j).
     template <class Value>
     Real bound(const Point& move, const Layout& layout, const Value& value) const {
         const Vector2<Real> v = broadcast<Real>(move);
@@ -161,7 +163,7 @@ struct Tangent {
     }
 };
 
-/// The tangent where the reference has moved to `there`.
+/// The tangent at the reference, whose move is `there`.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const Belief<Real, capacity>& still,
                                                const Rotation<Real>& heading, const FilterParameters& filter,
@@ -204,7 +206,7 @@ inline std::uint64_t transposed_bits(std::uint64_t rows) {
     return rows;
 }
 
-/// Queues in each lane those of `count` candidates that are left in it.
+/// Queues, in each lane, those of `count` candidates that are not discarded in it.
 template <class Layout, class Real>
 void queue_left(int count, ScreeningWorkspace<Layout, Real>& work) {
     for (auto& queue : work.queue)
@@ -234,7 +236,7 @@ CREDENCE_FLAT void screen(const Tangent<Layout, Real>& tangent, Real threshold, 
     queue_left(count, work);
 }
 
-/// Takes the first candidate, counted from `first`, out of each lane's queue; which lanes had one.
+/// Removes the first candidate, counted from `first`, from each lane's queue. Returns the lanes that had one.
 template <class Layout, class Real>
 Mask<Real> take_queued(const ControlParameters& control, int first, ScreeningWorkspace<Layout, Real>& work,
                        Command<Real>& command) {

@@ -1,6 +1,6 @@
 #pragma once
-// How a trace depends on a candidate's move. F = T is the identity but for T[r, theta] = a = J u, u the move in
-// the world; so trace(T A T') is a polynomial in a whose coefficients no candidate changes.
+// The dependence of a trace on a candidate's move. F = T is the identity but for T[r, theta] = a = J u, u the move in
+// the world; so trace(T A T') is a polynomial in a whose coefficients are the same for all candidates.
 
 #include "slam/planning/controller.hpp"
 #include "numeric/lane.hpp"
@@ -40,7 +40,7 @@ Vector2<Real> world_move(const Rotation<Real>& heading, const Vector2<Real>& mov
     return move;
 }
 
-/// Puts a candidate's control into one lane.
+/// Writes a candidate's control into one lane.
 template <class Real>
 void fetch(const ControlParameters& control, int candidate, int lane, Command<Real>& command) {
     set_lane(command.turn, lane, control.candidates[candidate].turn);
@@ -48,7 +48,7 @@ void fetch(const ControlParameters& control, int candidate, int lane, Command<Re
     set_lane(command.move.y, lane, control.candidates[candidate].move.y);
 }
 
-/// The controls of the candidates numbered in each lane; none, where the number is negative, stands still.
+/// The controls of the candidates numbered in each lane; where the number is negative, the control is 0.
 template <class Real>
 Command<Real> fetch_each(const ControlParameters& control, const Real& candidates) {
     Command<Real> command;

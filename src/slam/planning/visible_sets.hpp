@@ -1,21 +1,21 @@
 #pragma once
-// The planner of the translation model where the noise is constant. What a candidate costs depends on nothing
-// but which features it sees: of the candidates that see the same, the last one wins, and each set is priced once.
+// The planner of the translation model where the noise is constant. A candidate's cost depends only on which features
+// it sees: of the candidates that see the same set the last one wins, and the cost of each set is computed once.
 
 #include "slam/planning/measurement_space.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Up to this many features, every set of them has a place in a table.
+/// Up to this many features, costs are tabulated by set of features.
 inline constexpr int largest_tabled_count = 6;
 
-/// What each candidate sees. Lanes are bits of a byte, lane 0 lowest; the bytes of eight candidates are taken together,
-/// as a word.
+/// The features that each candidate sees. Lanes are bits of a byte, lane 0 lowest; the bytes of eight candidates form a
+/// 64-bit word.
 template <class Real>
 struct VisibleSets {
     static constexpr int capacity = 1 << largest_tabled_count;
-    static constexpr int chunk = 128;  ///< candidates that are kept at a time
+    static constexpr int chunk = 128;  ///< number of candidates that are kept at a time
     static_assert(lanes<Real> <= 8);
     unsigned char seeing[largest_tabled_count][chunk];  ///< lanes that see feature j, by candidate of the chunk
     unsigned offered[capacity];                         ///< lanes in which some candidate sees the set
@@ -35,12 +35,12 @@ CandidateChunk chunk_from(int first, const ControlParameters& control) {
     return {first, after < control.candidate_count ? after : control.candidate_count};
 }
 
-/// Looks from every candidate of a chunk.
+/// Determines what every candidate of a chunk sees.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void look_from(const CandidateChunk& chunk, const Belief<Real, capacity>& still,
                              const ControlParameters& control, const SensorParameters& sensor, const Layout& layout,
                              VisibleSets<Real>& sets) {
-    // Copies, of which the compiler knows that no byte written here changes them.
+    // Local copies: the compiler knows that no byte written here changes them.
     const Vector2<Real> position = point_at(still.mean, Layout::position);
     const SensorParameters eye = sensor;
     Vector2<Real> feature[largest_tabled_count];
@@ -52,19 +52,20 @@ CREDENCE_FLAT void look_from(const CandidateChunk& chunk, const Belief<Real, cap
             sets.seeing[j][i - chunk.first] = static_cast<unsigned char>(lane_bits(seen));
         });
     }
-    // The last candidate fills the last word: once or more often is the same.
+    // The last candidate fills the rest of the last word: repeating it does not change the result.
     for (int i = chunk.last - chunk.first; i < 8 * chunk.words(); ++i)
         each(zero, layout.features(), [&](auto j) { sets.seeing[j][i] = sets.seeing[j][i - 1]; });
 }
 
-/// The bytes of a word, all in one; and a word with the same byte for each of its candidates.
+/// The bitwise or of a word's bytes; and a word with the same byte for each of its candidates.
 inline unsigned any_of_word(std::uint64_t word) {
     for (int half = 32; half >= 8; half /= 2) word |= word >> half;
     return word & 0xff;
 }
 inline std::uint64_t all_of_word(unsigned byte) { return byte * std::uint64_t{0x0101010101010101}; }
 
-/// By set, the lanes in which the candidates of a word see just this set: that_see [2^M]. Feature j is bit j of a set.
+/// For each set, the lanes in which a candidate of a word sees exactly this set: that_see [2^M]. Feature j is bit j of
+/// a set.
 template <class Layout, class Real>
 CREDENCE_INLINE void tell_apart(int word, const Layout& layout, const VisibleSets<Real>& sets,
                                 std::uint64_t* that_see) {
@@ -80,7 +81,7 @@ CREDENCE_INLINE void tell_apart(int word, const Layout& layout, const VisibleSet
     });
 }
 
-/// Finds the sets that candidates see. The looks of the last chunk stay in `sets`.
+/// Finds the sets that candidates see. The visibilities of the last chunk stay in `sets`.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void gather_sets(const Belief<Real, capacity>& still, const ControlParameters& control,
                                const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
@@ -122,11 +123,11 @@ CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const
     });
 }
 
-/// Where some candidate sees the set.
+/// The lanes in which some candidate sees the set.
 template <class Real>
 Mask<Real> offered(int set, const VisibleSets<Real>& sets) { return mask_of_bits<Real>(sets.offered[set]); }
 
-/// The least cost of the sets that some candidate sees; infinity where there is none.
+/// The least cost of the sets that some candidate sees; infinity where there are none.
 template <class Real>
 Real least_cost(int set_count, const VisibleSets<Real>& sets) {
     Real least = without_limit<Real>();
@@ -135,8 +136,9 @@ Real least_cost(int set_count, const VisibleSets<Real>& sets) {
     return least;
 }
 
-/// Of a chunk's candidates that see a good set, in each of the `undecided` lanes the last becomes the winner. Returns
-/// the lanes that have one. good [2^M]: for each set the lanes in which it is good, for all of a word's candidates.
+/// Of a chunk's candidates that see a good set, the last becomes the winner in each of the `undecided` lanes. Returns
+/// the lanes that have a winner. good [2^M]: for each set the lanes in which it is good, for all of a word's
+/// candidates.
 template <class Layout, class Real>
 CREDENCE_FLAT unsigned take_last(const CandidateChunk& chunk, const std::uint64_t* good, unsigned undecided,
                                  const Layout& layout, const VisibleSets<Real>& sets, Real& winner) {
@@ -155,8 +157,9 @@ CREDENCE_FLAT unsigned take_last(const CandidateChunk& chunk, const std::uint64_
     return any_of_word(decided);
 }
 
-/// The number of the candidate that wins in each lane, -1 for none: of the sets that some candidate sees, those within
-/// 1e-12 of the least cost; of those, the last candidate. `sets` holds the looks of the last chunk.
+/// The number of the candidate that wins in each lane, -1 where there is none: among the sets that some candidate sees,
+/// those within 1e-12 of the least cost are good, and the last candidate that sees a good set wins. `sets` holds the
+/// visibilities of the last chunk.
 template <class Layout, class Real, int capacity>
 Real last_of_best(Real best, const Belief<Real, capacity>& still, const ControlParameters& control,
                   const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {

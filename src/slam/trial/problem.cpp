@@ -142,8 +142,8 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     fill_control();
 }
 
-/// C D C' = B'B by outer products, B the edges' incidence matrix. Its pivots are 0 at the last feature of each part of
-/// the graph; the smallest other one is 1/largest_feature_count or more.
+/// C D C' = B'B by outer products, B the edges' incidence matrix. Its pivots are 0 at the last feature of each
+/// connected component of the graph; the smallest other pivot is at least 1/largest_feature_count.
 void Problem::factor_edges() {
     const std::size_t M = scenario_.features.positions.size();
     std::vector<double> laplacian(M * M);

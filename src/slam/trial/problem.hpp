@@ -1,5 +1,5 @@
 #pragma once
-// A scenario made ready: the tables that its equations read, computed once.
+// The tables that a scenario's equations read, computed once for all trials.
 
 #include "slam/planning/horizon.hpp"
 #include <credence/slam_columns.hpp>
@@ -12,10 +12,10 @@ Point polar(double s, double angle);
 /// The range in which a feature is seen, both ends included.
 void set_range(SensorParameters& sensor, double range_min, double range_max);
 
-/// [blocks, coverage_level_count] quantiles of chi-square with as many degrees as each block has.
+/// [groups, coverage_level_count] quantiles of chi-square with as many degrees of freedom as each group has components.
 std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& blocks);
 
-/// What a trial of any world of ours reads: plain numbers and pointers into its problem.
+/// The data that a trial of any built-in world reads: plain numbers, and pointers into its problem.
 struct CommonView {
     int poses = 0, features = 0, state_size = 0;
     SensorParameters sensor;
@@ -26,13 +26,14 @@ struct CommonView {
     const double* coverage_bounds = nullptr;  ///< [group_count, coverage_level_count] quantiles of chi-square
 };
 
-/// What a trial in the deforming world reads beside that.
+/// The further data that a trial in the deformable world reads.
 struct ProblemView : CommonView {
     Process process = Process::heading;
     WorldParameters world;
     ControlParameters control;
 
-    /// Steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last pose.
+    /// Number of steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last
+    /// pose.
     int steps_ahead(Controller controller, int k) const {
         if (controller != Controller::horizon) return 1;
         return control.horizon < poses - k ? control.horizon : poses - k;
@@ -66,13 +67,13 @@ private:
     ProblemView view_;
 };
 
-/// Translation t_k of the features, k = 0 ... K - 2 [model.md, Truth].
+/// Translation t_k of the features, k = 0 ... K - 2 [docs/model.md, Truth].
 std::vector<Point> feature_translations(const DeformableSettings& scenario);
-/// Known local deformation o_{k,j}, [K, M] row-major [model.md, Truth].
+/// Known local deformation o_{k,j}, [K, M] row-major [docs/model.md, Truth].
 std::vector<Point> sway_offsets(const DeformableSettings& scenario);
-/// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [model.md, Controllers].
+/// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [docs/model.md, Controllers].
 std::vector<Control> fixed_controls(const DeformableSettings& scenario);
-/// The planners' candidates in the order that decides ties [model.md, Controllers].
+/// The planners' candidates in the order that decides ties [docs/model.md, Controllers].
 std::vector<Control> planner_candidates(const DeformableSettings& scenario);
 
 }  // namespace credence

@@ -1,7 +1,7 @@
 #pragma once
-// A belief compared with the truth, pose by pose: what a trial reports [model.md, Reported per trial].
+// The step evaluation: compares a belief with the truth at every pose [docs/model.md, Reported per trial].
 //
-//   e  error x^ - x [n], P  covariance [n, n]; NEES e' P^-1 e of the whole state and of each block, with its own P
+//   e  error x^ - x [n], P  covariance [n, n]; NEES e' P^-1 e of the whole state and of each group, with its own P
 
 #include "slam/estimators/invariant_chart.hpp"
 #include "slam/trial/problem.hpp"
@@ -29,7 +29,7 @@ struct Sums {
     Real traces = Real(0);  ///< over the steps
 };
 
-/// x^ - x, heading wrapped. Shape [n].
+/// x^ - x, heading wrapped. [n].
 template <class Layout, class Real, int state_capacity, int feature_capacity>
 void estimation_error(const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
                       const Layout& layout, Real* error) {
@@ -51,7 +51,7 @@ Real squared_pose_error(const Real* error) {
     return sum;
 }
 
-/// Sorts out what went wrong at pose k, if anything did. `squared_errors` says nothing where a matrix was not positive
+/// Notes the trouble at pose k, if there is any. `squared_errors` is meaningless where a matrix was not positive
 /// definite.
 template <class Real, int capacity>
 void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_errors, Mask<Real> positive_definite,
@@ -72,19 +72,20 @@ void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_erro
     outcome.note(largest > Real(divergence_bound), Status::diverged, k);
 }
 
-/// Whether note_trouble could find anything. The diagonal speaks for a positive definite P: |P_ij| <= max P_ii, and an
-/// entry that is not finite spoils a pivot.
+/// Whether note_trouble could find anything. For a positive definite P the diagonal suffices: |P_ij| <= max P_ii, and
+/// an entry that is not finite makes a pivot NaN or infinite.
 template <class Layout, class Real, int capacity>
 bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real squared_errors,
              Mask<Real> positive_definite) {
-    Real total = absolute(squared_errors);  // no less than any of its parts, and not finite if one of them is not
+    Real total = absolute(squared_errors);  // at least each of its terms, and not finite if one of them is not
     each(zero, layout.size(), [&](auto i) {
         total = total + (absolute(belief.mean[i]) + absolute(belief.covariance.entry[i][i]));
     });
     return any(negated(both(positive_definite, total <= Real(divergence_bound))));
 }
 
-/// A belief's errors, judged: NEES of every block, in the order of Layout's, with each block's own P; e_i/sqrt(P_ii).
+/// Normalised errors of a belief: NEES of every group, in the order of Layout's, with each group's own P;
+/// e_i/sqrt(P_ii).
 template <class Layout, class Real>
 struct StepEvaluation {
     Real nees[Layout::largest_group_count], standardised_error[Layout::capacity];
@@ -110,7 +111,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
         if (i == 0) nees[Layout::group_all] = value;
         if (i == Layout::pose_size) nees[Layout::group_features] = value;
         if (i == n - two) nees[Layout::group_feature(layout.features() - one)] = value;
-        // Done here, the roots fill the time in which the elimination waits for its pivots.
+        // Computed here, the roots overlap with the elimination, which waits for its pivots.
         standardise(i);
         if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
     });
@@ -129,7 +130,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
     });
 }
 
-/// square(i) of a state's components, added up by block: reported(sum) in the order of Layout's blocks.
+/// Sums square(i) of the state's components by group and calls reported(sum) in the order of Layout's groups.
 template <class Real, class Layout, class Square, class Reported>
 CREDENCE_INLINE void add_by_group(const Layout& layout, const Square& square, Reported&& reported) {
     constexpr auto r = Layout::position;
@@ -152,7 +153,7 @@ CREDENCE_INLINE void add_by_group(const Layout& layout, const Square& square, Re
     each(zero, layout.features(), [&](auto j) { reported(of_feature(j)); });
 }
 
-/// Judges the belief at pose k against the truth: writes the step's series (in the order of step_series) and sums.
+/// Evaluates the belief at pose k: writes the step's series (in the order of step_series) and adds to the sums.
 template <class Layout, class Real, int state_capacity, int feature_capacity>
 CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout,
                               const Belief<Real, state_capacity>& belief, const Truth<Real, feature_capacity>& truth,
@@ -170,7 +171,7 @@ CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout
     near_at_hand(layout, work, [&](auto& left) CREDENCE_INLINE_LAMBDA {
         evaluate_groups(belief, layout, error, left, evaluation);
     });
-    // What is reported is P times a factor, 1 but for tests of the judge.
+    // The reported covariance is P times a factor, which is 1 except in tests of the verdict.
     const double reported = problem.filter.covariance_factor;
     const Mask<Real> positive_definite = both(update.positive_definite, evaluation.positive_definite);
     const Real whole = evaluation.nees[Layout::group_all] * Real(1 / reported);

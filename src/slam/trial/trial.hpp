@@ -1,25 +1,24 @@
 #pragma once
-// One trial of one arm, poses in order. The page to open first.
+// One trial of one arm, pose by pose. To understand the simulation, read this file first.
 //
-// Templates on `Real`: with double a trial is what it reads like; with a pack of doubles it is that many trials at
-// once.
+// The code is a template on `Real`: with double it runs a single trial, with a pack of doubles as many trials at once.
 
 #include "slam/trial/workspace.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-// An observer watches a trial without touching it: the engine's (detail.hpp), replay's, which writes the trajectory, and
-// those of the tests. Its face: started, planned, predicted and updated, as called below.
+// An observer watches a trial without changing it: the engine's (src/engine/detail.hpp), replay's, which writes the
+// trajectory, and those of the tests. It has the functions started, planned, predicted and updated, as called below.
 
-/// What one trial needs room for.
+/// The workspace of one trial.
 template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
 struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
     PlannerWorkspace<Layout, Real> planner;
     HorizonWorkspace<Layout, Real> horizon;
 };
 
-/// One trial of one arm. `columns` [column_count]; `series` [series_count, K - 1]; both are written whole.
+/// One trial of one arm. Every value of `columns` [column_count] and `series` [series_count, K - 1] is written.
 template <class Layout, class Real, class Estimating, class Noise, class Observer>
 void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
                Workspace<Layout, Real, Estimating>& work, Real* columns, Real* all_series) {
@@ -47,7 +46,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     observer.started(layout, truth, belief);
 
     for (int k = 1; k < problem.poses; ++k) {
-        // Choose where to go, from what is believed.
+        // Choose the control, from the belief.
         Command<Real> command = command_from<Real>(problem.control.fixed[k - 1]);
         if (controller != Controller::fixed) {
             command = plan_ahead(belief, problem.control, problem.filter, problem.sensor, layout, k,
@@ -55,7 +54,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
             observer.planned(k, layout, belief);
         }
 
-        // The world moves on.
+        // Move the robot and the features.
         draws.draw(noise, k);
         move_features(truth, problem.world, layout, k, draws);
         move_robot(truth, problem.world, command, draws);

@@ -1,5 +1,5 @@
 #pragma once
-// What the trials of every world of ours need room for.
+// The workspace of a trial that all built-in worlds have in common.
 
 #include "slam/estimators/estimator.hpp"
 #include "slam/trial/step_evaluation.hpp"
@@ -7,7 +7,7 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// One trial's. Sixty-four features in lanes would not fit a thread's stack.
+/// The workspace of one trial. With 64 features in lanes it is too large for a thread's stack.
 template <class Layout, class Real, class Estimating = KalmanFilter<Layout, Real>>
 struct CommonWorkspace {
     static_assert(meets_the_contract<Estimating, Layout, Real>());
