@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# Label contributing: the diffs of CONTRIBUTING.md, applied one after the other to a copy of this tree, build, and each does
+# what the page says. Its console blocks show what the program prints.
+set -euo pipefail
+for tool in git cmake c++; do
+  command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
+done
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+tree=$work/tree build=$work/build
+mkdir "$tree" "$work/run"
+git ls-files -z | xargs -0 cp --parents -t "$tree"
+fail() { echo "CONTRIBUTING.md, $1" >&2; exit 1; }
+
+# The diffs in their order, N-NAME.diff with the heading that each stands under.
+awk -v folder="$work" '
+  /^```diff$/ { out = sprintf("%s/%d-%s.diff", folder, ++count, heading); next }
+  /^```/ { out = "" }
+  out != "" { print >out }
+  out == "" && /^#/ { heading = $0; sub(/^#+ (An? )?/, "", heading); gsub(/[^A-Za-z]+/, "_", heading) }' CONTRIBUTING.md
+checked="column estimator world report_format scenario_key"
+found=$(cd "$work" && ls *.diff | sed -e 's/^[0-9]*-//' -e 's/\.diff$//' | xargs)
+[ "$found" = "$checked" ] || fail "diffs: there are \"$found\", and this script checks \"$checked\""
+for diff in "$work"/*.diff; do
+  (cd "$tree" && git apply "$diff") || fail "$(basename "$diff"): does not apply"
+done
+
+# What is checked does not depend on the optimiser; so the cheapest build will do.
+generator=() launcher=()
+if command -v ninja >/dev/null; then generator=(-G Ninja); fi
+if command -v ccache >/dev/null; then
+  export CCACHE_BASEDIR=$work CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache)
+fi
+{ cmake -S "$tree" -B "$build" "${generator[@]}" "${launcher[@]}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCREDENCE_TARGET_V4=OFF -DCREDENCE_WRITTEN_OUT=0 -DCREDENCE_MPI=OFF &&
+  cmake --build "$build" --target credence tracker write_record -j "$(nproc)"; } >"$work/log" 2>&1 ||
+  { tail -n 60 "$work/log"; fail "diffs: the tree does not build with them"; }
+credence=$build/credence scenario=$tree/experiments/seed/ekf-circle-constant.ini
+cd "$work/run"
+
+# mean FILE ARM COLUMN: that column's mean in the report of a file.
+mean() {
+  "$credence" "${report:-report}" "$1" --format csv |
+    awk -F, -v arm="$2" -v column="$3" '$2 == arm && $5 == column { print $7; found = 1 } END { exit !found }' ||
+    fail "$(basename "$1") has no column $3 of $2"
+}
+# run NAME OPTION...: a small study of the scenario, on the fixed path, in NAME.h5.
+run() { "$credence" run "$scenario" --trials 300 --quiet --set arms.controllers=fixed -o "$1.h5" "${@:2}"; }
+below() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > 0 && a < b) }'; }
+
+# A column: of two poses the first has no error, so that the last one's is the sum; of twenty it is less.
+run two --set scenario.poses=2
+[ "$(mean two.h5 fixed.ekf last_pose_error)" = "$(mean two.h5 fixed.ekf pose_error)" ] || fail "A column: last_pose_error is wrong"
+run twenty
+below "$(mean twenty.h5 fixed.ekf last_pose_error)" "$(mean twenty.h5 fixed.ekf pose_error)" || fail "A column: last_pose_error is wrong"
+"$build/tests/write_record" record.h5
+report=judge
+below "$(mean record.h5 record last_pose_error)" "$(mean record.h5 record pose_error)" || fail "A column: it is wrong in a record"
+report=report
+
+# An estimator: it runs beside another one, and its covariance is larger.
+run both --set arms.estimators=ekf,fading
+below "$(mean both.h5 fixed.ekf mean_trace_P)" "$(mean both.h5 fixed.fading mean_trace_P)" || fail "An estimator: fading does not fade"
+
+# A world: the filter that knows its model is consistent.
+"$build/tests/tracker" run "$tree/experiments/own_filter/drift.ini" --trials 10000 --quiet -o drift.h5
+"$credence" report drift.h5 --require consistent >drift || { cat drift; fail "A world: its filter is not consistent"; }
+
+# A report format: a table with the verdict of each arm, of results and of records.
+"$credence" report both.h5 --format markdown >both.md
+[ "$(wc -l <both.md)" -eq 4 ] && grep -qE '^\| ekf-circle-constant/fixed\.fading \| [a-z]+ \| [0-9.]+ ± [0-9.]+ \|' both.md ||
+  { cat both.md; fail "A report format: it is not the table"; }
+"$credence" judge record.h5 --quiet --format markdown | grep -qE '^\| [A-Za-z_]+/record \| consistent \|' ||
+  fail "A report format: judge does not give it"
+
+# A scenario key: it is shown, takes effect, and is refused out of its range.
+"$credence" show | grep -qx 'filter.initial = 1' || fail "A scenario key: it is not shown"
+run told --set noise.initial_position=1
+run mistold --set noise.initial_position=1 --set filter.initial=0.5
+below "$(mean told.h5 fixed.ekf nees_ratio)" "$(mean mistold.h5 fixed.ekf nees_ratio)" || fail "A scenario key: it has no effect"
+status=0
+run refused --set filter.initial=0 2>refusal || status=$?
+[ $status -eq 2 ] && grep -q 'invalid filter.initial=0 (' refusal || { cat refusal; fail "A scenario key: 0 is not refused"; }
+
+cd "$tree"
+CREDENCE=$credence bash tests/docs/check.sh CONTRIBUTING.md
+echo "five diffs apply, build and do what CONTRIBUTING.md says"
