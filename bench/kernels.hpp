@@ -1,5 +1,5 @@
 #pragma once
-// Parts of the engine by themselves, compiled once for each instruction set like the engine's units.
+// Parts of the engine by themselves, compiled once for each instruction set like the engine's targets.
 
 #include "slam/trial/problem.hpp"
 #include <cstdint>

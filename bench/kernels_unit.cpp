@@ -1,4 +1,4 @@
-// One instruction set's kernels. As in the engine's units, nothing here may emit a symbol outside the namespace.
+// One instruction set's kernels. As in the engine's targets, nothing here may emit a symbol outside the namespace.
 
 #include "numeric/lane.hpp"
 #include "slam/trial/trial.hpp"

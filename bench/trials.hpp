@@ -1,5 +1,5 @@
 #pragma once
-// Whole trials: credence on every unit, and the baselines, on the same rows in the same run.
+// Whole trials: credence on every target, and the baselines, on the same rows in the same run.
 
 #include "kernels.hpp"
 #include "measure.hpp"

@@ -1,4 +1,4 @@
-// Lane_masks.hpp for AVX-512, in a namespace of its own as the engine's units are.
+// Lane_masks.hpp for AVX-512, in a namespace of its own as the engine's targets are.
 
 #include "lane_masks.hpp"
 

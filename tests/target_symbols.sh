@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The engine's units share no symbol: everything one defines for others to link is in its own namespace, and it calls
+# The engine's targets share no symbol: everything one defines for others to link is in its own namespace, and it calls
 # nothing but the C library. Else the linker could hand an old processor a new one's instructions.
-#   tests/unit_symbols.sh UNIT OBJECT...
+#   tests/target_symbols.sh TARGET OBJECT...
 set -euo pipefail
 unit=$1
 shift

@@ -64,7 +64,7 @@ std::vector<BuiltTarget> built_targets() {
 /// The target of this name; throws InputError where there is none that runs.
 Target forced_target(const std::string& name) {
     std::vector<std::string> runnable;
-    std::string why = "not a unit of this build";
+    std::string why = "this program was not built for it";
     for (const auto& [target, runs] : built_targets()) {
         if (runs && target.name == name) return target;
         if (runs)

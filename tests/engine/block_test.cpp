@@ -76,7 +76,7 @@ TEST_CASE("block: the same bits every time, others for another seed or index") {
     }
 }
 
-TEST_CASE("block: every unit gives the same bits") {
+TEST_CASE("block: every target gives the same bits") {
     const std::vector<Target> targets = runnable_targets();
     REQUIRE(targets.back().name == "portable");
     CHECK(best_target().simulate == targets.front().simulate);
@@ -92,7 +92,7 @@ TEST_CASE("block: every unit gives the same bits") {
     }
 }
 
-TEST_CASE("block: every unit agrees on which trials fail") {
+TEST_CASE("block: every target agrees on which trials fail") {
     const Problem problem(scenario_with(fragile));
     const Block first = run_block(problem, 3, 0, 256, runnable_targets().front());
     CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_targets().back())));

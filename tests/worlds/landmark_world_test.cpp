@@ -85,7 +85,7 @@ TEST_CASE("landmark world: what makes no sense is refused by the line it stands 
     CHECK_THAT(refusal_of("[arms]\nestimators = ekf, kf\n"), Contains("kf has no heading"));
 }
 
-TEST_CASE("landmark world: a block is its trials one by one, on every unit") {
+TEST_CASE("landmark world: a block is its trials one by one, on every target") {
     LandmarkSettings scenario;
     scenario.poses = 25;
     scenario.loop.sides = 20;

@@ -17,7 +17,7 @@ struct SimulationShape {
 /// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.
 inline constexpr int octet = 8;
 
-/// Consecutive trials of one arm, and where their results go. Results are the same bits from every unit. Sums are eight
+/// Consecutive trials of one arm, and where their results go. Results are the same bits from every target. Sums are eight
 /// running sums, trial i of the batch going to the one of i mod 8 in trial order; failed trials do not enter them.
 struct Batch {
     std::uint64_t root_seed = 0;
