@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/version.hpp"
+#include "embedded/completion.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -107,76 +108,11 @@ std::string keys_text() {
            joined(names, " ") + "\n           compopt -o nospace 2>/dev/null ;;\n    esac\n}\n\n";
 }
 
-/// The part that does not depend on the commands. bash splits words at the = in COMP_WORDBREAKS: they are joined again,
-/// and the part up to the = is removed from the replies, which replace only the part after it.
-const char* const helpers = R"(
-_credence_reply() {
-    local reply
-    while IFS= read -r reply; do
-        if [[ $COMP_WORDBREAKS != *=* ]]; then reply=${current%"$value"}$reply
-        elif [[ $value == *=* ]]; then reply=${reply#"${value%=*}="}
-        fi
-        COMPREPLY+=("$reply")
-    done
+/// The script with what depends on the commands in its places. bash splits words at the = in COMP_WORDBREAKS: the script
+/// joins them again, and removes the part up to the = from the replies, which replace only the part after it.
+std::string filled(std::string script, const std::string& place, const std::string& text) {
+    return script.replace(script.find(place), place.size(), text);
 }
-
-_credence_words() { _credence_reply < <(compgen -W "$*" -- "$value"); }
-
-# Words behind `section.key=`.
-_credence_words_after() {
-    local words=() word
-    for word in $1; do words+=("${value%%=*}=$word"); done
-    _credence_words "${words[@]}"
-}
-
-# Folders, and files of these extensions; `h5.journal` stands for the file that the journal is of.
-_credence_files() {
-    local extension
-    compopt -o filenames 2>/dev/null
-    if [[ $1 == '*' ]]; then _credence_reply < <(compgen -f -- "$value"); return; fi
-    _credence_reply < <(compgen -d -- "$value")
-    for extension; do
-        if [[ $extension == *.journal ]]; then
-            _credence_reply < <(compgen -f -X "!*.$extension" -- "$value" |
-                while IFS= read -r extension; do printf '%s\n' "${extension%.journal}"; done)
-        else
-            _credence_reply < <(compgen -f -X "!*.$extension" -- "$value")
-        fi
-    done
-}
-
-)";
-
-const char* const body_begin = R"(_credence() {
-    local words=() word i glued= current option= value= command= options= again=
-    COMPREPLY=()
-    for ((i = 1; i <= COMP_CWORD; ++i)); do
-        word=${COMP_WORDS[i]}
-        if [[ $word == = && ${#words[@]} -gt 0 ]]; then
-            words[-1]+='='; glued=1
-        elif [[ $glued ]]; then
-            words[-1]+=$word; glued=
-        else
-            words+=("$word")
-        fi
-    done
-    current=${words[-1]-} value=$current
-    if ((${#words[@]} > 1)); then command=${words[0]} option=${words[-2]}; fi
-    if [[ $current == --*=* ]]; then option=${current%%=*} value=${current#*=}; fi
-    case $command in
-)";
-
-const char* const body_end = R"(    esac
-    # Options that are not there yet, or may be given again.
-    local left=()
-    for word in $options; do
-        [[ " ${words[*]:0:${#words[@]}-1} " == *" $word "* && " $again " != *" $word "* ]] || left+=("$word")
-    done
-    _credence_words "${left[@]}"
-}
-
-complete -F _credence credence
-)";
 
 std::string script() {
     std::vector<std::string> names{"--help", "--version"};
@@ -186,9 +122,10 @@ std::string script() {
         cases += case_of(*command);
     }
     const std::string version = version_text();
+    std::string text = filled(embedded::completion, "@KEYS@", keys_text());
+    text = filled(text, "@NAMES@", joined(names, " "));
     return "# Completion of command lines for bash: " + version.substr(0, version.find('\n')) +
-           ", made by `credence completion bash`.\n" + helpers + keys_text() + body_begin + "        '') options='" +
-           joined(names, " ") + "' ;;\n" + cases + body_end;
+           ", made by `credence completion bash`.\n\n" + filled(text, "@COMMANDS@", cases);
 }
 
 }  // namespace

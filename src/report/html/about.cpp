@@ -2,6 +2,7 @@
 
 #include <credence/text.hpp>
 
+#include "embedded/terms.hpp"
 #include "report/html/page.hpp"
 
 #include <algorithm>
@@ -33,61 +34,6 @@ std::string run_again(const Report& report) {
     return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
            (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
 }
-
-constexpr char terms_text[] = R"(<section aria-labelledby="terms">
-<h2 id="terms">What the terms mean</h2>
-<dl>
-<dt>NEES, NEES/dim</dt>
-<dd>ε = eᵀP⁻¹e, the squared error of the estimate measured with the filter's own covariance P, of the whole state and
-of each
-block of it; over its dimension it is 1 on average where P is right, and ε is χ² with dim degrees of freedom at each
-step
-[Bar-Shalom, Li, Kirubarajan 2001, 5.4.2].</dd>
-<dt>NIS, NIS/m</dt>
-<dd>νᵀS⁻¹ν, the same of the innovations ν with the covariance S that the filter predicts for them; its sum over the
-trials is
-χ² with Σm degrees of freedom, m the rows that each trial measured [Bar-Shalom, Li, Kirubarajan 2001, 5.4.2].</dd>
-<dt>Verdict and margin</dt>
-<dd>With enough trials every filter differs from the ideal significantly, so the verdict asks for equivalence within a
-margin.
-Consistent: the 95 % interval of NEES/dim over the steps lies within 1 ± margin for the whole state and every block, and
-nothing else is found. Optimistic or pessimistic: some block, over all steps or at one, lies wholly above or below it,
-with
-Bonferroni's correction; mixed: both. Undecided: neither could be shown. Failed: more than the stated share of the
-trials failed, whatever the others say.</dd>
-<dt>Bands</dt>
-<dd>Where the mean of a consistent filter's NEES or NIS lies 95 % of the time: quantiles of χ²(N dim)/(N dim), or of
-χ²(Σm)/Σm;
-the joint band holds for all steps together (Bonferroni).</dd>
-<dt>Biased</dt>
-<dd>The mean over the trials of error/σ of one component differs from 0 at some step.</dd>
-<dt>Coverage</dt>
-<dd>The share of trials whose NEES is below the 50, 90, 95 or 99 % quantile of χ²; by step with Wilson's interval
-[Wilson 1927].</dd>
-<dt>Whiteness</dt>
-<dd>Correlation of the whitened innovations a lag of steps apart, 0 for a consistent filter [Bar-Shalom, Li,
-Kirubarajan 2001,
-5.4.3].</dd>
-<dt>NCI, I²</dt>
-<dd>Noncredibility index and inclination: how far, and to which side, the filter's NEES is from that with the sample's
-own mean
-square error; I² above 0 is optimistic [Li, Zhao 2006].</dd>
-<dt>trace(P), unseen, pose error</dt>
-<dd>Of each trial: the trace of the covariance after the last update, the features that were not seen, summed over the
-poses,
-and the squared error of the pose, summed over the poses.</dd>
-<dt>Intervals</dt>
-<dd>Student's intervals take one number a trial. The bootstrap's are percentiles of 2000 resampled means [Efron,
-Tibshirani 1993];
-trace(P) is heavy-tailed, so look at both.</dd>
-<dt>p (Holm), effect size, reduction</dt>
-<dd>Of the differences of pairs: the p of Wilcoxon's signed ranks, corrected for all pairs and figures [Holm 1979]; the
-mean over
-the standard deviation; and how many times more trials two arms with draws of their own would need, (V_A +
-V_B)/V_(A−B).</dd>
-</dl>
-</section>
-)";
 
 }  // namespace
 
@@ -150,6 +96,6 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     return html + "</section>\n"_html;
 }
 
-Html terms() { return Html::trusted(terms_text); }
+Html terms() { return Html::trusted(embedded::terms); }
 
 }  // namespace credence::page

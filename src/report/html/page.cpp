@@ -1,5 +1,6 @@
 // The report as one page: verdict, findings, tables, charts, scenario, provenance, how to reproduce it, terms.
 
+#include "embedded/style.hpp"
 #include "report/html/page.hpp"
 
 #include <credence/text.hpp>
@@ -34,7 +35,7 @@ Html head(const std::string& title) {
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 <link rel="icon" href="data:,">
 )"_html + element("title", escaped(title)) +
-           "\n<style>\n"_html + Html::trusted(std::string(style_sheet())) + "</style>\n"_html;
+           "\n<style>\n"_html + Html::trusted(embedded::style) + "</style>\n"_html;
 }
 
 Html intro(const Report& report, const PageOrigin& origin) {

@@ -21,9 +21,6 @@ struct Part {
     std::string id(const std::string& what) const { return scenario.name + "." + what; }
 };
 
-/// The style sheet: colours, layout, print.
-std::string_view style_sheet();
-
 /// A page of these parts.
 std::string document(const std::string& title, const Html& header, const Html& main);
 
