@@ -56,7 +56,7 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
     }
 }
 
-TEST_CASE("cli: the line that a stopped run prints ends with the results of one that nobody disturbed", "[long]") {
+TEST_CASE("cli: the command that a stopped run prints gives the results of an undisturbed run", "[long]") {
     const Workplace here;
     here.write("slow.ini", slow_world);
     const std::string arguments = "slow.ini --trials 2100 --quiet --commit-every 1 --threads 2 ";

@@ -154,7 +154,7 @@ TEST_CASE("ranks: what they sent is in the journal, and the run goes on with it 
     CHECK(bytes_of(folder / "x.h5") == bytes_of(folder / "one.h5"));
 }
 
-TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves what can be gone on with") {
+TEST_CASE("ranks: a stop keeps finished blocks, whichever rank got the signal, and can be resumed") {
     const TemporaryFolder folder;
     Asked asked = some();
     asked.trials = 200000;
@@ -187,7 +187,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
     }
 }
 
-TEST_CASE("ranks: the signal of another rank is told by name and rank") {
+TEST_CASE("ranks: the signal of another rank is reported by name and rank") {
     Office office(2);
     const Followers followers(office, [] { return std::string("SIGHUP"); });
     ThreadTransport own(office, 0);
@@ -204,7 +204,7 @@ TEST_CASE("ranks: the signal of another rank is told by name and rank") {
     CHECK_FALSE(run.study().complete);
 }
 
-TEST_CASE("ranks: one of which nothing is heard ends the run, and what the others did is committed") {
+TEST_CASE("ranks: a rank that falls silent ends the run, and the results of the others are committed") {
     const TemporaryFolder folder;
     const Asked asked = some();
     Office office(2);
@@ -226,7 +226,7 @@ TEST_CASE("ranks: one of which nothing is heard ends the run, and what the other
     CHECK(bytes_of(folder / "x.h5") == bytes_of(folder / "one.h5"));
 }
 
-TEST_CASE("ranks: where rank 0 fails the others go home") {
+TEST_CASE("ranks: where rank 0 fails the others end") {
     const TemporaryFolder folder;
     struct NoSpace : BlockKeeper {
         void take_back(std::size_t, std::int64_t) override {}
@@ -247,7 +247,7 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
     CHECK(refusal<Failure>([&] { run_study(study, {5000, 1, {}, {}, {}, &keeper, &leader}); }) == "no space");
 }
 
-TEST_CASE("ranks: those that are sent home before they had work go") {
+TEST_CASE("ranks: those that are dismissed before they had work end") {
     Office office(3);
     const Followers followers(office);
     ThreadTransport transport(office, 0);
@@ -255,7 +255,7 @@ TEST_CASE("ranks: those that are sent home before they had work go") {
     SUCCEED();
 }
 
-TEST_CASE("ranks: a record holds the blocks' columns, details and totals, and none that is torn is believed") {
+TEST_CASE("ranks: a message holds the blocks' columns, details and totals, and a torn one is refused") {
     const Asked asked = some();
     const Study whole = undisturbed(asked);
     const std::vector<ScenarioResults> empty{without_columns(scenario_of(asked.scenarios[0])),

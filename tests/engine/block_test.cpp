@@ -66,7 +66,7 @@ TEST_CASE("block: trials fill blocks of 256") {
     CHECK(trials_in_block(100, 0) == 100);
 }
 
-TEST_CASE("block: the same bits every time, others for another seed or index") {
+TEST_CASE("block: the same bits every time, others for another root seed or index") {
     const Problem problem(scenario_with({{"arms.controllers", "fixed"}}));
     const Block block = run_block(problem, 1, 2, 64);
     CHECK(same_bits(block, run_block(problem, 1, 2, 64)));
@@ -76,7 +76,7 @@ TEST_CASE("block: the same bits every time, others for another seed or index") {
     }
 }
 
-TEST_CASE("block: every unit gives the same bits") {
+TEST_CASE("block: every target gives the same bits") {
     const std::vector<Target> targets = runnable_targets();
     REQUIRE(targets.back().name == "portable");
     CHECK(best_target().simulate == targets.front().simulate);
@@ -92,7 +92,7 @@ TEST_CASE("block: every unit gives the same bits") {
     }
 }
 
-TEST_CASE("block: every unit agrees on which trials fail") {
+TEST_CASE("block: every target agrees on which trials fail") {
     const Problem problem(scenario_with(fragile));
     const Block first = run_block(problem, 3, 0, 256, runnable_targets().front());
     CHECK(same_bits(first, run_block(problem, 3, 0, 256, runnable_targets().back())));
@@ -131,7 +131,7 @@ TEST_CASE("block: long trials, simulated a few at a time, are the single trials 
         CHECK(test::same_bits(column(block, 0, column_pose_error, trial), single(scenario, Controller::fixed, 5, trial)[column_pose_error]));
 }
 
-TEST_CASE("block: arms stand in the scenario's order") {
+TEST_CASE("block: arms are in the scenario's order") {
     const Settings circle{{"features.path", "circle"}};
     const DeformableSettings usual = scenario_with(circle);
     const DeformableSettings turned = scenario_with(usual, {{"arms.controllers", "greedy, fixed"}});

@@ -34,7 +34,7 @@ bool runs_here(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("units: --version says which one runs, and the variable chooses it") {
+TEST_CASE("targets: --version says which one runs, and the variable chooses it") {
     const Workplace here;
     CHECK_THAT(here.shell("env -u CREDENCE_FORCE_UNIT " CREDENCE_PROGRAM " --version").out,
                Contains("instruction_set: " + runnable_targets().front().name + "\n"));
@@ -46,7 +46,7 @@ TEST_CASE("units: --version says which one runs, and the variable chooses it") {
     }
 }
 
-TEST_CASE("units: one that is unknown or that the processor cannot run is refused before any work") {
+TEST_CASE("targets: one that is unknown or that the processor cannot run is refused before any work") {
     const Workplace here;
     for (const std::string name : {"", "v5", "V3", "portable ", "v3", "v4"}) {
         if (runs_here(name)) continue;
@@ -66,7 +66,7 @@ TEST_CASE("units: one that is unknown or that the processor cannot run is refuse
     CHECK(forced(here, "v5", "--help").exit_code == 0);
 }
 
-TEST_CASE("units: each writes the same results, and /run says which one did") {
+TEST_CASE("targets: each writes the same results, and /run says which one did") {
     const Workplace here;
     const std::string study = "run " + seed_scenario("ekf-straight-ranged") + " " +
                               seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 --quiet -o ";
@@ -80,7 +80,7 @@ TEST_CASE("units: each writes the same results, and /run says which one did") {
         CHECK(here.shell("h5diff --exclude-path /run portable.h5 " + target.name + ".h5").exit_code == 0);
 }
 
-TEST_CASE("units: the committed digest is of this schema version, and the changelog has it") {
+TEST_CASE("targets: the committed digest is of this schema version, and the changelog has it") {
     const std::string schema = "schema " + std::to_string(schema_version);
     CHECK(source_file("tests/digest/expected.txt").starts_with(schema + "\n"));
     CHECK_THAT(source_file("CHANGELOG.md"), Contains("(" + schema + ")"));

@@ -227,7 +227,7 @@ TEST_CASE("aggregates: arms of one file are compared from totals, arms of severa
     CHECK(says(said, "--keep trials"));
 }
 
-TEST_CASE("aggregates: a precision is reached at the look at which the trials reach it; looks that are past are left out") {
+TEST_CASE("aggregates: a precision is reached at the analysis at which the trials reach it; past ones are left out") {
     StoppingRule rule{{parse_goal("trace_P=2%"), parse_goal("trace_P[greedy-fixed]=0.02")}, 4096, 256};
     const auto until = [&](Study& study, std::vector<std::int64_t>* looks = nullptr) {
         return run_until(study, rule, {0, 1, {}}, [&](const InterimAnalysis& look) {

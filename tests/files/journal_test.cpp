@@ -56,7 +56,7 @@ struct Interrupted {
 
 }  // namespace
 
-TEST_CASE("journal: cut at any byte, it has every record before the cut, and nothing else", "[long]") {
+TEST_CASE("journal: cut at any byte, it has every commit before the cut, and nothing else", "[long]") {
     const Interrupted run;
     REQUIRE(run.ends.size() == 1 + 3);
     REQUIRE(run.ends.back() == run.bytes.size());
@@ -83,7 +83,7 @@ TEST_CASE("journal: cut anywhere, the study that goes on ends the same") {
     CHECK(run.ends_the_same(run.bytes + std::string(100000, '\0'), expected));
 }
 
-TEST_CASE("journal: any byte flipped is refused, or costs no record before it", "[long]") {
+TEST_CASE("journal: any byte flipped is refused, or costs no commit before it", "[long]") {
     const Interrupted run;
     for (std::size_t at = 0; at < run.bytes.size(); ++at) {
         std::string bad = run.bytes;
@@ -100,7 +100,7 @@ TEST_CASE("journal: any byte flipped is refused, or costs no record before it", 
     }
 }
 
-TEST_CASE("journal: with any record damaged the study ends the same") {
+TEST_CASE("journal: with any commit damaged the study ends the same") {
     const Interrupted run;
     const Study expected = undisturbed(run.asked);
     for (std::size_t at = run.ends.front(); at < run.bytes.size(); at += 97) {

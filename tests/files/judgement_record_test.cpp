@@ -122,7 +122,7 @@ Record check_reference(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes them with gzip") {
+TEST_CASE("record: Gaussian errors and innovations with groups, as h5py writes them with gzip") {
     const Record record = check_reference("gaussian");
     const Scenario& scenario = record.results.scenario;
     CHECK(scenario.name == "record_gaussian");
@@ -172,13 +172,13 @@ TEST_CASE("record: of many troubles the first twenty are named and all are count
     CHECK(record.results.scenario.name == "record_many_troubles");
 }
 
-TEST_CASE("record: one trial without a dimension of its own, and without blocks") {
+TEST_CASE("record: one trial without a dimension of its own, and without groups") {
     const Record record = check_reference("single");
     CHECK(record.results.columns[column_pose_error].long_name ==
           "squared error of the whole state, summed over the steps");
 }
 
-TEST_CASE("record: single precision, chunks that fit nothing, and blocks as a list of texts") {
+TEST_CASE("record: single precision, chunks that fit nothing, and groups as a list of texts") {
     check_reference("singles");
 }
 
@@ -237,7 +237,7 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
     CHECK(read_record(path).trouble_count == 0);
 }
 
-TEST_CASE("record: parts hold whole chunks where there is room, so that each is uncompressed once") {
+TEST_CASE("record: parts hold whole chunks where they fit, so that each is decompressed once") {
     hdf5::read_file(reference_path("singles"), "", [](const Handle& root) {
         const RecordFile file(root, 20 * 5 * (4 + 16));  // of 50 trials in chunks of 7
         CHECK(file.part_at(0, 0).trials == 14);

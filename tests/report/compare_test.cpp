@@ -28,7 +28,7 @@ void fail(ScenarioResults& results, std::size_t arm, std::size_t first, std::siz
 
 }  // namespace
 
-TEST_CASE("compare: every figure is that of the columns") {
+TEST_CASE("compare: every number is computed from the columns") {
     const Study study = small_study(1, 300, 1);
     const CompareReport report = compared({{"small.h5", study}});
     REQUIRE(report.pairs.size() == 2);

@@ -33,7 +33,7 @@ std::size_t column_named(const ScenarioResults& results, const std::string& name
 
 }  // namespace
 
-TEST_CASE("charts: the evidence is the figures' totals over their dimension") {
+TEST_CASE("charts: the evidence is the series' totals over their dimension") {
     const Study study = two_charts();
     const ScenarioResults& results = study.scenarios.front();
     for (const ArmResults& arm : results.arms) {

@@ -85,7 +85,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("page: every figure of the JSON is on it") {
+TEST_CASE("page: every number of the JSON is on it") {
     const Report with_charts = charts_report();
     for (const Report* report : {&with_charts, &small_report()}) {
         std::vector<std::string> missing;

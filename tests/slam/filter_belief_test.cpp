@@ -97,7 +97,7 @@ SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd
     return result;
 }
 
-TEST_CASE("filter: squared errors of the whole state and of its blocks are e' P^-1 e") {
+TEST_CASE("filter: squared errors of the whole state and of its groups are e' P^-1 e") {
     constexpr int n = 9;
     for (unsigned seed = 1; seed < 50; ++seed) {
         const MatrixXd P = random_covariance(n, seed);

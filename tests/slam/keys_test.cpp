@@ -111,14 +111,14 @@ Settings with_change(const Influence& influence) {
 
 }  // namespace
 
-TEST_CASE("keys: every key is known to change a figure, or known to change none") {
+TEST_CASE("keys: every key is known to change a column, or known to change none") {
     std::set<std::string> covered = silent_keys, present;
     for (const Influence& influence : influences()) covered.insert(influence.key);
     for (const DeformableKey& key : scenario_keys()) present.insert(key.name);
     CHECK(covered == present);
 }
 
-TEST_CASE("keys: changing a key changes the figure that it should, in its direction, and no other that it should not") {
+TEST_CASE("keys: changing a key changes the column that it should, in its direction, and no other that it should not") {
     for (const Influence& influence : influences()) {
         CAPTURE(described(influence.base), influence.key, influence.value);
         const auto before = columns_of(scenario_with(influence.base), influence.controller);
@@ -156,7 +156,7 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
             }
 }
 
-TEST_CASE("keys: names, titles, units and published figures change no bit") {
+TEST_CASE("keys: names, titles, units and published values change no bit") {
     const DeformableSettings plain = scenario_with({});
     const DeformableSettings named = scenario_with({{"scenario.name", "other"}, {"scenario.title", "Other"}, {"scenario.length_unit", "m"},
                                           {"arms.controllers", "greedy"}, {"planner.horizon", "1"},

@@ -112,7 +112,7 @@ void check_refused(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-TEST_CASE("scenario: the keys are those of the design, each with a line of help") {
+TEST_CASE("scenario: the keys are those of the list, each with a line of help") {
     std::set<std::string> designed, present;
     for (const KeyCase& one : key_cases()) designed.insert(one.name);
     for (const DeformableKey& key : scenario_keys()) {
@@ -124,7 +124,7 @@ TEST_CASE("scenario: the keys are those of the design, each with a line of help"
     CHECK(present.size() == scenario_keys().size());
 }
 
-TEST_CASE("scenario: every key has the seed's default") {
+TEST_CASE("scenario: every key has the reference study's default") {
     for (const KeyCase& one : key_cases()) {
         CAPTURE(one.name);
         CHECK(key_named(one.name).get(DeformableSettings{}) == one.default_text);

@@ -144,7 +144,7 @@ TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     CHECK(std::isnan(run.columns[column_nis_ratio]));  // there never was a row
 }
 
-TEST_CASE("trial: figures of a step are what their names say") {
+TEST_CASE("trial: series of a step are what their names say") {
     for (const char* process : {"heading", "translation"}) {
         const DeformableSettings scenario = scenario_with({{"model.process", process}, {"features.path", "circle"},
                                                  {"filter.covariance", "2.25"}, {"noise.heading", "0.01"}});
@@ -171,7 +171,7 @@ TEST_CASE("trial: figures of a step are what their names say") {
     }
 }
 
-TEST_CASE("trial: a heading error is judged the short way round") {
+TEST_CASE("trial: a heading error is evaluated the short way round") {
     // The robot turns by 3.1 a step: after two steps truth and belief have passed pi, with different windings.
     const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
                                              {"sensor.range_max", "0.11"}});

@@ -84,7 +84,7 @@ TEST_CASE("credibility: units do not matter") {
     check_agrees(b.inclination, a.inclination);
 }
 
-TEST_CASE("credibility: a filter that is right is credible, one told 0.8 of sigma inclines to optimism") {
+TEST_CASE("credibility: a filter that is right is credible, one that assumes 0.8 of sigma inclines to optimism") {
     // The mean of log rho has a standard deviation of about sqrt(2 / (n N)) = 0.013, times 10 / log 10 = 0.056: beyond
     // 0.28 with 6e-7. |log10 rho| of a trial is about that of its own direction: below 0.28 too.
     const Errors right(67, 4000, 1), wrong(67, 4000, 0.8);

@@ -67,7 +67,7 @@ bool same(const ScenarioResults& a, const ScenarioResults& b) {
 
 }  // namespace
 
-TEST_CASE("results: empty results have room for what the scenario declares, and nothing in it") {
+TEST_CASE("results: empty results have the dimensions that the scenario declares, and no values") {
     const DeformableSettings scenario = scenario_with({});
     const ScenarioResults results = empty_results(scenario);
     REQUIRE(results.arms.size() == 2);

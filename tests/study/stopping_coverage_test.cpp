@@ -61,7 +61,7 @@ StoppingRule rule_of(std::int64_t first_analysis, double times, const std::strin
 
 }  // namespace
 
-TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped at any look", "[long]") {
+TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped at any analysis", "[long]") {
     for (const double times : {0.8, 1.4, 2.8}) {
         const Replicated r = replicate(2000, rule_of(16, times), 10, normal_draw, decide);
         CAPTURE(times, r.missed, r.stops);
@@ -70,7 +70,7 @@ TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped
     }
 }
 
-TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, stopped at any look", "[long]") {
+TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, stopped at any analysis", "[long]") {
     // Where the sample's spread is small, so is its mean: stopping prefers samples that miss.
     for (const double times : {0.8, 1.4, 2.8}) {
         const Replicated r = replicate(2000, rule_of(64, times), 1, exponential_draw, decide);
@@ -84,7 +84,7 @@ TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, st
     CHECK(relative.analyses_used() >= 2);
 }
 
-TEST_CASE("stopping: so they do at the first look that is used, 4096 trials", "[long]") {
+TEST_CASE("stopping: so they do at the first analysis that is used, 4096 trials", "[long]") {
     const Replicated r = replicate(2000, rule_of(first_analysis_trials, 1), 1, exponential_draw, decide);
     CAPTURE(r.missed, r.stops);
     CHECK(r.missed <= most_missed(2000));

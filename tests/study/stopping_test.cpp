@@ -37,7 +37,7 @@ InterimAnalysis one_snapshot(double sd, double allowed, std::int64_t count = 409
 
 }  // namespace
 
-TEST_CASE("stopping: looks are at 4096 trials, then doubled, and at the ceiling") {
+TEST_CASE("stopping: analyses are at 4096 trials, then doubled, and at the ceiling") {
     CHECK(analysis_trials(10000) == std::vector<std::int64_t>{4096, 8192, 10000});
     CHECK(analysis_trials(8192) == std::vector<std::int64_t>{4096, 8192});
     CHECK(analysis_trials(100) == std::vector<std::int64_t>{100});
@@ -77,7 +77,7 @@ TEST_CASE("stopping: failed trials are left out, and too few values never suffic
     CHECK(decide({0.0, 0.0}, parse_goal("x=1%"), 1).met());  // nothing varies: known exactly
 }
 
-TEST_CASE("stopping: a look has every arm and scenario, or every pair, of the first trials only") {
+TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of the first trials only") {
     const Study study = small_study(1, 700, 2);
     const InterimAnalysis look = look_at(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
     CHECK(look.alpha == 0.00625);
@@ -143,7 +143,7 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
     CHECK(predicted_trials(met, rule) == 4096);
 }
 
-TEST_CASE("stopping: a study stops at the first look that is precise enough, as computed by hand") {
+TEST_CASE("stopping: a study stops at the first analysis that is precise enough, as computed by hand") {
     const Study all = small_study(1, 2048, 2);
     const auto half_width = [&](std::int64_t trials, int number) {
         const std::vector<double>& column = all.scenarios[0].arms[0].columns[column_trace_P];
@@ -193,7 +193,7 @@ TEST_CASE("stopping: all goals must be met") {
     CHECK_FALSE(look_at(study, goals({"trace_P=1e-9", "unseen=1"}), 300, 1).met);
 }
 
-TEST_CASE("stopping: any number of threads and any history stop at the same look, with the same study") {
+TEST_CASE("stopping: any number of threads and any history stop at the same analysis, with the same study") {
     const StoppingRule rule{goals({"unseen[greedy-fixed]=0.25"}), 3000, 64};
     const auto grown = [&](std::int64_t had, int threads) {
         Study study = new_study(small_scenarios(), 1);
@@ -221,7 +221,7 @@ TEST_CASE("stopping: scenarios of different length are first brought to the long
     CHECK(same_results(study, small_study(1, 300, 2)));
 }
 
-TEST_CASE("stopping: a goal that cannot be judged is refused before any trial") {
+TEST_CASE("stopping: a goal that cannot be evaluated is refused before any trial") {
     Study study = new_study(small_scenarios(), 1);
     CHECK_THROWS_AS(run_until(study, {goals({"trase_P=1"}), 3000, 64}, {0, 2, {}}), InputError);
     CHECK(study.scenarios[0].trials == 0);

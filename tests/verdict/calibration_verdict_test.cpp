@@ -47,7 +47,7 @@ void check_ratio(const Verdicts& verdicts, const std::string& block, double thei
 
 }  // namespace
 
-TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic for 200 trials, whatever the seed",
+TEST_CASE("calibration: assuming 0.8 of the measurement noise, a filter is optimistic for 200 trials, whatever the seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
@@ -61,7 +61,7 @@ TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic
     check_ratio(v, "feature_2", 1.165, 0.015);
 }
 
-TEST_CASE("calibration: a filter told sqrt(0.7) of all process noises is optimistic for 400 trials, whatever the seed",
+TEST_CASE("calibration: assuming sqrt(0.7) of all process noises, a filter is optimistic for 400 trials, whatever the seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.heading = s.filter.odometry = s.filter.features = std::sqrt(0.7);

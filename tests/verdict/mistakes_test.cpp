@@ -107,7 +107,7 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
     CHECK(figure.summary.mean - 1.645 * figure.summary.standard_deviation < 0);
 }
 
-TEST_CASE("mistakes: diverged trials stay in every figure of the evidence, and are counted") {
+TEST_CASE("mistakes: diverged trials stay in all of the evidence, and are counted") {
     DeformableSettings s;
     s.noise.odometry = 1.2e6;  // where nothing is seen at a pose, which happens in some trials, P is beyond 1e12
     s.sensor.sigma = 1e3;
@@ -129,7 +129,7 @@ TEST_CASE("mistakes: diverged trials stay in every figure of the evidence, and a
     CHECK(evidence.blocks.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
-TEST_CASE("mistakes: a look is judged by its own values, not by the widest or narrowest look so far") {
+TEST_CASE("mistakes: an analysis uses its own values, not the widest or narrowest analysis so far") {
     // An outlier of 100 among the first 16: their half-width is 16, and falls about as 1/N. Had the rule kept the
     // running maximum, it would never stop.
     const StoppingRule rule{{parse_goal("x=0.5")}, 4096, 16};
