@@ -37,7 +37,7 @@ void check_harmless(const std::string& text) {
     for (const char* bad : {"\xc2\x9b", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6"}) CHECK(text.find(bad) == std::string::npos);
 }
 
-/// Every command that reads a file, with what it takes beside the file's name.
+/// Every command that reads a file, with its other arguments.
 const std::vector<std::string> commands_of_hdf5{"report", "judge", "compare", "watch", "merge -o merged.h5",
                                                 "replay --scenario small --arm fixed --trial 0"};
 const std::vector<std::string> commands_of_scenarios{"run", "show"};

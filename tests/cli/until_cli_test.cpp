@@ -71,7 +71,7 @@ TEST_CASE("cli: run --until gives the same file for any number of threads and af
         CHECK(here.shell(std::string("h5diff --exclude-path /run 1.h5 ") + other).exit_code == 0);
     }
     const Outcome header = here.shell("h5dump -H -d /kf-straight-constant/fixed.kf/trace_P 1.h5");
-    CHECK_THAT(header.out, Contains("( 8192 )"));  // a look after the first
+    CHECK_THAT(header.out, Contains("( 8192 )"));  // an analysis after the first
 }
 
 TEST_CASE("cli: run --until with a file that has more judges its first trials, and keeps it as it is") {

@@ -16,7 +16,7 @@ using namespace credence::test;
 
 namespace {
 
-/// The letters of a job, by the rank that they are for.
+/// The messages of a job, by the rank that they are for.
 struct Office {
     explicit Office(int size) : letters(static_cast<std::size_t>(size)) {}
     std::mutex mutex;
@@ -52,7 +52,7 @@ private:
 using Signal = std::function<std::string()>;
 const Signal no_signal = [] { return std::string(); };
 
-/// Ranks 1 ... size - 1, until rank 0 sends them home.
+/// Ranks 1 ... size - 1, until rank 0 ends their work.
 class Followers {
 public:
     explicit Followers(Office& office, const Signal& signal = no_signal) {
@@ -70,7 +70,7 @@ private:
     std::vector<std::thread> threads_;
 };
 
-/// What one run of several ranks is to do.
+/// The settings of one run of several ranks.
 struct Job {
     int size = 3;
     std::function<bool()> stop{};
@@ -78,7 +78,7 @@ struct Job {
     RankLeader::Sending sending = RankLeader::Sending::now_and_then;
 };
 
-/// Runs what is missing of `asked` on the ranks of the job; all of its threads compute, rank 0's too.
+/// Runs the missing blocks of `asked` on the ranks of the job; all of its threads compute, rank 0's too.
 void compute_together(StoredRun& run, const Asked& asked, const Job& job) {
     Office office(job.size);
     const Followers followers(office, job.signal);
@@ -214,7 +214,7 @@ TEST_CASE("ranks: a rank that falls silent ends the run, and the results of the 
         RankLeader leader(own, std::chrono::milliseconds(50));
         ByteWriter one;
         one.put(std::int64_t{1});
-        lost.send(0, Word::want, one.take());  // it takes a block, and is never heard of again
+        lost.send(0, Word::want, one.take());  // it takes a block, and then sends nothing
         leader.begin(definition_of(run.study()), 1, RankLeader::Sending::at_once);
         RunOptions options{asked.trials, 1, {}, {}, {}, &run.begin(asked.trials, 1), &leader};
         const std::string said = refusal<Failure>([&] { run_study(run.study(), options); });

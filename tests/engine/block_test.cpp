@@ -1,4 +1,4 @@
-// The block is a pure function of scenario, root seed and index, whichever unit computes it.
+// The block is a pure function of scenario, root seed and index, whichever target computes it.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// The journal: bytes that somebody made up, with right checksums, are refused and never believed.
+// Forged journals with right checksums: they are refused.
 
 #include "journal_forged.hpp"
 #include "of_scenarios.hpp"

@@ -1,4 +1,4 @@
-// The journal: cut and damaged anywhere, it keeps what came before, and the study ends the same.
+// A journal that is cut or damaged anywhere keeps the commits before that place, and the study ends the same.
 
 #include "journal_support.hpp"
 
@@ -27,7 +27,7 @@ private:
     std::optional<std::string> before_;
 };
 
-/// A folder with a journal of three records, in bytes.
+/// A folder with a journal of three commits, as bytes.
 struct Interrupted {
     InMemory in_memory;
     TemporaryFolder folder;
@@ -92,7 +92,7 @@ TEST_CASE("journal: any byte flipped is refused, or costs no commit before it", 
         CAPTURE(at);
         const std::string said = refusal<InputError>([&] {
             const StoredRun resumed = opened(run.path, run.asked);
-            // Of the header alone it cannot be told from what was torn while it was written.
+            // The header alone cannot be distinguished from one that was torn while it was written.
             REQUIRE(blocks_in(resumed.study()) == run.whole_commits(at));
         });
         if (!said.empty()) REQUIRE(said.starts_with(run.journal + ": "));

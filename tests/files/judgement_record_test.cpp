@@ -1,4 +1,4 @@
-// Records for `judge`: every figure against NumPy and SciPy, and the ways in which other programs write.
+// Records for `judge`: every number against NumPy and SciPy, and the ways in which other programs write.
 
 #include "numeric/chi_square.hpp"
 
@@ -102,7 +102,8 @@ std::string reference_path(const std::string& name) {
     return record_folder + record_series().at(name)["file"].get<std::string>();
 }
 
-/// All of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below 1e4.
+/// The whole of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below
+/// 1e4.
 void check_record(const Record& record, const Json& expected) {
     CHECK(record.results.trials == expected["trials"]);
     CHECK(record.results.steps() == expected["steps"]);
@@ -157,7 +158,7 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
     const Record record = check_reference("broken");
     CHECK(record.trouble_count == 12);
-    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are in the figures
+    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are not left out
 }
 
 TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {

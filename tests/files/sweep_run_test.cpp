@@ -119,7 +119,7 @@ TEST_CASE("sweep: a scenario says where it is, and is refused where it is not") 
 }
 
 TEST_CASE("sweep: the text of a study without one is what it was, and so is its hash") {
-    // Computed before there were sweeps: whoever has files of studies must be able to go on with them.
+    // Computed before there were sweeps: existing files of studies must stay usable.
     CHECK(study_hash(StudyDefinition{1, {read_declaration_text("", "x.ini", "scenario")}}) ==
           "ba5d28bb-9fb1-5546-9527-e36bb295fbee");
 }

@@ -1,4 +1,4 @@
-// NEES in another chart of the error stands beside the Euclidean one, and no verdict uses it.
+// NEES in another chart of the error is shown beside the Euclidean one, and no verdict uses it.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,4 +1,4 @@
-// The report says what the study holds.
+// The report has the values of the study.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -53,7 +53,7 @@ TEST_CASE("report: failed trials are counted and shown, and columns are summaris
     CHECK(report.arms.front().trials == 300);
     CHECK(report.arms.front().failed == 30);
     CHECK(report.arms.front().columns[column_unseen].summary.count == 270);
-    CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
+    CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is not a value
     CHECK(report.pairs.front().columns[column_trace_P].paired.pairs == 270);
     CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
     CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);

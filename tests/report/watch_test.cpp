@@ -1,4 +1,4 @@
-// Following a run: a look says what the trials so far say, and the run does not notice.
+// Watching a run: a snapshot has the means of the trials so far, and the run is not affected.
 
 #include "watch_support.hpp"
 

@@ -1,4 +1,4 @@
-// Who steers [model.md, Controllers].
+// Who steers [docs/model.md, Controllers].
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

@@ -1,4 +1,4 @@
-// What a belief must always be, and what can be asked of it.
+// The invariants of a belief, and the quantities that are computed from it.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -86,7 +86,7 @@ TEST_CASE("filter: without noise the heading model's estimate is the truth") {
     CHECK(run.steps.back().truth[0] == Approx(19 * 0.31415926535897931).epsilon(1e-14));
 }
 
-/// The squared error of one block of a state.
+/// The squared error of one component group.
 template <int n>
 SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd& e, int first, int count) {
     Elimination<double, n> work;

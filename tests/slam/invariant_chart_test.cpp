@@ -1,4 +1,4 @@
-// NEES with the error in the invariant chart, against the logarithm of a matrix, and what it is for.
+// NEES with the error in the invariant chart, against the logarithm of a matrix, and its use.
 
 #include "slam/trial/step_evaluation.hpp"
 

@@ -18,7 +18,7 @@ enum class Way { up, down };
 struct Influence {
     std::string key, value;
     Settings base;                       ///< what else must be set for the key to matter
-    Controller controller;               ///< whose figure
+    Controller controller;               ///< whose column
     ColumnIndex column;                  ///< that changes
     Way way;                             ///< where the mean over the trials goes
     std::vector<ColumnIndex> untouched;  ///< the same bits for every trial
@@ -83,7 +83,8 @@ const std::vector<Influence>& influences() {
     return list;
 }
 
-/// Keys that change no figure: names, and what is only shown or chosen among arms (block_test.cpp).
+/// Keys that change no column: names, and settings that are only shown or select among arms
+/// (tests/engine/block_test.cpp).
 const std::set<std::string> silent_keys{"scenario.name",      "scenario.title",   "scenario.length_unit",
                                         "arms.controllers",   "arms.estimators",  "published.trace_P",    "published.unseen",
                                         "published.pose_error"};

@@ -20,7 +20,7 @@ struct KeyCase {
     std::vector<std::string> good, bad;  ///< texts that come back as they are; texts that are refused
 };
 
-/// The keys of design.md, The scenario file, with the seed's defaults.
+/// The keys of a scenario, with the reference study's defaults.
 const std::vector<KeyCase>& key_cases() {
     static const std::vector<std::string> not_a_length{"-1", "-1e-9", "2e9"}, not_positive{"0", "-1", "2e9"};
     static const std::vector<KeyCase> cases{

@@ -1,5 +1,4 @@
-// Numerical trouble inside a trial is data: its status, the pose where it happened, and what is left of its
-// columns [model.md, Conventions; design.md, House style].
+// Numerical trouble inside a trial is data: its status, the pose where it happened, and the columns that remain.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -22,7 +21,7 @@ void check_status(const Run& run, double status, double pose) {
     CHECK(run.columns[column_status_pose] == pose);
 }
 
-/// The outcome of judging one belief: nothing but what note_trouble sees.
+/// The outcome of the step evaluation of one belief: only what note_trouble checks.
 Outcome<double> trouble_with(const Belief<double, 9>& belief, double squared_errors = 1, bool positive_definite = true) {
     Outcome<double> outcome;
     note_trouble(belief, 9, squared_errors, positive_definite, 4, outcome);

@@ -1,4 +1,4 @@
-// One trial. Which draws it asks for, and what its columns and figures mean [model.md, Reported per trial].
+// One trial: which draws it uses, and the meaning of its columns and series [docs/model.md, Reported per trial].
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -64,7 +64,7 @@ std::vector<Settings> worlds() {
             {{"edges.graph", "none"}, {"noise.truncate", "1"}, {"features.path", "circle"}}};
 }
 
-/// e' (f P)^-1 e of a block of the state at a pose.
+/// e' (f P)^-1 e of a component group at a pose.
 double squared_error(const RunStep& step, int first, int count, double factor) {
     const Eigen::VectorXd e = (step.mean - step.truth).segment(first, count);
     return e.dot((factor * step.covariance.block(first, first, count, count)).ldlt().solve(e));

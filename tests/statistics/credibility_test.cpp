@@ -69,7 +69,7 @@ TEST_CASE("credibility: NaN where the mean square error has no inverse") {
     check_none({1, 1}, {1, 0, 0, 1}, 2, 2);                              // N = n
     check_none({1, missing, 1}, {1, 0, 3, 4, 0, 1}, 2, 2);               // N = n of those with a NEES
     check_none({1, 1, 1, 1}, {1, 3, 0.1, 0.3, -0.7, -2.1, 2, 6}, 2, 4);  // one component is three times the other
-    for (const double h : {1e-8, 3e-8, 1e-7})                            // or nearly so: only rounding tells them apart
+    for (const double h : {1e-8, 3e-8, 1e-7})                            // or nearly so, but for rounding
         check_none({1, 1, 1, 1}, {1, 3 + h, 0.1, 0.3 - h, -0.7, -2.1 + h, 2, 6 + h}, 2, 4);
     check_none({1, 1, 1}, {1, 0, 2, 0, 3, 0}, 2, 3);        // one is always 0
     check_none({1, 1, 1}, {1, missing, 2, 0, 3, 1}, 2, 3);  // one is not known

@@ -1,4 +1,4 @@
-// Goodness of fit, against SciPy and published figures, and by replication.
+// Goodness of fit, against SciPy and published values, and by replication.
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-// Quantiles and figures of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
+// Quantiles and statistics of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
 
 #include "reference.hpp"
 

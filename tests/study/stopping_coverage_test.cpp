@@ -18,7 +18,7 @@ namespace {
 /// How a replication went over many of them.
 struct Replicated {
     int missed = 0;                 ///< last intervals that do not cover the truth
-    std::vector<int> stops;         ///< by look
+    std::vector<int> stops;         ///< by analysis
     int analyses_used() const {
         int used = 0;
         for (const int count : stops) used += count > 20;
@@ -53,7 +53,7 @@ int most_missed(int replications) {
 double normal_draw(Normals& normals) { return 10 + normals(); }
 double exponential_draw(Normals& normals) { return normals.chi_square(2) / 2; }
 
-/// The half-width that a sample of sd 1 has at `times` the first look's trials: looks after it come into play.
+/// The half-width that a sample of sd 1 has at `times` the first analysis's trials: later analyses then matter.
 StoppingRule rule_of(std::int64_t first_analysis, double times, const std::string& unit = "") {
     const double width = 2.2414 / std::sqrt(static_cast<double>(first_analysis) * times) * (unit == "%" ? 100 : 1);
     return {{parse_goal("x=" + std::to_string(width) + unit)}, first_analysis * 16 + 7, first_analysis};
@@ -101,7 +101,7 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
 }
 
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {
-    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [model.md, Truth
+    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [docs/model.md, Truth
     // against filter].
     DeformableSettings matched = matched_linear();
     matched.poses = 8;

@@ -1,4 +1,4 @@
-// Goals as they are written, and what of a study they are about.
+// Parsing of goals, and the parts of a study that they refer to.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,5 +1,5 @@
 // Filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
-// the test names, and with the figures of model.md [statistics.md, The judge is judged; model.md, Truth against
+// the test names, and with the figures of model.md [docs/statistics.md, Calibration and power; docs/model.md, Truth against
 // filter].
 
 #include <credence/consistency.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int seeds = 50;
 
-/// Verdicts by name, and by block the mean of NEES/dim over the seeds and its standard error.
+/// Verdicts by name, and by group the mean of NEES/dim over the root seeds and its standard error.
 struct Verdicts {
     std::map<std::string, int> count;
     std::map<std::string, Moments> ratio;

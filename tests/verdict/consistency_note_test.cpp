@@ -1,4 +1,4 @@
-// What stands beside a verdict, and what few trials may not be told.
+// The notes beside a verdict, and the limits of verdicts on few trials.
 
 #include "catch.hpp"
 #include "matched.hpp"
