@@ -63,7 +63,7 @@ public:
         return believed * believed;
     }
 
-    /// [model.md, Predict] F = I, but F[r, theta] = R J v.
+    /// [docs/model.md, Predict] F = I, but F[r, theta] = R J v.
     void predict(State& x, Covariance& P, const Control& control, int k) const {
         Eigen::Vector2d move(control.move.x, control.move.y);
         if constexpr (has_heading) {
@@ -126,7 +126,7 @@ public:
         return nu;
     }
 
-    /// [model.md, Update]; returns nu' S^-1 nu.
+    /// [docs/model.md, Update]; returns nu' S^-1 nu.
     template <class EdgeMeasurement>
     double update(State& x, Covariance& P, const std::vector<Seen>& seen, const EdgeMeasurement& z_edge) const {
         Rows H;
@@ -157,7 +157,7 @@ public:
         return next_P.trace();
     }
 
-    /// The least cost wins, later wins ties [model.md, Controllers].
+    /// The least cost wins, later wins ties [docs/model.md, Controllers].
     Control plan(const State& x, const Covariance& P, int k) {
         const ControlParameters& control = problem_.control;
         int chosen = 0;

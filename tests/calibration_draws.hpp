@@ -12,7 +12,7 @@ namespace credence::test {
 namespace drawn {
 
 inline constexpr std::size_t trials = 200, steps = 5, n = 4, rows = 4, lags = 4;
-inline constexpr std::size_t row_series = 4;  ///< NEES of three blocks, NIS, its rows ...
+inline constexpr std::size_t row_series = 4;  ///< NEES of three groups, NIS, its rows ...
 
 inline const Json& expected() {
     static const Json values = Json::parse(std::ifstream(CREDENCE_SOURCE "/tests/reference/chi_square.json"));
@@ -40,7 +40,7 @@ inline std::vector<Series> figures() {
     return figures;
 }
 
-/// One trial's values [steps, figures], in their order. P = claimed sigma^2 I, S = I.
+/// One trial's values [steps, series], in their order. P = claimed sigma^2 I, S = I.
 inline std::vector<std::vector<double>> trial_values(const double* draws, const double* innovations, double claimed) {
     std::vector<std::vector<double>> values;
     for (std::size_t k = 0; k < steps; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Studies and figures for the tests of `compare`.
+// Studies and columns for the tests of `compare`.
 
 #include <credence/compare.hpp>
 #include "worlds/deformable/keys.hpp"

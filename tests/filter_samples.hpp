@@ -44,7 +44,8 @@ Sighting<double> look_at(const Truth& truth, const SensorParameters& sensor, int
     return sightings[j];
 }
 
-/// A random state near the seed's and a random covariance with everything correlated, eigenvalues from 0.1 to about 10.
+/// A random state near the reference study's and a random covariance with everything correlated, eigenvalues from 0.1
+/// to about 10.
 struct Sample {
     VectorXd x;
     MatrixXd P;

@@ -1,5 +1,5 @@
 #pragma once
-// Journals that somebody made up, with right checksums.
+// Forged journals with right checksums.
 
 #include "report/watch/watch.hpp"
 
@@ -9,7 +9,7 @@
 
 namespace credence::test {
 
-/// A record in its parts: each can be made up.
+/// A commit in its parts, each of which can be forged.
 struct Record {
     std::uint32_t scenario = 0;
     CommitStart start;
@@ -34,7 +34,7 @@ inline std::string totals_of(const ScenarioResults& results) {
     return bytes.take();
 }
 
-/// A run of one scenario of 3 trials, and the record that its journal has.
+/// A run of one scenario of 3 trials, and the commit in its journal.
 struct Made {
     Asked asked;
     TemporaryFolder folder;
@@ -55,13 +55,13 @@ struct Made {
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));
     }
-    /// What refuses a run that goes on with a journal of these records.
+    /// The message with which a run refuses to continue a journal of these commits.
     std::string said(const std::vector<Record>& records) const {
         std::string bytes = header;
         for (const Record& one : records) bytes += one.bytes();
         put_bytes(path + ".journal", bytes);
         const std::string watched = refusal<InputError>([&] { RunWatch(path).look(); }), text = refused(path, asked);
-        // Who only looks refuses it too.
+        // A program that only reads it refuses it too.
         if (!text.empty()) CHECK(watched.starts_with(path + ".journal: is damaged: "));
         std::filesystem::remove(path);
         return text;

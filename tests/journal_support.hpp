@@ -1,5 +1,5 @@
 #pragma once
-// Runs that end before their end, and journals in bytes, for the tests of what is kept.
+// Interrupted runs, and journals as bytes, for the tests of journals.
 
 #include "worlds/deformable/keys.hpp"
 #include "files/stored_run.hpp"
@@ -19,7 +19,7 @@ inline DeformableSettings tiny(const std::string& name) {
                                   "[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1", name, name);
 }
 
-/// What a test asks for.
+/// The study and the run of a test.
 struct Asked {
     std::int64_t trials = 3;
     std::uint64_t root_seed = 1;
@@ -65,7 +65,7 @@ inline void run_to_end(const std::string& path, const Asked& asked, std::int64_t
     run.finish(run_facts);
 }
 
-/// The study as nobody disturbed it.
+/// The study of an undisturbed run.
 inline Study undisturbed(const Asked& asked) {
     Study study = asked.study();
     run_study(study, {asked.trials, 1, {}, asked.shard, {}, nullptr});
@@ -78,7 +78,7 @@ inline std::int64_t blocks_in(const Study& study) {
     return blocks;
 }
 
-/// Where the records of a journal end, its header first.
+/// The ends of a journal's header and commits.
 inline std::vector<std::size_t> commit_ends(const std::string& journal) {
     std::vector<std::size_t> ends{header_size(journal.substr(0, header_prefix), "journal")};
     while (ends.back() < journal.size()) {
@@ -95,7 +95,7 @@ inline std::string sealed(std::string bytes) {
     return bytes.append(reinterpret_cast<const char*>(&crc), sizeof crc);
 }
 
-/// What refuses a run on `path`; empty where it goes on.
+/// The message that refuses a run on `path`; empty where it can continue.
 inline std::string refused(const std::string& path, const Asked& asked, Start start = Start::resume) {
     return refusal<std::runtime_error>([&] { run_to_end(path, asked, all_blocks, start); });
 }

@@ -14,7 +14,7 @@ namespace credence::test {
 
 inline const std::string record_folder = CREDENCE_SOURCE "/tests/reference/";
 
-/// What make_records.py says of its small records, by their name.
+/// The expected values that make_records.py computed for its small records, by their name.
 inline const Json& record_series() {
     static const Json values = Json::parse(std::ifstream(record_folder + "records.json"));
     return values;

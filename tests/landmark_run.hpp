@@ -38,13 +38,13 @@ inline AnyNoise noise_of(std::uint64_t trial) {
             [=](Source source, int pose, int index) { return draws.uniform(source, pose, index); }};
 }
 
-/// What a trial held at a pose.
+/// The state of a trial at a pose.
 struct Held {
     VectorXd truth, mean;
     MatrixXd covariance;
 };
 
-/// Watches a trial; told of nothing but beliefs.
+/// An observer of a trial that records only beliefs.
 struct Watcher {
     std::vector<Held> steps;
     const HeadingTruth* truth = nullptr;

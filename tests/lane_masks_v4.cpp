@@ -1,4 +1,4 @@
-// Lane_masks.hpp for AVX-512, in a namespace of its own as the engine's targets are.
+// lane_masks.hpp for AVX-512, in a namespace of its own like the engine's targets.
 
 #include "lane_masks.hpp"
 

@@ -8,7 +8,7 @@
 namespace credence::test {
 
 /// The truth that the linear filter assumes, every feature always in range: NEES ~ chi-square(n), NIS ~ chi-square(m),
-/// innovations white, all of them exactly; P is the same in every trial [model.md, Truth against filter].
+/// innovations white, all of them exactly; P is the same in every trial [docs/model.md, Truth against filter].
 inline DeformableSettings matched_linear() {
     DeformableSettings s;
     s.process = Process::translation;

@@ -1,6 +1,6 @@
 #pragma once
-// What docs/results-format.md says is in the files, read from its tables, and what is in a file, in the same words:
-// `arm attribute counted_trials: int64`, `variable F_total [step, part]: double`, `figure nees_pose: nees`.
+// The contents of results files as docs/results-format.md documents them in its tables, and of a file, in the same
+// words: `arm attribute counted_trials: int64`, `variable F_total [step, part]: double`, `figure nees_pose: nees`.
 
 #include <credence/text.hpp>
 
@@ -26,7 +26,7 @@ inline std::vector<std::string> matches(const std::string& text, const std::stri
     return found;
 }
 
-/// The shape that the i-th name of a row has: in brackets behind it or in the header, or in a column of its own.
+/// The dimensions that the i-th name of a row has: in brackets after it or in the header, or in a column of its own.
 inline std::string documented_shape(const std::vector<std::string>& header, const std::vector<std::string>& cells,
                                     const std::string& name, std::size_t i) {
     if (header[0] == "dimension") return name;
@@ -39,7 +39,7 @@ inline std::string documented_shape(const std::vector<std::string>& header, cons
     return {};
 }
 
-/// What a row of a table says.
+/// The entries of a row of a table.
 inline void add_row(const std::vector<std::string>& header, const std::vector<std::string>& cells, Facts& facts) {
     const std::vector<std::string> names = matches(cells[0], R"(`([A-Za-z_][\w.]*)`)");
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -55,7 +55,7 @@ inline void add_row(const std::vector<std::string>& header, const std::vector<st
     }
 }
 
-/// What all tables of a part of the page say.
+/// The entries of all tables of a section of the page.
 inline Facts documented(const std::string& part) {
     Facts facts;
     std::vector<std::string> header;
@@ -83,7 +83,7 @@ inline std::string type_name(hid_t type, const std::string& place) {
     throw std::runtime_error(place + " has a type that is not documented");
 }
 
-/// The figures of a block or component are documented once for all of them.
+/// The series of a group or component are documented once for all of them.
 inline std::string general(const std::string& figure) {
     for (const char* block : {"nees", "squared_error", "variance"})
         if (figure.starts_with(block + std::string("_feature_"))) return block + std::string("_feature_J");
@@ -106,7 +106,7 @@ inline std::string dimension_names(const hdf5::Handle& dataset, const std::strin
     return joined(names, ", ");
 }
 
-/// What a file says of the attributes of an object.
+/// The entries for the attributes of an object in a file.
 inline void add_attributes(const hdf5::Handle& object, const std::string& kind, const std::string& own_type,
                            Facts& facts) {
     static const std::set<std::string> of_hdf5{"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"};
@@ -123,7 +123,7 @@ inline void add_attributes(const hdf5::Handle& object, const std::string& kind, 
     }
 }
 
-/// What a file says of a variable.
+/// The entry for a variable in a file.
 inline void add_variable(const hdf5::Handle& dataset, const std::string& name, Facts& facts) {
     const hdf5::Handle type(H5Dget_type(dataset.id()), H5Tclose, name, "");
     std::string general_name = name;
@@ -141,7 +141,7 @@ inline void add_variable(const hdf5::Handle& dataset, const std::string& name, F
     add_attributes(dataset, "variable", found, facts);
 }
 
-/// What a file says of itself, /run left out.
+/// The entries for a whole file, without /run.
 inline Facts found_in(const std::string& path) {
     Facts facts;
     const hdf5::Handle root = hdf5::open_file(path);

@@ -86,7 +86,7 @@ Eigen::VectorXd true_state(const Layout& layout, const Truth& truth) {
     return x;
 }
 
-/// Writes down what run_trial passes by.
+/// Records the quantities that run_trial passes to its observer.
 class Scribe {
 public:
     Scribe(Run& run, const ProblemView& view, Controller controller)

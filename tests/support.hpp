@@ -36,10 +36,10 @@ std::vector<Settings> seed_cells();
 /// Settings as one line, for messages.
 std::string described(const Settings& settings);
 
-/// The world in which the filter's beliefs are the truth [model.md, Truth against filter], as settings.
+/// The world in which the filter's beliefs are the truth [docs/model.md, Truth against filter], as settings.
 Settings matched_world();
 
-/// A noise source made of functions, with the face of KeyedDraws.
+/// A noise source made of functions, with the interface of KeyedDraws.
 struct AnyNoise {
     std::function<Vector2<double>(Source, int pose, int index)> normal_draw;
     std::function<double(Source, int pose, int index)> uniform_draw;
@@ -55,7 +55,7 @@ AnyNoise silent_noise();
 /// Another noise in which one draw is changed.
 AnyNoise with_draw(AnyNoise noise, Source source, int pose, int index, Vector2<double> draw);
 oracle::Noise for_oracle(const AnyNoise& noise);
-/// What three features and their robot draw at a pose.
+/// The draws of three features and their robot at a pose.
 template <class Layout, class Noise>
 WorldDraws<Layout, double> draws_at(const Noise& noise, int pose) {
     WorldDraws<Layout, double> draws(Layout(3));
@@ -63,7 +63,7 @@ WorldDraws<Layout, double> draws_at(const Noise& noise, int pose) {
     return draws;
 }
 
-/// What happened at one pose. At pose 0 only truth, mean and covariance are there.
+/// The quantities at one pose. At pose 0 only truth, mean and covariance are set.
 struct RunStep {
     Eigen::VectorXd truth, prior_mean, mean;
     Eigen::MatrixXd prior_covariance, covariance;  ///< as the filter holds them
@@ -78,10 +78,10 @@ struct RunStep {
 struct Run {
     std::vector<double> columns;    ///< [column_count], not filled
     Eigen::MatrixXd figures;        ///< [series_count, K - 1]
-    std::vector<std::string> names; ///< of the figures
+    std::vector<std::string> names; ///< of the series
     std::vector<RunStep> steps;     ///< [K]
 
-    /// The figure of this name at pose k = 1 ... K - 1.
+    /// The value of the series of this name at pose k = 1 ... K - 1.
     double figure(const std::string& name, int k) const;
     Eigen::VectorXd series(const std::string& name) const;
 };

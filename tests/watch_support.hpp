@@ -1,5 +1,5 @@
 #pragma once
-// What a look should say, for the tests of following a run.
+// The expected snapshots, for the tests of watching a run.
 
 #include "report/watch/watch.hpp"
 
@@ -22,7 +22,7 @@ inline std::vector<double> trace_of(const ScenarioResults& results, const ArmRes
     return figure_values(results, arm, column_trace_P);
 }
 
-/// The look says what these trials say.
+/// The snapshot has the means of these trials.
 inline void check_says(const Snapshot& look, const Study& study) {
     REQUIRE(look.scenarios.size() == study.scenarios.size());
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {

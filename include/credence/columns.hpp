@@ -1,6 +1,6 @@
 #pragma once
-// Module scenario: what a trial reports, declared as data. Engine, statistics, store and report walk these lists and know
-// nothing else about the world.
+// Module scenario: the declaration of what a trial reports: columns, series, components and their groups. Engine,
+// statistics, store and report process these lists and contain nothing else that is specific to a world.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace credence {
 
-/// Numerical trouble inside a trial is data. Only the last two exclude a trial from series.
+/// How a trial ended. Numerical trouble inside a trial is data; only the last two exclude a trial from the series.
 enum class Status : std::int8_t {
     completed = 0,
     diverged = 1,                          ///< an |x^| or |P| entry above 1e12; series are kept
@@ -31,15 +31,15 @@ struct Column {
     double fill = 0;                       ///< value of a failed trial: NaN for real columns
 };
 
-/// What a series means to the statistics.
+/// The statistical meaning of a series.
 enum class SeriesRole {
-    nees,                ///< normalised squared error of one block of the state, chi-square(dimension)
+    nees,                ///< normalised squared error of one component group, chi-square(dimension)
     standardised_error,  ///< e_j / sqrt(P_jj), mean 0 and variance 1
     nis,                 ///< normalised innovation squared, chi-square with as many degrees as it has rows
     rows,                ///< number of measurement rows
-    squared_error,       ///< |e|^2 of one block of the state
-    variance,            ///< trace of that block of P: what the filter says |e|^2 is on average
-    nees_in_chart,       ///< NEES of a block with its error in another chart: shown beside `nees`, never judged
+    squared_error,       ///< |e|^2 of one component group
+    variance,            ///< trace of that group's part of P: the filter's own value for the mean of |e|^2
+    nees_in_chart,       ///< NEES of a group with its error in another chart: shown beside `nees`, without a verdict
     other,
 };
 
@@ -47,9 +47,9 @@ enum class SeriesRole {
 struct Series {
     std::string name, long_name, unit;
     SeriesRole role = SeriesRole::other;
-    int dimension = 0;                     ///< of a block of the state
+    int dimension = 0;                     ///< of a component group
     bool integer = false;
-    std::string part;                      ///< block or component of the state, or group of rows, that it is of
+    std::string part;                      ///< the component group, the component, or the group of rows
     std::string rows;                      ///< of a nis: the series that counts its rows; empty where there is none
     int more_rows = 0;                     ///< of a nis: rows beside those
 };
@@ -58,14 +58,14 @@ struct Series {
 inline constexpr double coverage_levels[] = {0.5, 0.9, 0.95, 0.99};
 inline constexpr int coverage_level_count = 4;
 
-/// Number of first trials of which more is kept: their errors, and how far their innovations are correlated in time. Whole
-/// blocks; 4096, or as many as keep 2^24 numbers an arm.
+/// Number of first trials of which more is kept: their errors, and the correlation of their innovations in time. Whole
+/// blocks; 4096 trials, or as many as give 2^24 numbers an arm.
 int detailed_trials(int steps, int state_size);
 
 /// Lags at which innovations are correlated, 1 ... lag_count.
 inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
 
-/// A group of components of the state, contiguous, that is judged by itself.
+/// A group of contiguous components of the state that is evaluated by itself.
 struct ComponentGroup {
     std::string name;
     int first = 0, count = 0;

@@ -1,7 +1,7 @@
 #pragma once
-// Module report: A - B, trial by trial: arms of one results file, or of files whose trials share their draws. What is
-// compared is chosen and checked here; comparison.hpp computes it; text, JSON and CSV show it. [docs/statistics.md,
-// Comparison]
+// Module report: A - B, trial by trial: arms of one results file, or of files whose trials share their draws. This file
+// declares the selection and its checks, and the output as text, JSON, CSV and HTML; comparison.hpp the computation.
+// [docs/statistics.md, Comparison]
 
 #include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
@@ -17,13 +17,13 @@ struct StudyFile {
     Study study;
 };
 
-/// One arm as it was asked for: its name, or its controller's alone.
+/// An arm as requested: its name, or that of its controller alone.
 struct ArmChoice {
     std::size_t file = 0;  ///< its place in the list of files
     std::string arm;
 };
 
-/// What `--arms A,B` says.
+/// The value of `--arms A,B`.
 struct ArmsChoice {
     std::string text;  ///< as given
     ArmChoice a, b;
@@ -33,7 +33,7 @@ struct ArmsChoice {
 /// that file; of two, A alone is of the first and B alone of the second; else each names its file. Throws InputError.
 ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
 
-/// What the pairs say of the first figure, trace(P).
+/// The conclusion from the pairs on the first column, trace(P).
 enum class Conclusion {
     lower,      ///< A's mean is lower
     higher,     ///< A's mean is higher
@@ -49,7 +49,8 @@ struct ComparedSide {
     std::int64_t trials = 0;                ///< of its file
     std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
     std::int64_t failed_trials() const { return failed + diverged; }
-    /// By figure, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some is in no pair.
+    /// By column, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some trial is
+    /// in no pair.
     std::vector<double> mean;
 };
 
@@ -61,7 +62,7 @@ struct ComparedPair {
     std::int64_t trials = 0;                 ///< that both have, from 0 on; those that failed in A or B are no pairs
     bool complete = true;                    ///< the studies of both are
     Keep keep = Keep::trials;
-    std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published figures
+    std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published values
     Conclusion conclusion = Conclusion::not_shown;
 
     bool not_run() const { return a.trials == 0 || b.trials == 0; }
@@ -88,13 +89,13 @@ struct CompareReport {
 /// arms of different files of which one keeps no trials.
 CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice);
 
-/// For people: the conclusions first, then a table with a row per figure for each pair.
+/// The comparison as text: the conclusions first, then a table with a row per column for each pair.
 std::string compare_text(const CompareReport& report);
 /// An array with an object per scenario and pair; NaN and infinity are null.
 std::string compare_json(const CompareReport& report);
-/// One self-contained page, as report_html's.
+/// One self-contained page, like that of report_html.
 std::string compare_html(const CompareReport& report, const std::string& made_by);
-/// A row per scenario, pair and figure; NaN is an empty cell.
+/// A row per scenario, pair and column; NaN is an empty cell.
 std::string compare_csv(const CompareReport& report);
 
 }  // namespace credence

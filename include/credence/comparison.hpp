@@ -10,22 +10,22 @@
 
 namespace credence {
 
-/// One per-trial figure of both arms.
+/// One per-trial column of both arms.
 struct ComparedColumn {
     std::string name, unit;
     PairedComparison paired;
-    double holm_p = 0;      ///< Wilcoxon's p, corrected for everything that was compared beside it
+    double holm_p = 0;      ///< Wilcoxon's p, corrected for everything that was compared with it
 };
 
 /// Arm a minus arm b, over the trials that both have.
 struct Comparison {
     std::string scenario, a, b;
-    std::vector<ComparedColumn> columns;    ///< the columns that are figures, in their order
+    std::vector<ComparedColumn> columns;    ///< the columns that are compared, in their order
 
     std::string name() const { return a + " - " + b; }
 };
 
-/// An arm and what it is called beside the other.
+/// An arm and its name in the comparison.
 struct ComparedArm {
     const ScenarioResults& results;
     const ArmResults& arm;
@@ -37,12 +37,12 @@ class CommonTrials {
 public:
     CommonTrials(const ScenarioResults& a, const ScenarioResults& b);
     std::int64_t count() const { return count_; }
-    /// Of one value a trial of `a` or of `b`, those of the common trials.
+    /// The values of the common trials, from one value a trial of `a` or of `b`.
     std::vector<double> of_a(const std::vector<double>& values) const { return selected(values, &Span::a); }
     std::vector<double> of_b(const std::vector<double>& values) const { return selected(values, &Span::b); }
 
 private:
-    /// Rows that follow each other in both.
+    /// Rows that are adjacent in both.
     struct Span {
         std::int64_t a, b, rows;
     };
@@ -52,11 +52,11 @@ private:
     std::int64_t count_ = 0;
 };
 
-/// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap. Where no trial is kept, the
-/// arms must be of the same results, whose totals say what they can.
+/// Compares two arms that share their draws, trial by trial. `root_seed` keys the bootstrap. Where no trial is kept,
+/// the arms must be of the same results, and the comparison is computed from their totals.
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed);
 
-/// Fills in holm_p over all figures of all comparisons.
+/// Sets holm_p for all columns of all comparisons.
 void correct_together(std::vector<Comparison>& comparisons);
 
 /// Every planned arm against its partner: greedy - fixed of the same estimator, horizon - greedy.

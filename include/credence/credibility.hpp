@@ -1,6 +1,6 @@
 #pragma once
-// Module statistics: how far the filter's covariance is from the errors it has, on a logarithmic scale [Li and Zhao, Measuring
-// Estimator's Credibility: Noncredibility Index].
+// Module statistics: the discrepancy between the filter's covariance and its actual errors, on a logarithmic scale [Li
+// and Zhao, Measuring Estimator's Credibility: Noncredibility Index].
 
 #include <cstdint>
 #include <vector>

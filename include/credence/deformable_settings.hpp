@@ -1,8 +1,9 @@
 #pragma once
-// Module slam: the scenario, what a study is about. One plain struct per concern; the defaults are the seed's
-// (heading model, straight path, constant noise). Keys, ranges and texts: scenario_keys.hpp.
+// Module slam: the settings of a scenario of the deformable world. One plain struct per concern; the defaults are those
+// of the reference study (heading model, straight path, constant noise). Keys, ranges and texts:
+// src/worlds/deformable/.
 //
-// Targets: lengths in `length_unit` (dm in the seed), angles in radians; sigma is a standard deviation.
+// Units: lengths in `length_unit` (dm in the reference study), angles in radians; sigma is a standard deviation.
 
 #include <credence/detail/estimator_list.hpp>
 
@@ -41,12 +42,12 @@ enum class Process { heading, translation };
 enum class Path { straight, circle, still };
 enum class FixedPath { as_features, straight, circle };
 enum class RangeNoise { constant, ranged };
-/// jitter: deformation is white about the feature's centre (the document's); walk: it accumulates, as the filter
-/// assumes.
+/// jitter: deformation is white noise about the feature's centre (as in the document); walk: it accumulates, as the
+/// filter assumes.
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };
-/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over some steps is.
+/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over several steps is least.
 enum class Controller { fixed, greedy, horizon };
 /// How the state is estimated, in the order of estimator_list.hpp.
 enum class Estimator {
@@ -109,7 +110,7 @@ struct ArmSettings {
     std::optional<std::vector<Estimator>> estimators;  ///< none: the process's own
 };
 
-/// A figure that somebody published for one arm, to be shown at its place in our distribution.
+/// A published value of one arm, shown with its place in the distribution over the trials.
 struct PublishedNumber {
     std::string arm;                              ///< such as greedy.kf
     double value = 0;
@@ -138,7 +139,7 @@ struct DeformableSettings {
     PublishedSettings published;
 };
 
-/// One column of a study: who steers and who estimates.
+/// One arm of a study: a controller and an estimator.
 struct Arm {
     Controller controller = Controller::fixed;
     Estimator estimator = Estimator::ekf;
@@ -148,14 +149,16 @@ struct Arm {
 inline constexpr int largest_feature_count = 64;
 inline constexpr int largest_pose_count = 100000;
 inline constexpr int largest_horizon = 8;
-/// Sequences of candidates that a horizon may have, at most: each step of each trial goes through all of them.
+/// The largest number of sequences of candidates that a horizon may have: each step of each trial evaluates all of
+/// them.
 inline constexpr double largest_sequence_count = 1e7;
 
-/// The scenario with every default that depends on another key filled in: the planner's grid, the estimators, the
-/// edge list. What is shown, hashed and stored is always resolved.
+/// The scenario with every default that depends on another key filled in: the planner's grid, the estimators, the edge
+/// list. Scenarios are shown, hashed and stored in this form.
 DeformableSettings resolved(DeformableSettings scenario);
 
-/// Throws InputError naming the key where keys contradict each other or make S or P singular [model.md, Conventions].
+/// Throws InputError naming the key where keys contradict each other or make S or P singular [docs/model.md, What is
+/// refused].
 /// Ranges of single keys are checked when they are set.
 void validate(const DeformableSettings& scenario);
 
@@ -168,10 +171,10 @@ std::string arm_name(const Arm& arm);
 /// The edge list of a scenario in graph order: for `all`, a outer and b inner, a < b.
 std::vector<Edge> edge_list(const DeformableSettings& scenario);
 
-/// The planners' candidates at each pose, of a resolved scenario [model.md, Controllers].
+/// The planners' candidates at each pose, of a resolved scenario [docs/model.md, Controllers].
 int candidate_count(const DeformableSettings& scenario);
 
-/// Path that the robot is steered by: control.path, or the features' own.
+/// The path along which the robot is steered: control.path, or the features' own.
 Path robot_path(const DeformableSettings& scenario);
 
 /// Dimension of the robot's pose (3 or 2) and of the state, pose + 2M.

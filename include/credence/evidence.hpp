@@ -1,6 +1,6 @@
 #pragma once
-// Module verdict: what one arm's totals say of its filter: every figure of docs/statistics.md but the verdict. Lists by step
-// have K - 1 entries, for the steps 1 ... K - 1. NaN where there are too few trials.
+// Module verdict: the evidence that one arm's totals give on its filter: all numbers of docs/statistics.md but the
+// verdict. Lists by step have K - 1 entries, for the steps 1 ... K - 1. NaN where there are too few trials.
 
 #include <credence/credibility.hpp>
 #include <credence/results.hpp>
@@ -29,7 +29,7 @@ struct Coverage {
     double over_steps = 0;                     ///< mean share over the steps: no interval, steps are not independent
 };
 
-/// Error against predicted standard deviation: root mean squares over trials, and over the components of the block.
+/// Error against predicted standard deviation: root mean squares over trials, and over the components of the group.
 struct Accuracy {
     std::vector<double> rmse, predicted;       ///< by step: sqrt(mean |e|^2), sqrt(mean trace P)
     double over_steps = 0;                     ///< RMSE over all trials and steps
@@ -38,7 +38,7 @@ struct Accuracy {
     std::string unit;                          ///< of the squares
 };
 
-/// One block of the state.
+/// One component group.
 struct GroupEvidence {
     std::string block;
     int dimension = 0;
@@ -50,8 +50,8 @@ struct GroupEvidence {
     Accuracy accuracy;
 };
 
-/// NEES of a block with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown beside the
-/// block's own, never judged.
+/// NEES of a component group with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown
+/// beside the group's own, without a verdict.
 struct ChartEvidence {
     std::string chart, block;                  ///< invariant; all, pose
     int dimension = 0;
@@ -74,7 +74,7 @@ struct Whiteness {
     int lag = 0;
     std::int64_t count = 0;                    ///< products
     double correlation = 0;                    ///< their mean
-    double scaled = 0;                         ///< the same over NIS/m: what is left where S has the wrong size
+    double scaled = 0;                         ///< the same over NIS/m, for where S has the wrong size
     double bound = 0, simultaneous_bound = 0;  ///< z/sqrt(count), for this lag and for all of them
 
     /// False where the S of some step is so ill-conditioned that its innovation has no whitened form.
@@ -100,10 +100,10 @@ struct CredibilityEvidence {
 };
 
 struct Evidence {
-    std::int64_t trials = 0;                   ///< that the figures are of
+    std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
-    std::int64_t left_out = 0;                 ///< trials that failed and are in no figure
-    std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are in the figures
+    std::int64_t left_out = 0;                 ///< trials that failed and are left out
+    std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are not left out
     int steps = 0;
     std::vector<GroupEvidence> blocks;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
@@ -116,7 +116,7 @@ struct Evidence {
     std::int64_t failed_trials() const { return left_out + diverged; }
 };
 
-/// Reads the evidence off an arm's totals. It knows figures by their roles only.
+/// Computes the evidence from an arm's totals. It selects series by their roles only.
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm);
 
 }  // namespace credence

@@ -1,5 +1,5 @@
 #pragma once
-// Module statistics: how the values of a sample are spread, counted in bins of round width.
+// Module statistics: histograms of a sample, with bins of round width.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,6 @@
 #pragma once
-// Module worlds: scenario files: INI, one line after another through Boost.Program_options, so that a refusal names its line.
+// Module worlds: reading scenario files: INI, line by line through Boost.Program_options, so that a message can name
+// the line.
 
 #include <credence/scenario.hpp>
 #include <credence/deformable_settings.hpp>
@@ -27,13 +28,12 @@ Scenario read_scenario_text(const std::string& text, const std::string& origin, 
                                   const Overrides& overrides = {});
 Scenario read_scenario(const std::string& path, const Overrides& overrides = {});
 
-/// The scenarios of a file's grid, in the grid's order: each with overrides, then its values of the axes, and named
-/// after its place [point_name]. Without axes: the file's own scenario. Throws InputError, naming the point.
+/// The scenarios of a file's sweep, in the sweep's order: each with the overrides, then its values of the axes, and
+/// named after its place [point_name]. Without axes: the file's own scenario. Throws InputError, naming the point.
 std::vector<Scenario> read_grid(const std::string& path, const Overrides& overrides,
                                    const std::vector<SweepAxis>& axes);
 
-/// The keys and values of a text as they stand there, whatever they mean. Throws InputError for broken lines and
-/// repeated keys.
+/// The keys and values of a text, uninterpreted. Throws InputError for broken lines and repeated keys.
 std::vector<Setting> read_settings(const std::string& text, const std::string& origin);
 
 }  // namespace credence

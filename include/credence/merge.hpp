@@ -1,5 +1,5 @@
 #pragma once
-// Module files: the files of shards, or of interrupted runs, made one study again.
+// Module files: merging the files of shards, or of interrupted runs, into one study.
 
 #include <credence/store.hpp>
 
@@ -8,10 +8,10 @@
 
 namespace credence {
 
-/// The union of what results files of one study hold, the same as one run's. The files may come in any order; a block
-/// that is in several is taken once. Columns stay in the files, and so do totals beyond `most_totals` bytes. Throws InputError
-/// where a file cannot be read, is of another study or was asked for other trials, or holds a block that differs from another
-/// file's.
+/// The union of results files of one study, the same as the result of a single run. The files may come in any order; a
+/// block that is in several is taken once. Columns stay in the files, and so do totals beyond `most_totals` bytes.
+/// Throws InputError where a file cannot be read, is of another study or was asked for other trials, or holds a block
+/// that differs from another file's.
 Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals = most_totals_in_memory);
 
 /// The blocks that a study lacks, by scenario, such as `scenario a lacks blocks 3, 7 to 9 of 40`; empty for none.

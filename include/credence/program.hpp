@@ -1,6 +1,5 @@
 #pragma once
-// Module cli: the program credence as a function: with the worlds that were added before, `main` of somebody's own is two
-// lines.
+// Module cli: the program credence as a function: a program with further worlds adds these and then calls it.
 
 namespace credence {
 

@@ -1,5 +1,5 @@
 #pragma once
-// Module slam: recorded noise with the same face as the keyed draws. Reading it from HDF5: store.hpp.
+// Module slam: recorded noise with the same interface as the keyed draws. Reading it from HDF5: store.hpp.
 
 #include <credence/detail/draws.hpp>
 
@@ -8,9 +8,9 @@
 
 namespace credence {
 
-/// Standardised noise of one trial, as read from a record: multiply by sigma. Row k belongs to pose k, feature j;
-/// `odometry` holds [heading, x, y] used on arrival at pose k (row 0: the initial pose); `walk` row k leaves pose k;
-/// `edge` follows the graph order. All arrays are row-major.
+/// Standardised noise of one trial, as read from a noise record: multiply by sigma. Row k belongs to pose k, feature j;
+/// `odometry` holds [heading, x, y] used on arrival at pose k (row 0: the initial pose); `walk` row k is used on
+/// leaving pose k; `edge` follows the graph order. All arrays are row-major.
 struct NoiseRecord {
     int poses = 0, features = 0, edges = 0;
     std::vector<double> odometry;     ///< [poses, 3]
@@ -27,7 +27,7 @@ public:
     explicit RecordedDraws(const NoiseRecord& record) : record_(&record) {}
 
     Vector2<double> normal(Source source, int pose, int index) const;
-    /// A record holds no detection draws: a study with detection below 1 cannot be replayed from one.
+    /// A noise record holds no detection draws: a study with detection below 1 cannot be replayed from one.
     double uniform(Source, int, int) const { return 0; }
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// Module report: what people read. A report is computed once from a study and then rendered as text, JSON, CSV or HTML.
+// Module report: the report. It is computed once from a study and then rendered as text, JSON, CSV or HTML.
 
 #include <credence/comparison.hpp>
 #include <credence/consistency.hpp>
@@ -13,7 +13,7 @@
 
 namespace credence {
 
-/// A published single-run figure and its place in our distribution, in percent (mid-rank).
+/// A published single-run value and its place in the distribution over the trials, in percent (mid-rank).
 struct PublishedPlace {
     double value = 0, percentile = 0;
 };
@@ -21,27 +21,27 @@ struct PublishedPlace {
 /// Quantiles that a report gives beside the median.
 inline constexpr double reported_quantiles[] = {0.05, 0.25, 0.75, 0.95};
 
-/// One per-trial figure of one arm.
+/// One per-trial column of one arm.
 struct ColumnReport {
     std::string name, unit;
     Summary summary;
     std::vector<double> quantiles;          ///< of type 7, at reported_quantiles; NaN where no trial is kept
-    std::optional<Interval> bootstrap95;    ///< of the mean; not of figures that have their own tests; NaN likewise
+    std::optional<Interval> bootstrap95;    ///< of the mean; not of columns that have their own tests; NaN likewise
     std::optional<PublishedPlace> published;  ///< its percentile NaN likewise
-    std::optional<Histogram> histogram;     ///< of the figures that may have a published one; none likewise
+    std::optional<Histogram> histogram;     ///< of the columns that may have a published value; none likewise
 };
 
 struct ArmReport {
     std::string scenario, arm;
-    std::int64_t trials = 0;                ///< all that are there; 0: the arm is not run yet
-    std::int64_t failed = 0;                ///< of them, those that are in no figure
-    std::int64_t diverged = 0;              ///< of them, those that diverged and are in the figures
+    std::int64_t trials = 0;                ///< all that are present; 0: the arm has not run yet
+    std::int64_t failed = 0;                ///< of them, those that are left out of the columns
+    std::int64_t diverged = 0;              ///< of them, those that diverged and are not left out
     std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
 
     bool not_run() const { return trials == 0; }
-    /// What the verdict counts as failed.
+    /// The largest share of failed trials without the verdict `failed`.
     std::int64_t failed_trials() const { return failed + diverged; }
 };
 
@@ -58,7 +58,7 @@ struct Report {
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 
-/// Figures of failed trials are left out (they are NaN), but for those that diverged; their number is given beside.
+/// Failed trials are left out (their values are NaN), except those that diverged; their number is reported beside.
 Report make_report(const Study& study, const Limits& limits);
 
 /// The same of a record: one arm, `record`; `path` names it.
@@ -68,20 +68,20 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
                      const Limits& limits);
 
-/// For people: the verdicts, why, and where.
+/// The report as text: the verdicts, their reasons, and the steps.
 std::string report_text(const Report& report);
 /// An array with an object per scenario and arm; NaN is null.
 std::string report_json(const Report& report);
-/// A row per scenario, arm and figure; and one per pair and figure.
+/// A row per scenario, arm and column or series; and one per pair and column.
 std::string report_csv(const Report& report);
 
-/// What a page says of where its figures came from.
+/// The origin of the numbers on a page.
 struct PageOrigin {
     std::string file;       ///< the results file or the record, without its folder
     RunFacts run;           ///< the results file's /run; empty for a record
     std::string made_by;    ///< the program that makes the page
 };
-/// One self-contained page: nothing is loaded, nothing runs. The same bytes for the same report and origin.
+/// One self-contained page: it loads nothing and runs no scripts. The same bytes for the same report and origin.
 std::string report_html(const Report& report, const PageOrigin& origin);
 
 /// Throws Failure naming the arms that are not `consistent`.

@@ -1,5 +1,6 @@
 #pragma once
-// Module slam: what the trials of a SLAM scenario report: columns, series, components and groups of its state.
+// Module slam: the declaration of what the trials of a SLAM scenario report: columns, series, components and their
+// groups.
 
 #include <credence/columns.hpp>
 #include <credence/deformable_settings.hpp>
@@ -31,7 +32,8 @@ std::vector<Component> state_components(const SlamState& state);
 /// Unit of trace(P): length^2, and in the heading model + rad^2.
 std::string trace_unit(const SlamState& state);
 
-/// In which charts of the error NEES are reported. Where all estimators are the process model's own, in its own alone.
+/// The charts of the error in which NEES are reported. Where all estimators are the process model's own, this is its
+/// own chart alone.
 enum class Charts { euclidean, euclidean_and_invariant };
 
 Charts charts_of(const SlamState& state);
@@ -43,7 +45,7 @@ enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees
 /// The per-trial columns, in the order of ColumnIndex.
 std::vector<Column> trial_columns(const SlamState& state);
 
-/// The per-step series, in the order in which trial.hpp writes them.
+/// The per-step series, in the order in which src/slam/trial/step_evaluation.hpp writes them.
 std::vector<Series> step_series(const SlamState& state);
 
 }  // namespace credence

@@ -1,5 +1,6 @@
 #pragma once
-// Module statistics: figures of a sample of trials, and of pairs of trials. Every value is one trial's; trials are independent.
+// Module statistics: statistics of a sample of trials, and of pairs of trials. Every value is one trial's; trials are
+// independent.
 
 #include <cstdint>
 #include <vector>
@@ -47,7 +48,7 @@ struct Moments {
 };
 /// mean -+ t_{1 - alpha/2, count - 1} standard_error
 Interval t_interval(const Moments& moments, double alpha = 0.05);
-/// What is left of a summary where there are sums only: the median is NaN.
+/// The part of a summary that follows from sums: the median is NaN.
 Summary summary_of(const Moments& moments);
 Moments moments_from_sums(std::int64_t count, double sum, double square_sum);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Module scenario: sweeps: a grid of values of a scenario's keys, and what a scenario says of its place in one. Texts only: which
-// keys there are, and what they take, the scenario's world knows.
+// Module scenario: sweeps: a grid of values of a scenario's keys, and a scenario's place in one. This file treats keys
+// and values as texts; the scenario's world defines which are valid.
 
 #include <cstddef>
 #include <string>
@@ -17,19 +17,19 @@ struct SweepCoordinate {
     friend bool operator==(const SweepCoordinate&, const SweepCoordinate&) = default;
 };
 
-/// Where a scenario stands in a grid: the name of the scenario that was swept, and the value of every swept key, the
-/// slowest first. Both are empty where it stands in none.
+/// A scenario's place in a sweep: the name of the scenario that was swept, and the value of every swept key, the
+/// slowest first. Both are empty for a scenario that is not part of a sweep.
 struct SweepPoint {
     std::string of;
     std::vector<SweepCoordinate> at;
     friend bool operator==(const SweepPoint&, const SweepPoint&) = default;
 };
 
-/// `noise.heading=0.01, planner.turns=0, 0.3`: a value may hold commas, for a part without an equals sign goes on with
-/// the value before it.
+/// `noise.heading=0.01, planner.turns=0, 0.3`: a value may contain commas, because a part without an equals sign
+/// belongs to the value before it.
 std::string coordinates_text(const std::vector<SweepCoordinate>& at);
-/// The same read, every number in a value as `to_text` writes it. Throws InputError where the text does not begin with
-/// `key=`, a value is empty, or a key repeated or none that can be swept.
+/// Parses that text, every number in a value formatted as by `to_text`. Throws InputError where the text does not begin
+/// with `key=`, a value is empty, or a key is repeated or cannot be swept.
 std::vector<SweepCoordinate> parse_coordinates(const std::string& text);
 
 /// A swept key and its values, in their order.
@@ -38,17 +38,17 @@ struct SweepAxis {
     std::vector<std::string> values;
 };
 
-/// `key=ITEM,ITEM…`, or `key=ITEM|ITEM…` where values hold commas themselves. An item is a value or a range of numbers,
-/// `first:last:count` or, with equal ratios, `first:last:count:log`. The ends of a range are as they were given; what
-/// lies between is rounded to six digits (of the step, or of the number), so that it can be read and typed again.
-/// Numbers in values are written as `to_text` does. Throws InputError naming --sweep, also where the key is one that
-/// cannot be swept: those that name a scenario, or say what is shown beside its figures.
+/// `key=ITEM,ITEM…`, or `key=ITEM|ITEM…` where values contain commas themselves. An item is a value or a range of
+/// numbers, `first:last:count` or, with equal ratios, `first:last:count:log`. The ends of a range are as given; the
+/// numbers between are rounded to six digits (of the step, or of the number), so that they can be read and typed again.
+/// Numbers in values are formatted as by `to_text`. Throws InputError naming --sweep, also where the key cannot be
+/// swept: those that name a scenario, or give values for display only.
 SweepAxis parse_axis(const std::string& text);
 
 /// The axes of a grid. Throws InputError beyond most_swept_scenarios, where a key is swept twice or a value given twice.
 std::vector<SweepAxis> parse_grid(const std::vector<std::string>& texts);
 
-/// The number of points; one of no axes.
+/// The number of points; 1 without axes.
 std::size_t point_count(const std::vector<SweepAxis>& axes);
 
 /// All points, the first axis slowest.

@@ -1,6 +1,5 @@
 #pragma once
-// Module base: numbers and lists as text, the same both ways: `to_text` gives the shortest text that reads back to the same
-// bits.
+// Module base: numbers and lists as text, and back: `to_text` gives the shortest text that reads back to the same bits.
 
 #include <cstdint>
 #include <functional>
@@ -21,18 +20,19 @@ std::optional<std::int64_t> to_integer(std::string_view text);
 
 std::string trimmed(std::string_view text);
 
-/// Whether names of scenarios and of a record's blocks may hold it: [A-Za-z0-9_-], whatever the locale.
+/// Whether a character may occur in names of scenarios and of a record's groups: [A-Za-z0-9_-], whatever the locale.
 bool is_name_character(char c);
 
 /// Whether every sequence of bytes is one of UTF-8 (RFC 3629), as files and JSON need it.
 bool is_utf8(std::string_view text);
 
-/// The text with what a terminal could obey (control characters but line feed and tab, changes of the direction of writing)
-/// and bytes that are not UTF-8 replaced by what `instead` gives for each.
+/// The text with characters that control a terminal (control characters but line feed and tab, changes of the direction
+/// of writing) and bytes that are not UTF-8 replaced by the result of `instead` for each.
 std::string with_controls_as(std::string_view text, const std::function<std::string(std::string_view)>& instead);
 
-/// The text, such as a report, fit for a terminal: these are escaped as JSON escapes them, such as `\u001b`. What the program
-/// prints goes through it, because titles, names and units come from files. For a name in a message: `printable`, error.hpp.
+/// The text, such as a report, fit for a terminal: these characters are escaped as in JSON, such as `\u001b`. All
+/// output of the program goes through it, because titles, names and units come from files. For a name in a message:
+/// `printable`, error.hpp.
 std::string shown(std::string_view text);
 
 /// One word of a command line, quoted where a shell needs it; control characters as bash writes them, in $'...'.

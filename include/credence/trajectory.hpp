@@ -1,6 +1,6 @@
 #pragma once
-// Module worlds: a single trial with everything that happened in it, in the reader's matrices. Replay writes it; tests compare
-// it.
+// Module worlds: the trajectory of a single trial with all its quantities, as Eigen matrices. Replay writes it; tests
+// compare it.
 
 #include <credence/recorded_noise.hpp>
 #include <credence/deformable_settings.hpp>
@@ -23,7 +23,7 @@ struct TrajectoryStep {
     Eigen::MatrixXd covariance;             ///< [n, n] after the update, as reported (times filter.covariance)
     Eigen::VectorXd predicted_mean;         ///< [n]
     Eigen::MatrixXd predicted_covariance;   ///< [n, n], as the filter holds it
-    Control control;                        ///< that led here
+    Control control;                        ///< the control on the way to this pose
     std::vector<bool> seen;                 ///< [M]
     Eigen::VectorXd measurement_sigma;      ///< [M] true standard deviation
     Eigen::MatrixX2d measurement;           ///< [M, 2] body frame, NaN where not seen
@@ -31,7 +31,7 @@ struct TrajectoryStep {
     Eigen::MatrixXd innovation_covariance;  ///< [m, m], NaN where not observed
     double nees = 0, nis = 0, trace_P = 0;
     int rows = 0;
-    std::vector<double> candidate_cost;     ///< [C] trace(P) each candidate promised; planned only
+    std::vector<double> candidate_cost;     ///< [C] predicted trace(P) of each candidate; planned only
 };
 
 struct Trajectory {
@@ -49,7 +49,7 @@ struct Trajectory {
 /// Runs one trial of one arm again, on the study's draws. The same bits as the engine's.
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
 
-/// Throws InputError where the record is too short, too narrow or lacks what the scenario draws. `file` names it.
+/// Throws InputError where the noise record is too short, too narrow or lacks draws of the scenario. `file` names it.
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);
 
 /// Runs one arm on recorded noise, which must cover the scenario.

@@ -100,7 +100,7 @@ void load_totals(ScenarioResults& results) {
 }
 
 void drop_totals(ScenarioResults& results) {
-    const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} keeps the capacity
+    const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} would not
     for (ArmResults& arm : results.arms) {
         free(arm.totals);
         free(arm.cells);

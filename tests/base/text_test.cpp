@@ -104,7 +104,7 @@ TEST_CASE("text: the closest word is found if it is close") {
     CHECK(closest("noise.walk", {}) == "");
 }
 
-TEST_CASE("text: UTF-8 is told from what only looks like it") {
+TEST_CASE("text: UTF-8 is distinguished from similar bytes") {
     for (const char* good : {"", "dm", "\xc2\xb5m", "\xe2\x88\x9a", "\xf0\x9f\x98\x80"}) CHECK(is_utf8(good));
     for (const char* bad : {"\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff", "a\xe2\x88"})
         CHECK_FALSE(is_utf8(bad));

@@ -1,4 +1,4 @@
-// What check_page.py asks a page. Evaluated in it; every function returns plain values.
+// The queries of check_page.py, evaluated in the page; every function returns plain values.
 (() => {
   const text = (node) => node.textContent.trim().replace(/\s+/g, " ");
 

@@ -37,7 +37,7 @@ void check_harmless(const std::string& text) {
     for (const char* bad : {"\xc2\x9b", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6"}) CHECK(text.find(bad) == std::string::npos);
 }
 
-/// Every command that reads a file, with what it takes beside the file's name.
+/// Every command that reads a file, with its other arguments.
 const std::vector<std::string> commands_of_hdf5{"report", "judge", "compare", "watch", "merge -o merged.h5",
                                                 "replay --scenario small --arm fixed --trial 0"};
 const std::vector<std::string> commands_of_scenarios{"run", "show"};
@@ -136,7 +136,7 @@ TEST_CASE("cli: titles, names and units reach a terminal without what it obeys")
     check_refused(here.credence("report \"$(printf 'none\\033\\377')\""), "none\\u001b\\xff: the file: cannot be found");
 }
 
-TEST_CASE("cli: the names of a record's blocks are shown without harm") {
+TEST_CASE("cli: the names of a record's groups are escaped") {
     const Workplace here;
     write_plain_record(here.path("record.h5"), [](const hdf5::Handle& root) {
         hdf5::write_text(root, "blocks", "a\x1b[31m\xc2\x9b\xe2\x80\xae 0:1");
@@ -204,7 +204,7 @@ TEST_CASE("cli: replay takes a controller's name for its only arm") {
     check_refused(here.credence(replay + "ekf"), "not in the scenario");
 }
 
-TEST_CASE("cli: a report or a trajectory replaces a file only where it is told to, and never the one that it reads") {
+TEST_CASE("cli: a report or a trajectory replaces a file only with --overwrite, and never the one that it reads") {
     const Workplace here;
     add_results(here);
     write_plain_record(here.path("record.h5"));

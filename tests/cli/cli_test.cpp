@@ -51,7 +51,7 @@ TEST_CASE("cli: run writes a file, and report gives JSON with an object per scen
     CHECK(arms[3]["paired_difference"]["pair"] == "greedy.kf - fixed.kf");
 }
 
-TEST_CASE("cli: the table names every arm, its differences and the published figures") {
+TEST_CASE("cli: the table names every arm, its differences and the published values") {
     const Workplace here;
     const Outcome run = here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 -o r.h5");
     REQUIRE(run.exit_code == 0);
@@ -62,7 +62,7 @@ TEST_CASE("cli: the table names every arm, its differences and the published fig
     CHECK(run.out.compare(0, report.out.size(), report.out) == 0);
 }
 
-TEST_CASE("cli: report as CSV has a row per arm and figure, and -o writes a file") {
+TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file") {
     const Workplace here;
     REQUIRE(here.credence("run " + seed_scenario("ekf-straight-constant") + small).exit_code == 0);
     const Outcome csv = here.credence("report credence.h5 --format csv -o t.csv");
@@ -77,7 +77,8 @@ TEST_CASE("cli: report as CSV has a row per arm and figure, and -o writes a file
     CHECK(rows.out == std::to_string(18 + 2 * (8 * (2 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2)) + "\n");
 }
 
-TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives", "[long]") {
+TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives",
+          "[long]") {
     const Workplace here;
     const std::string scenarios = "run " + seed_scenario("ekf-circle-ranged") + " " + seed_scenario("kf-straight-constant") + " --quiet ";
     REQUIRE(here.credence(scenarios + "--trials 3000 --threads 1 -o one.h5").exit_code == 0);

@@ -12,7 +12,7 @@ namespace {
 
 const std::string small_world =
     "[scenario]\nname = small\nposes = 5\n[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1\n";
-/// One in which a block of 256 trials takes some tenths of a second.
+/// A scenario whose blocks of 256 trials take some tenths of a second each.
 const std::string slow_world = "[scenario]\nname = slow\nposes = 400\n";
 
 /// A run in the background, of which `signals` is done once its journal has a block or more; then its exit code.
@@ -56,7 +56,7 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
     }
 }
 
-TEST_CASE("cli: the line that a stopped run prints ends with the results of one that nobody disturbed", "[long]") {
+TEST_CASE("cli: the command that a stopped run prints gives the results of an undisturbed run", "[long]") {
     const Workplace here;
     here.write("slow.ini", slow_world);
     const std::string arguments = "slow.ini --trials 2100 --quiet --commit-every 1 --threads 2 ";

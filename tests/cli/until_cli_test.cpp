@@ -16,7 +16,7 @@ std::int64_t lines(const std::string& text) { return std::count(text.begin(), te
 
 }  // namespace
 
-TEST_CASE("cli: run --until stops at the first look for a loose goal, and says so") {
+TEST_CASE("cli: run --until stops at the first interim analysis for a loose goal, and reports it") {
     const Workplace here;
     const std::string loose = kalman + "--trials 300 --until trace_P=80% --until unseen=0.5 ";
     const Outcome run = here.credence(loose);
@@ -31,7 +31,7 @@ TEST_CASE("cli: run --until stops at the first look for a loose goal, and says s
     CHECK(here.shell("h5diff --exclude-path /run credence.h5 quiet.h5").exit_code == 0);
 }
 
-TEST_CASE("cli: run --until goes on to a later look, with the number that it expects", "[long]") {
+TEST_CASE("cli: run --until continues to a later interim analysis, with the number that it expects", "[long]") {
     const Workplace here;
     const Outcome run = here.credence(kalman + "--until trace_P=7%");
     INFO(run.out << run.err);
@@ -71,7 +71,7 @@ TEST_CASE("cli: run --until gives the same file for any number of threads and af
         CHECK(here.shell(std::string("h5diff --exclude-path /run 1.h5 ") + other).exit_code == 0);
     }
     const Outcome header = here.shell("h5dump -H -d /kf-straight-constant/fixed.kf/trace_P 1.h5");
-    CHECK_THAT(header.out, Contains("( 8192 )"));  // a look after the first
+    CHECK_THAT(header.out, Contains("( 8192 )"));  // an analysis after the first
 }
 
 TEST_CASE("cli: run --until with a file that has more judges its first trials, and keeps it as it is") {
@@ -84,7 +84,7 @@ TEST_CASE("cli: run --until with a file that has more judges its first trials, a
     CHECK(here.read("credence.h5") == before);
 }
 
-TEST_CASE("cli: a dry run with --until tells the cost of its ceiling") {
+TEST_CASE("cli: a dry run with --until reports the cost of its ceiling") {
     const Workplace here;
     const Outcome dry = here.credence(kalman + "--until trace_P=1% --dry-run");
     CHECK(dry.exit_code == 0);

@@ -1,4 +1,4 @@
-// Which shard a launcher names.
+// The shard that a launcher's environment names.
 
 #include <credence/error.hpp>
 #include "cluster/launcher.hpp"
@@ -36,7 +36,8 @@ std::string refused(const Names& names) {
     return refusal<InputError>([&] { shard_of_launcher(variables(names)); });
 }
 
-/// What Slurm sets in task `id` of --array=FIRST-LAST:STEP (Slurm 22.05: MAX is the last task's, not LAST).
+/// The variables that Slurm sets in task `id` of --array=FIRST-LAST:STEP (Slurm 22.05: MAX is the last task's, not
+/// LAST).
 Names array_task(int first, int last, int step, int id) {
     const int count = (last - first) / step + 1;
     return {{"SLURM_JOB_ID", "77"},
@@ -48,7 +49,7 @@ Names array_task(int first, int last, int step, int id) {
             {"SLURM_ARRAY_TASK_COUNT", std::to_string(count)}};
 }
 
-/// What srun sets in process `id` of `count`.
+/// The variables that srun sets in process `id` of `count`.
 Names step_task(int id, int count) {
     return {{"SLURM_JOB_ID", "77"},
             {"SLURM_STEP_ID", "0"},

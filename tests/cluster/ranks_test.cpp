@@ -16,7 +16,7 @@ using namespace credence::test;
 
 namespace {
 
-/// The letters of a job, by the rank that they are for.
+/// The messages of a job, by the rank that they are for.
 struct Office {
     explicit Office(int size) : letters(static_cast<std::size_t>(size)) {}
     std::mutex mutex;
@@ -52,7 +52,7 @@ private:
 using Signal = std::function<std::string()>;
 const Signal no_signal = [] { return std::string(); };
 
-/// Ranks 1 ... size - 1, until rank 0 sends them home.
+/// Ranks 1 ... size - 1, until rank 0 ends their work.
 class Followers {
 public:
     explicit Followers(Office& office, const Signal& signal = no_signal) {
@@ -70,7 +70,7 @@ private:
     std::vector<std::thread> threads_;
 };
 
-/// What one run of several ranks is to do.
+/// The settings of one run of several ranks.
 struct Job {
     int size = 3;
     std::function<bool()> stop{};
@@ -78,7 +78,7 @@ struct Job {
     RankLeader::Sending sending = RankLeader::Sending::now_and_then;
 };
 
-/// Runs what is missing of `asked` on the ranks of the job; all of its threads compute, rank 0's too.
+/// Runs the missing blocks of `asked` on the ranks of the job; all of its threads compute, rank 0's too.
 void compute_together(StoredRun& run, const Asked& asked, const Job& job) {
     Office office(job.size);
     const Followers followers(office, job.signal);
@@ -154,7 +154,7 @@ TEST_CASE("ranks: what they sent is in the journal, and the run goes on with it 
     CHECK(bytes_of(folder / "x.h5") == bytes_of(folder / "one.h5"));
 }
 
-TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves what can be gone on with") {
+TEST_CASE("ranks: a stop keeps finished blocks, whichever rank got the signal, and can be resumed") {
     const TemporaryFolder folder;
     Asked asked = some();
     asked.trials = 200000;
@@ -187,7 +187,7 @@ TEST_CASE("ranks: a stop keeps what is done, whoever got the signal, and leaves 
     }
 }
 
-TEST_CASE("ranks: the signal of another rank is told by name and rank") {
+TEST_CASE("ranks: the signal of another rank is reported by name and rank") {
     Office office(2);
     const Followers followers(office, [] { return std::string("SIGHUP"); });
     ThreadTransport own(office, 0);
@@ -204,7 +204,7 @@ TEST_CASE("ranks: the signal of another rank is told by name and rank") {
     CHECK_FALSE(run.study().complete);
 }
 
-TEST_CASE("ranks: one of which nothing is heard ends the run, and what the others did is committed") {
+TEST_CASE("ranks: a rank that falls silent ends the run, and the results of the others are committed") {
     const TemporaryFolder folder;
     const Asked asked = some();
     Office office(2);
@@ -214,7 +214,7 @@ TEST_CASE("ranks: one of which nothing is heard ends the run, and what the other
         RankLeader leader(own, std::chrono::milliseconds(50));
         ByteWriter one;
         one.put(std::int64_t{1});
-        lost.send(0, Word::want, one.take());  // it takes a block, and is never heard of again
+        lost.send(0, Word::want, one.take());  // it takes a block, and then sends nothing
         leader.begin(definition_of(run.study()), 1, RankLeader::Sending::at_once);
         RunOptions options{asked.trials, 1, {}, {}, {}, &run.begin(asked.trials, 1), &leader};
         const std::string said = refusal<Failure>([&] { run_study(run.study(), options); });
@@ -226,7 +226,7 @@ TEST_CASE("ranks: one of which nothing is heard ends the run, and what the other
     CHECK(bytes_of(folder / "x.h5") == bytes_of(folder / "one.h5"));
 }
 
-TEST_CASE("ranks: where rank 0 fails the others go home") {
+TEST_CASE("ranks: where rank 0 fails the others end") {
     const TemporaryFolder folder;
     struct NoSpace : BlockKeeper {
         void take_back(std::size_t, std::int64_t) override {}
@@ -247,7 +247,7 @@ TEST_CASE("ranks: where rank 0 fails the others go home") {
     CHECK(refusal<Failure>([&] { run_study(study, {5000, 1, {}, {}, {}, &keeper, &leader}); }) == "no space");
 }
 
-TEST_CASE("ranks: those that are sent home before they had work go") {
+TEST_CASE("ranks: those that are dismissed before they had work end") {
     Office office(3);
     const Followers followers(office);
     ThreadTransport transport(office, 0);
@@ -255,7 +255,7 @@ TEST_CASE("ranks: those that are sent home before they had work go") {
     SUCCEED();
 }
 
-TEST_CASE("ranks: a record holds the blocks' columns, details and totals, and none that is torn is believed") {
+TEST_CASE("ranks: a message holds the blocks' columns, details and totals, and a torn one is refused") {
     const Asked asked = some();
     const Study whole = undisturbed(asked);
     const std::vector<ScenarioResults> empty{without_columns(scenario_of(asked.scenarios[0])),

@@ -1,6 +1,6 @@
 // A digest of a small study: one line of 64 bits for each world and arm, from the modules base to worlds only. Every compiler,
 // optimisation, lane width, instruction set and processor must print the lines of expected.txt.
-//   credence_digest [TARGET...]  the targets to run (default: all that this processor runs); they must agree
+//   credence_digest [TARGET...]    the targets to run (default: all that this processor runs); they must agree
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@
 
 namespace credence {
 
-// The lane widths without an instruction set of their own: what Lane<W> is on any processor.
+// The lane widths without an instruction set of their own: Lane<W> as compiled for any processor.
 #ifdef CREDENCE_DIGEST_WIDTHS
 CREDENCE_DECLARE_TARGET(w2)
 CREDENCE_DECLARE_TARGET(w4)
@@ -31,7 +31,7 @@ namespace {
 constexpr std::uint64_t root_seed = 0x9e3779b97f4a7c15u;
 constexpr std::int64_t block_index = 20'000'003;
 constexpr int trials = 37;
-// Of the first block, whose trials are looked at in more detail.
+// Of the first block, whose trials are detailed.
 constexpr int detailed_count = 11;
 
 /// FNV-1a over the bytes of 64-bit words, lowest byte first on any processor.
@@ -95,7 +95,7 @@ DeformableSettings settings_of(const World& world) {
     return scenario;
 }
 
-/// The lines of one scenario, an arm each. `simulation(unit)` runs it.
+/// The lines of one scenario, an arm each. `simulation(unit)` runs it on a target.
 template <class SimulationOn>
 std::vector<std::string> lines(const Scenario& scenario, const SimulationOn& simulation, const Target& target) {
     const auto on_target = simulation(target);
@@ -123,7 +123,8 @@ std::vector<std::string> lines(const Scenario& scenario, const SimulationOn& sim
     return lines;
 }
 
-/// Prints every line of a scenario as the first unit has it, and on the error stream those that another unit has
+/// Prints every line of a scenario from the first target, and on the error stream those from another target that
+/// differ.
 /// otherwise.
 template <class SimulationOn>
 bool agree_on(const std::vector<Target>& targets, const Scenario& scenario, const SimulationOn& simulation) {

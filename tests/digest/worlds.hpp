@@ -15,7 +15,7 @@ struct World {
     std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// The eight cells of the seed's study; the other worlds are shorter, since an emulator computes them as well.
+/// The eight cells of the reference study; the other worlds are shorter, since an emulator computes them as well.
 inline std::vector<World> seed_worlds() {
     std::vector<World> cells;
     for (const std::string process : {"heading", "translation"})
@@ -83,7 +83,7 @@ inline std::vector<World> noise_worlds() {
     };
 }
 
-/// Arms beyond those of every world: the other estimators, and the controller that looks ahead.
+/// Arms beyond those of every world: the other estimators, and the controller with a horizon.
 inline std::vector<World> arm_worlds() {
     const std::string few = "-0.4, 0.25";
     return {

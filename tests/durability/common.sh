@@ -50,7 +50,7 @@ start_with() {
   if [ -n "$1" ]; then cp "$1" x.h5; fi
 }
 
-# The results are those of a run that nobody disturbed, and nothing else is there.
+# The results are those of an undisturbed run, and nothing else is there.
 check_whole() {
   [ "$(ls -A)" = x.h5 ] || fail "$1: it left $(ls -A | tr '\n' ' ')"
   h5diff --exclude-path /run ../whole.h5 x.h5 >../said 2>&1 || fail "$1: other results"

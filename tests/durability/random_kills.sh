@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kills a run of two threads at random times, and goes on with it each time, until COUNT kills came before its end: no
-# results but those of a run that nobody disturbed. What comes between two writes is met here; sweep.sh meets the rest.
+# results but those of an undisturbed run. What comes between two writes is met here; sweep.sh meets the rest.
 # usage: random_kills.sh CREDENCE [COUNT]
 set -euo pipefail
 source "$(dirname "$0")/common.sh"

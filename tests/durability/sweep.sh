@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kills the program before every change that it makes to a file in turn, and after half of it; goes on; and shows that
-# nothing committed was lost and the results are those of a run that nobody disturbed.
+# nothing committed was lost and the results are those of an undisturbed run.
 # usage: sweep.sh CREDENCE [EVERY [OFFSET]]: in the long middle, where a results file is written, only every EVERY-th
 # write from OFFSET on (default: all of them).
 set -euo pipefail

@@ -1,4 +1,4 @@
-// The block is a pure function of scenario, root seed and index, whichever unit computes it.
+// The block is a pure function of scenario, root seed and index, whichever target computes it.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -66,7 +66,7 @@ TEST_CASE("block: trials fill blocks of 256") {
     CHECK(trials_in_block(100, 0) == 100);
 }
 
-TEST_CASE("block: the same bits every time, others for another seed or index") {
+TEST_CASE("block: the same bits every time, others for another root seed or index") {
     const Problem problem(scenario_with({{"arms.controllers", "fixed"}}));
     const Block block = run_block(problem, 1, 2, 64);
     CHECK(same_bits(block, run_block(problem, 1, 2, 64)));
@@ -131,7 +131,7 @@ TEST_CASE("block: long trials, simulated a few at a time, are the single trials 
         CHECK(test::same_bits(column(block, 0, column_pose_error, trial), single(scenario, Controller::fixed, 5, trial)[column_pose_error]));
 }
 
-TEST_CASE("block: arms stand in the scenario's order") {
+TEST_CASE("block: arms are in the scenario's order") {
     const Settings circle{{"features.path", "circle"}};
     const DeformableSettings usual = scenario_with(circle);
     const DeformableSettings turned = scenario_with(usual, {{"arms.controllers", "greedy, fixed"}});

@@ -1,4 +1,5 @@
-// Which unit runs, and that it makes no difference. That units agree to the bit: block_test, and tests/digest.
+// The selection of the target, and that it does not change the results. That targets agree to the bit: block_test.cpp,
+// and tests/digest.
 
 #include "worlds/simulate.hpp"
 #include <credence/study.hpp>
@@ -14,7 +15,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Runs the program with the variable set to `unit`.
+/// Runs the program with the environment variable set to `unit`.
 Outcome forced(const Workplace& here, const std::string& target, const std::string& arguments) {
     return here.shell("CREDENCE_FORCE_UNIT='" + target + "' " CREDENCE_PROGRAM " " + arguments);
 }

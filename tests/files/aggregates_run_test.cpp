@@ -227,7 +227,7 @@ TEST_CASE("aggregates: arms of one file are compared from totals, arms of severa
     CHECK(says(said, "--keep trials"));
 }
 
-TEST_CASE("aggregates: a precision is reached at the look at which the trials reach it; looks that are past are left out") {
+TEST_CASE("aggregates: a precision is reached at the analysis at which the trials reach it; past ones are left out") {
     StoppingRule rule{{parse_goal("trace_P=2%"), parse_goal("trace_P[greedy-fixed]=0.02")}, 4096, 256};
     const auto until = [&](Study& study, std::vector<std::int64_t>* looks = nullptr) {
         return run_until(study, rule, {0, 1, {}}, [&](const InterimAnalysis& look) {
@@ -244,7 +244,7 @@ TEST_CASE("aggregates: a precision is reached at the look at which the trials re
         CHECK(found.states[i].name == expected.states[i].name);
         CHECK(found.states[i].half_width == Approx(expected.states[i].half_width).epsilon(1e-12));
     }
-    // A study that has them already goes to the next look, and spends no more than its share.
+    // A study that has them already continues with the next analysis, and spends no more than its share.
     Study begun = run(300, Keep::aggregates);
     looks.clear();
     const InterimAnalysis later = until(begun, &looks);
@@ -252,7 +252,7 @@ TEST_CASE("aggregates: a precision is reached at the look at which the trials re
     CHECK(later.trials == expected.trials);
     CHECK(later.alpha == expected.alpha);
     rule.ceiling = 256;
-    CHECK(until(begun).trials == later.trials);  // more than the ceiling: there are no fewer to look at
+    CHECK(until(begun).trials == later.trials);  // more than the ceiling: no analysis can be made with fewer
 }
 
 TEST_CASE("aggregates: a run is followed from its journal's totals, while it grows a file and when it is done") {

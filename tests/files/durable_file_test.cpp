@@ -1,4 +1,4 @@
-// Files: what happens when the system refuses. What was there stays, and nothing is left behind.
+// Files when the system refuses: existing files are unchanged, and no temporary ones are left.
 
 #include "files/system/durable_file.hpp"
 #include "files/system/system_file.hpp"
@@ -139,7 +139,7 @@ TEST_CASE("durable file: a missing folder, a folder in its place and devices are
     CHECK(contains(failure(folder / "missing/file", "x"), "no such file or directory"));
     std::filesystem::create_directory(folder / "taken");
     CHECK(contains(failure(folder / "taken", "x"), "something that is not a file"));
-    // A pipe stands for every device: a test that runs as root must not aim at a real one.
+    // A pipe represents every device: a test that runs as root must not write to a real one.
     REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
     CHECK(contains(failure(folder / "pipe", "x"), "something that is not a file"));
     CHECK(std::filesystem::is_fifo(folder / "pipe"));

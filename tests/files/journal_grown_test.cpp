@@ -1,4 +1,4 @@
-// The journal of a study that grows, is sharded or is stopped: what is there is what was finished.
+// The journal of a study that grows, is sharded or is stopped: it has exactly the finished blocks.
 
 #include "files/journal/journal.hpp"
 #include "journal_support.hpp"

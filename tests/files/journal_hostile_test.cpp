@@ -1,4 +1,4 @@
-// The journal: bytes that somebody made up, with right checksums, are refused and never believed.
+// Forged journals with right checksums: they are refused.
 
 #include "journal_forged.hpp"
 #include "of_scenarios.hpp"
@@ -28,7 +28,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("journal: records whose heads cannot be, end it as torn ones do") {
+TEST_CASE("journal: commits with invalid heads end it as torn ones do") {
     const Made made;
     for (const std::int64_t payload :
          {std::int64_t{0}, std::int64_t{-1}, std::int64_t{19}, std::int64_t{1} << 40,
@@ -82,7 +82,7 @@ TEST_CASE("journal: blocks and trials that cannot be are refused") {
     CHECK(says(made.said({made.record, longer}), "is damaged"));
 }
 
-TEST_CASE("journal: values and totals that are not the record's are refused") {
+TEST_CASE("journal: values and totals that are not the commit's are refused") {
     const Made made;
     Record bad = made.record;
     bad.values.pop_back();
@@ -123,7 +123,7 @@ TEST_CASE("journal: any byte of the totals changed under a right checksum is ref
     }
 }
 
-TEST_CASE("journal: a status that is none is refused when it is read") {
+TEST_CASE("journal: an invalid status is refused when it is read") {
     const Made made;
     const ScenarioResults& results = made.study.scenarios.front();
     const auto at = static_cast<std::size_t>(BlockLayout(results).column_offset(0, column_status, 3));

@@ -1,4 +1,4 @@
-// The journal: what is not this run's is refused, and the message says what differs.
+// Journals of other studies are refused, and the message names the difference.
 
 #include "journal_support.hpp"
 

@@ -1,4 +1,4 @@
-// The journal: cut and damaged anywhere, it keeps what came before, and the study ends the same.
+// A journal that is cut or damaged anywhere keeps the commits before that place, and the study ends the same.
 
 #include "journal_support.hpp"
 
@@ -27,7 +27,7 @@ private:
     std::optional<std::string> before_;
 };
 
-/// A folder with a journal of three records, in bytes.
+/// A folder with a journal of three commits, as bytes.
 struct Interrupted {
     InMemory in_memory;
     TemporaryFolder folder;
@@ -56,7 +56,7 @@ struct Interrupted {
 
 }  // namespace
 
-TEST_CASE("journal: cut at any byte, it has every record before the cut, and nothing else", "[long]") {
+TEST_CASE("journal: cut at any byte, it has every commit before the cut, and nothing else", "[long]") {
     const Interrupted run;
     REQUIRE(run.ends.size() == 1 + 3);
     REQUIRE(run.ends.back() == run.bytes.size());
@@ -83,7 +83,7 @@ TEST_CASE("journal: cut anywhere, the study that goes on ends the same") {
     CHECK(run.ends_the_same(run.bytes + std::string(100000, '\0'), expected));
 }
 
-TEST_CASE("journal: any byte flipped is refused, or costs no record before it", "[long]") {
+TEST_CASE("journal: any byte flipped is refused, or costs no commit before it", "[long]") {
     const Interrupted run;
     for (std::size_t at = 0; at < run.bytes.size(); ++at) {
         std::string bad = run.bytes;
@@ -92,7 +92,7 @@ TEST_CASE("journal: any byte flipped is refused, or costs no record before it", 
         CAPTURE(at);
         const std::string said = refusal<InputError>([&] {
             const StoredRun resumed = opened(run.path, run.asked);
-            // Of the header alone it cannot be told from what was torn while it was written.
+            // The header alone cannot be distinguished from one that was torn while it was written.
             REQUIRE(blocks_in(resumed.study()) == run.whole_commits(at));
         });
         if (!said.empty()) REQUIRE(said.starts_with(run.journal + ": "));
@@ -100,7 +100,7 @@ TEST_CASE("journal: any byte flipped is refused, or costs no record before it", 
     }
 }
 
-TEST_CASE("journal: with any record damaged the study ends the same") {
+TEST_CASE("journal: with any commit damaged the study ends the same") {
     const Interrupted run;
     const Study expected = undisturbed(run.asked);
     for (std::size_t at = run.ends.front(); at < run.bytes.size(); at += 97) {

@@ -1,4 +1,4 @@
-// Records for `judge`: every figure against NumPy and SciPy, and the ways in which other programs write.
+// Records for `judge`: every number against NumPy and SciPy, and the ways in which other programs write.
 
 #include "numeric/chi_square.hpp"
 
@@ -102,7 +102,8 @@ std::string reference_path(const std::string& name) {
     return record_folder + record_series().at(name)["file"].get<std::string>();
 }
 
-/// All of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below 1e4.
+/// The whole of a record that make_records.py wrote, to 1e-9: sums of up to 60 values from matrices of condition below
+/// 1e4.
 void check_record(const Record& record, const Json& expected) {
     CHECK(record.results.trials == expected["trials"]);
     CHECK(record.results.steps() == expected["steps"]);
@@ -122,7 +123,7 @@ Record check_reference(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("record: Gaussian errors and innovations with blocks, as h5py writes them with gzip") {
+TEST_CASE("record: Gaussian errors and innovations with groups, as h5py writes them with gzip") {
     const Record record = check_reference("gaussian");
     const Scenario& scenario = record.results.scenario;
     CHECK(scenario.name == "record_gaussian");
@@ -157,7 +158,7 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
     const Record record = check_reference("broken");
     CHECK(record.trouble_count == 12);
-    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are in the figures
+    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are not left out
 }
 
 TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {
@@ -172,13 +173,13 @@ TEST_CASE("record: of many troubles the first twenty are named and all are count
     CHECK(record.results.scenario.name == "record_many_troubles");
 }
 
-TEST_CASE("record: one trial without a dimension of its own, and without blocks") {
+TEST_CASE("record: one trial without a dimension of its own, and without groups") {
     const Record record = check_reference("single");
     CHECK(record.results.columns[column_pose_error].long_name ==
           "squared error of the whole state, summed over the steps");
 }
 
-TEST_CASE("record: single precision, chunks that fit nothing, and blocks as a list of texts") {
+TEST_CASE("record: single precision, chunks that fit nothing, and groups as a list of texts") {
     check_reference("singles");
 }
 
@@ -237,7 +238,7 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
     CHECK(read_record(path).trouble_count == 0);
 }
 
-TEST_CASE("record: parts hold whole chunks where there is room, so that each is uncompressed once") {
+TEST_CASE("record: parts hold whole chunks where they fit, so that each is decompressed once") {
     hdf5::read_file(reference_path("singles"), "", [](const Handle& root) {
         const RecordFile file(root, 20 * 5 * (4 + 16));  // of 50 trials in chunks of 7
         CHECK(file.part_at(0, 0).trials == 14);

@@ -217,7 +217,7 @@ TEST_CASE("record: datasets that do not fit together, reversed dimensions among 
     require_refused(shape_damages);
 }
 
-TEST_CASE("record: blocks that cannot be are refused") { require_refused(block_damages); }
+TEST_CASE("record: invalid groups are refused") { require_refused(block_damages); }
 
 TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its name") {
     const TemporaryFolder folder;

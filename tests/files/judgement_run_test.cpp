@@ -1,4 +1,4 @@
-// A run of our own, replayed, written as a record and judged: the same verdict and figures as the run's.
+// A run, replayed, written as a record and read by `judge`: the same verdict and numbers as the run's.
 
 #include <credence/consistency.hpp>
 #include <credence/record.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t seed = 3;
 
-/// The blocks of the state but for the whole one, as a record names them.
+/// The component groups without the whole state, as a record names them.
 std::string blocks_text(const DeformableSettings& scenario) {
     std::string text;
     for (const ComponentGroup& block : state_groups(scenario))
@@ -110,7 +110,7 @@ TEST_CASE("judge: a run's trajectories, written as a record, give the run's evid
         const Evidence run = evidence_of_run(scenario, trials),
                        record = evidence_of(judged.results, judged.results.arms.front());
         check_blocks(run, record);
-        REQUIRE(record.nis.size() == 1);  // a record does not tell features from edges
+        REQUIRE(record.nis.size() == 1);  // a record does not distinguish features from edges
         check_near(run.nis.front().nis.ratio, record.nis.front().nis.ratio);
         CHECK(run.nis.front().degrees == record.nis.front().degrees);
         REQUIRE(run.whiteness.size() == record.whiteness.size());

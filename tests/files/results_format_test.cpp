@@ -1,4 +1,4 @@
-// Files: what other tools find in them, and that docs/results-format.md tells it.
+// The content of results files for other tools, and that docs/results-format.md describes it.
 
 #include "slam/trial/problem.hpp"
 

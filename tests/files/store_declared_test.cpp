@@ -11,7 +11,7 @@ using namespace credence::test;
 
 namespace {
 
-/// A study of the tracker, as if of a world that nobody knows.
+/// A study of the tracker, as if of an unknown world.
 Study unknown_world() {
     const WorldOf<OwnWorld<Tracker>> world;
     const std::unique_ptr<Draft> draft = world.draft();

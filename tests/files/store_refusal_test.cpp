@@ -1,4 +1,4 @@
-// Files: what is damaged, foreign or hostile is refused by name and place, before anything is computed.
+// Damaged, foreign and hostile files are refused by name and place, before anything is computed.
 
 #include "store_damage.hpp"
 #include "of_scenarios.hpp"

@@ -63,7 +63,7 @@ TEST_CASE("store: a noise record reads back, in any size and order of floats") {
     CHECK(read_noise_record(path).odometry == std::vector<double>(21, 1.5));
 }
 
-TEST_CASE("store: noise records that lack something, have another shape or type, or are not finite are refused") {
+TEST_CASE("store: noise records that are incomplete, of other dimensions or type, or not finite are refused") {
     const TemporaryFolder folder;
     const std::string path = folder / "noise.h5";
     const std::vector<Damage> damages{

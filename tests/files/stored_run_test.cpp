@@ -1,4 +1,4 @@
-// Files: what a run finds, and what it meets in the meantime: nothing is mixed, replaced unasked or lost.
+// Files that exist before a run or appear during it: results are never mixed, replaced without --overwrite, or lost.
 
 #include "files/system/system_file.hpp"
 #include "journal_support.hpp"

@@ -119,7 +119,7 @@ TEST_CASE("sweep: a scenario says where it is, and is refused where it is not") 
 }
 
 TEST_CASE("sweep: the text of a study without one is what it was, and so is its hash") {
-    // Computed before there were sweeps: whoever has files of studies must be able to go on with them.
+    // Computed before there were sweeps: existing files of studies must stay usable.
     CHECK(study_hash(StudyDefinition{1, {read_scenario_text("", "x.ini", "scenario")}}) ==
           "ba5d28bb-9fb1-5546-9527-e36bb295fbee");
 }
@@ -202,7 +202,7 @@ TEST_CASE("sweep: a grid that a crash left in its journal goes on to the same re
     CHECK(bytes_of(folder / "study.h5") == bytes_of(folder / "once.h5"));
 }
 
-TEST_CASE("sweep: grids of a study are told apart by scenario and keys") {
+TEST_CASE("sweep: grids of a study are distinguished by scenario and keys") {
     const auto point = [](const std::string& of, const std::string& at) { return SweepPoint{of, parse_coordinates(at)}; };
     const std::vector<Grid> grids = grids_of({point("a", "k.x=2, k.n=p"), {}, point("b", "k.x=1"), point("a", "k.x=1, k.n=p"),
                                               point("a", "k.x=1, k.n=q"), point("a", "k.x=7")});

@@ -54,7 +54,7 @@ void copy_message(Image image, const Region& to, const std::vector<Region>& regi
     std::copy(bytes.begin(), bytes.end(), image.begin() + static_cast<std::ptrdiff_t>(to.first));
 }
 
-/// Raw data is what our readers see, but there is less of it than of HDF5's own structures: a third of all changes.
+/// Our readers use the raw data, but there is less of it than of HDF5's own structures: a third of all changes.
 const Region& choose(const std::vector<Region>& regions, Random& random) {
     for (int tries = 0; tries < 8; ++tries) {
         const Region& region = regions[below(random, regions.size())];

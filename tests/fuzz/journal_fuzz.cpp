@@ -1,5 +1,5 @@
-// Journals: each is refused by an InputError of one line, or what was loaded can be used. Checksums always fit, so that
-// what lies behind them is reached.
+// Fuzz target for journals: each is refused by an InputError of one line, or its content can be used. Checksums always
+// fit, so that the data after them are reached.
 
 #include "require.hpp"
 #include "scratch_file.hpp"
@@ -22,7 +22,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-/// The study of the seeds [journal.ini]; what it keeps, the journal's version says.
+/// The study of the seeds [journal.ini]; the journal's version determines what it keeps.
 Study asked(Keep keep) { return new_study({read_deformable(CREDENCE_FUZZ_SCENARIO, {})}, 1, keep); }
 
 template <class T>
@@ -32,14 +32,14 @@ T number_at(const std::uint8_t* data, std::size_t position) {
     return value;
 }
 
-/// Writes the checksum of data[begin, end) behind it, where there is room for one.
+/// Writes the checksum of data[begin, end) after it, where it fits.
 void seal(std::uint8_t* data, std::size_t size, std::size_t begin, std::size_t end) {
     if (end < begin || end > size || size - end < sizeof(std::uint32_t)) return;
     const std::uint32_t crc = checksum(data + begin, end - begin);
     std::memcpy(data + end, &crc, sizeof crc);
 }
 
-/// Where the header ends, and every record that goes to the end of its payload.
+/// The end of the header, and every commit up to the end of its payload.
 std::vector<std::size_t> seams(const std::uint8_t* data, std::size_t size) {
     constexpr std::size_t length_at = 20, payload_at = 8;
     std::vector<std::size_t> ends;
@@ -82,7 +82,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     if (ends.empty() || random() % 4 == 0) {
         size = LLVMFuzzerMutate(data, size, room);
     } else {
-        // The numbers that a record begins with, or those of its totals; its values would take nearly all the changes.
+        // The numbers at the start of a commit, or those of its totals; its values would take nearly all the changes.
         const std::size_t begin = ends[random() % ends.size()];
         const std::size_t first = std::min(size - 1, begin + (random() % 2 ? random() % 64 : random() % (size - begin + 1)));
         LLVMFuzzerMutate(data + first, std::min<std::size_t>(size - first, 16), std::min<std::size_t>(size - first, 16));

@@ -15,7 +15,8 @@ using namespace credence::fuzz;
 
 namespace {
 
-/// A verdict takes bootstraps, ten times as long as reading: it is for one in eight inputs, and of what is soon done.
+/// A verdict takes bootstraps, ten times as long as reading: it is computed for one in eight inputs, and only for small
+/// ones.
 bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
 bool is_small(const ScenarioResults& results) {
     return results.trials <= 64 && results.steps() <= 16 && results.state_size() <= 16 && results.figures.size() <= 64;

@@ -41,7 +41,7 @@ void require_all_closed() {
 
 }  // namespace credence::fuzz
 
-/// These stand before HDF5's, for what credence closes.
+/// These replace HDF5's functions, in files that credence closes.
 extern "C" herr_t H5Aclose(hid_t attribute) { return close_by("H5Aclose", attribute); }
 extern "C" herr_t H5Dclose(hid_t dataset) { return close_by("H5Dclose", dataset); }
 extern "C" herr_t H5Gclose(hid_t group) { return close_by("H5Gclose", group); }

@@ -5,7 +5,7 @@
 
 namespace credence::fuzz {
 
-/// As long as it lives, HDF5 may open no file but this: the process ends, saying which.
+/// While an object exists, HDF5 may open no other file: the process ends, naming the file.
 class OnlyFile {
 public:
     explicit OnlyFile(const std::string& path);

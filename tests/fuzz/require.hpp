@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of every input, whatever it is.
+// Properties that must hold for every input.
 
 #include <cstdio>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 
 namespace credence::fuzz {
 
-/// Ends the process with a line that says what does not hold.
+/// Ends the process with a line that names the violated property.
 inline void require(bool holds, const char* what) {
     if (holds) return;
     std::fprintf(stderr, "does not hold: %s\n", what);

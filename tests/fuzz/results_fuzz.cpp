@@ -16,7 +16,7 @@ using namespace credence::fuzz;
 
 namespace {
 
-/// A report takes bootstraps, longer than reading: it is for one in eight inputs, and of what is soon done.
+/// A report takes bootstraps, longer than reading: it is computed for one in eight inputs, and only for small ones.
 bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
 bool is_small(const Study& study) {
     std::size_t arms = 0;

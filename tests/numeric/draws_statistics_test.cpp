@@ -79,7 +79,7 @@ TEST_CASE("draws: moments of the normal draws are a normal's") {
 }
 
 TEST_CASE("draws: normal draws are distributed as a normal, from every source", "[long]") {
-    // Seven looks, each a false alarm with 9e-7.
+    // Seven tests, each a false alarm with 9e-7.
     for (std::uint32_t source = 0; source < 7; ++source)
         CHECK(kolmogorov(components(normal_pairs(2, never, Source{source})), normal_cdf) < kolmogorov_bound);
 }

@@ -48,7 +48,8 @@ double turns_error(double turns) {
 }  // namespace
 
 TEST_CASE("elementary: log is within 1.5 ulp of all normal positive numbers") {
-    // The header's promise. Random bit patterns cover all exponents; dense grids cover what Box and Muller ask for.
+    // The bounds that elementary.hpp states. Random bit patterns cover all exponents; dense grids cover the arguments
+    // of Box and Muller's transform.
     std::mt19937_64 random(1);
     double worst = 0;
     std::uniform_int_distribution<std::uint64_t> normal_positive(0x0010000000000000u, 0x7fefffffffffffffu);

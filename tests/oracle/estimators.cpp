@@ -16,7 +16,7 @@ constexpr int theta = 0, r = 1;
 
 Vector2d point(const VectorXd& x, int index) { return x.segment<2>(index); }
 
-/// What one pose measured, stacked: seen features in the body frame, then edges.
+/// The measurements of one pose, stacked: seen features in the body frame, then edges.
 struct Measurements {
     std::vector<int> seen;
     std::vector<Edge> edges;
@@ -122,7 +122,7 @@ Estimate right_invariant_step(const DeformableSettings& scenario, const RunStep&
     return {x, back * (P - K * H * P) * back.transpose()};
 }
 
-/// What the first-estimates filter remembers.
+/// The state of the first-estimates filter beside the belief.
 struct First {
     Vector2d position;
     VectorXd points;  ///< first estimates at their places in the state

@@ -1,4 +1,4 @@
-// One trial of the oracle, from pose 0 to K-1, and its figures. Nomenclature: oracle.hpp.
+// One trial of the oracle, from pose 0 to K-1, and its columns and series. Nomenclature: oracle.hpp.
 
 #include "oracle.hpp"
 
@@ -12,7 +12,7 @@ namespace credence::oracle {
 namespace {
 
 /// NEES = e' (filter.covariance P)^-1 e of the whole state, e's heading wrapped to [-pi, pi]
-/// [model.md, Reported per trial].
+/// [docs/model.md, Reported per trial].
 double normalized_error(const DeformableSettings& scenario, const Step& step) {
     Eigen::VectorXd e = step.mean - step.truth;
     if (scenario.process == Process::heading) e[0] = std::remainder(e[0], 2 * std::numbers::pi);
@@ -26,7 +26,7 @@ double condition(const Eigen::MatrixXd& symmetric) {
     return solver.eigenvalues().maxCoeff() / solver.eigenvalues().minCoeff();
 }
 
-/// Control from pose k-1 to k, with the candidates' costs when planned [model.md, Controllers]. A horizon ends at the
+/// Control from pose k-1 to k, with the candidates' costs when planned [docs/model.md, Controllers]. A horizon ends at the
 /// last pose.
 void choose_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k, Step& step) {
     if (controller == Controller::fixed) {
@@ -41,7 +41,7 @@ void choose_control(const DeformableSettings& scenario, Controller controller, c
     step.control = list[static_cast<std::size_t>(greedy_choice(step.candidate_cost))];
 }
 
-/// Measurements z (m) at pose k: the seen features, then all edges [model.md, Filter, See and Edges].
+/// Measurements z (m) at pose k: the seen features, then all edges [docs/model.md, Filter, See and Edges].
 Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& world, int k, const Step& step,
                              const Noise& noise) {
     const int edge_count = static_cast<int>(graph(scenario).size());
@@ -60,7 +60,7 @@ Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& wo
 }
 
 /// Sees at pose k and updates the prior, gating and taking sigma at the true range; without a row the prior stays
-/// [model.md, Filter, See to Update].
+/// [docs/model.md, Filter, See to Update].
 Belief see_and_update(const DeformableSettings& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
                       Step& step) {
     Eigen::VectorXd sigma(feature_count(scenario));
@@ -89,7 +89,7 @@ void note(const DeformableSettings& scenario, const World& world, const Belief& 
     step.trace_P = scenario.filter.covariance * belief.P.trace();
 }
 
-/// Figures of the whole trial from its steps [model.md, Reported per trial].
+/// Figures of the whole trial from its steps [docs/model.md, Reported per trial].
 void sum_up(const DeformableSettings& scenario, Trial& trial) {
     double nees = 0, nis = 0, rows = 0;
     for (std::size_t k = 0; k < trial.steps.size(); ++k) {

@@ -27,7 +27,7 @@
 
 namespace credence::oracle {
 
-/// Where all chance comes from: pure functions of (what for, pose, index), already truncated where that is wanted.
+/// The oracle's random numbers: pure functions of (source, pose, index), already truncated where that is wanted.
 struct Noise {
     std::function<Eigen::Vector2d(Source, int pose, int index)> normal;  ///< two independent standard-normal draws
     std::function<double(Source, int pose, int index)> uniform;          ///< in [0, 1)
@@ -49,7 +49,7 @@ struct Step {
     double condition_of_S = 1;                            ///< 2-norm; 1 if there are no rows
 };
 
-/// One trial and its figures [model.md, Reported per trial].
+/// One trial, its columns and its series [docs/model.md, Reported per trial].
 struct Trial {
     std::vector<Step> steps;   ///< K, by pose
     double trace_P = 0;        ///< of the last pose, reported covariance
@@ -74,7 +74,7 @@ std::vector<Edge> graph(const DeformableSettings& scenario);                 ///
 Eigen::Matrix2d rotation(double theta);                            ///< R(theta)
 Eigen::Matrix2d quarter_turn();                                    ///< J
 
-// World [model.md, Truth] ---------------------------------------------------------------------------------------------
+// World [docs/model.md, Truth] ---------------------------------------------------------------------------------------------
 
 /// True state of the world at one pose; c and p are 2 x M. theta stays 0 in the translation model.
 struct World {
@@ -93,7 +93,7 @@ double measurement_sigma(const DeformableSettings& scenario, double q);      ///
 Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise);
 Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise);
 
-// Filter [model.md, Filter] -------------------------------------------------------------------------------------------
+// Filter [docs/model.md, Filter] -------------------------------------------------------------------------------------------
 
 struct Belief {
     Eigen::VectorXd x;
@@ -125,7 +125,7 @@ Prediction predicted_measurements(const DeformableSettings& scenario, const Eige
                                   const Eigen::VectorXd& sigma);
 Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction);
 
-// Controllers [model.md, Controllers] ---------------------------------------------------------------------------------
+// Controllers [docs/model.md, Controllers] ---------------------------------------------------------------------------------
 
 Path path_of_robot(const DeformableSettings& scenario);                      ///< control.path, or the features' own
 Control fixed_control(const DeformableSettings& scenario, int k);            ///< from pose k to k+1

@@ -19,7 +19,7 @@ double squared(double value) { return value * value; }
 
 /// Belief at pose 0: robot at 0 with the initial variances (0 in the document), f_j = p_{0,j} + sigma_feat(q_{0,j})
 /// eps^meas with variance (filter.measurement sigma_feat(q_{0,j}))^2, in the world frame, uncorrelated with the pose
-/// and whatever its range [model.md, Filter, Start].
+/// and whatever its range [docs/model.md, Filter, Start].
 Belief first_belief(const DeformableSettings& scenario, const World& world, const Noise& noise) {
     const int n = state_dimension(scenario);
     Belief belief{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
@@ -37,7 +37,7 @@ Belief first_belief(const DeformableSettings& scenario, const World& world, cons
 }
 
 /// Mean (n) predicted for pose k from x at pose k-1: theta + omega; r + R(theta) v; f_j + t_{k-1} + d_{k,j},
-/// d_{k,j} = o_{k,j} - o_{k-1,j} [model.md, Filter, Predict].
+/// d_{k,j} = o_{k,j} - o_{k-1,j} [docs/model.md, Filter, Predict].
 Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control, int k) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
     Eigen::VectorXd x_prior = x;
@@ -51,7 +51,7 @@ Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::
 }
 
 /// F (n x n) at the mean x before the prediction: the identity, except F[r, theta] = R(theta) J v in the heading model
-/// [model.md, Filter, Predict].
+/// [docs/model.md, Filter, Predict].
 Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control) {
     const int n = state_dimension(scenario);
     const Eigen::Vector2d v(control.move.x, control.move.y);
@@ -61,7 +61,7 @@ Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Ei
 }
 
 /// Q (n x n) = diag(sigma_head^2, sigma_odom^2 I_2, (sigma_walk^2 + sigma_def^2) I_{2M}), each sigma times the filter's
-/// factor [model.md, Filter, Predict; Conventions].
+/// factor [docs/model.md, Filter, Predict; Conventions].
 Eigen::MatrixXd process_noise(const DeformableSettings& scenario) {
     const int n = state_dimension(scenario);
     const NoiseSettings& noise = scenario.noise;
@@ -75,7 +75,7 @@ Eigen::MatrixXd process_noise(const DeformableSettings& scenario) {
     return Q;
 }
 
-/// Belief predicted for pose k from that at pose k-1: P^- = F P F' + Q [model.md, Filter, Predict].
+/// Belief predicted for pose k from that at pose k-1: P^- = F P F' + Q [docs/model.md, Filter, Predict].
 Belief predict(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     const Eigen::MatrixXd F = prediction_jacobian(scenario, belief.x, control);
     Belief prior;
@@ -84,7 +84,7 @@ Belief predict(const DeformableSettings& scenario, const Belief& belief, const C
     return prior;
 }
 
-/// Predicted measurement z_hat_j (2, body frame) = R(theta)' (f_j - r) [model.md, Filter, Predicted].
+/// Predicted measurement z_hat_j (2, body frame) = R(theta)' (f_j - r) [docs/model.md, Filter, Predicted].
 Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j) {
     const Eigen::Vector2d r = x.segment<2>(row_of_position(scenario));
     const Eigen::Vector2d f = x.segment<2>(row_of_feature(scenario, j));
@@ -92,7 +92,7 @@ Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const 
 }
 
 /// H_j (2 x n) = [-J z_hat_j, -R', R'] at (theta, r, f_j); no theta in the translation model
-/// [model.md, Filter, Predicted].
+/// [docs/model.md, Filter, Predicted].
 Eigen::MatrixXd measurement_rows(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j) {
     const Eigen::Matrix2d R = rotation(heading(scenario, x));
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, state_dimension(scenario));
@@ -103,12 +103,12 @@ Eigen::MatrixXd measurement_rows(const DeformableSettings& scenario, const Eigen
     return H;
 }
 
-/// Predicted construction measurement (2, world frame) = f_b - f_a [model.md, Filter, Edges].
+/// Predicted construction measurement (2, world frame) = f_b - f_a [docs/model.md, Filter, Edges].
 Eigen::Vector2d predicted_edge(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Edge& edge) {
     return x.segment<2>(row_of_feature(scenario, edge.to)) - x.segment<2>(row_of_feature(scenario, edge.from));
 }
 
-/// H (2 x n) of an edge = [-I_2, I_2] at (f_a, f_b) [model.md, Filter, Edges].
+/// H (2 x n) of an edge = [-I_2, I_2] at (f_a, f_b) [docs/model.md, Filter, Edges].
 Eigen::MatrixXd edge_rows(const DeformableSettings& scenario, const Edge& edge) {
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, state_dimension(scenario));
     H.block<2, 2>(0, row_of_feature(scenario, edge.from)) = -Eigen::Matrix2d::Identity();
@@ -117,7 +117,7 @@ Eigen::MatrixXd edge_rows(const DeformableSettings& scenario, const Edge& edge) 
 }
 
 /// Joint predicted measurement at the mean x: the seen features (M flags), each with the sigma that the filter believes
-/// (M, length), then all edges with sigma_def times filter.edges [model.md, Filter].
+/// (M, length), then all edges with sigma_def times filter.edges [docs/model.md, Filter].
 Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x, const std::vector<bool>& seen,
                                   const Eigen::VectorXd& sigma) {
     const std::vector<Edge> edges = graph(scenario);
@@ -141,7 +141,7 @@ Prediction predicted_measurements(const DeformableSettings& scenario, const Eige
     return prediction;
 }
 
-/// S = H P^- H' + N, K = P^- H' S^-1, P = P^- - K S K'; needs at least one row [model.md, Filter, Update].
+/// S = H P^- H' + N, K = P^- H' S^-1, P = P^- - K S K'; needs at least one row [docs/model.md, Filter, Update].
 Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction) {
     const Eigen::MatrixXd& H = prediction.H;
     Correction correction;

@@ -9,7 +9,7 @@
 
 namespace credence::oracle {
 
-/// Path that the robot follows: control.path, or the features' own [design.md, The scenario file, control].
+/// The path that the robot follows: control.path, or the features' own [docs/model.md, Controllers].
 Path path_of_robot(const DeformableSettings& scenario) {
     switch (scenario.fixed_path) {
         case FixedPath::straight: return Path::straight;
@@ -21,7 +21,7 @@ Path path_of_robot(const DeformableSettings& scenario) {
 
 /// Control of the fixed path from pose k to k+1. Straight: v = (d, 0). Circle, heading: omega = delta,
 /// v = d (cos delta, sin delta) in the body frame. Circle, translation: v = d (cos(phi_k + delta), sin(phi_k + delta))
-/// in the world frame. Still: nothing [model.md, Controllers].
+/// in the world frame. Still: nothing [docs/model.md, Controllers].
 Control fixed_control(const DeformableSettings& scenario, int k) {
     const double d = scenario.features.step, delta = scenario.features.turn;
     const double phi = delta / 2 + k * delta;
@@ -81,14 +81,14 @@ std::vector<Control> candidates_of_heading(const DeformableSettings& scenario) {
 
 }  // namespace
 
-/// Candidates of the greedy planner, in the order of the table of [model.md, Controllers], for the robot's path.
+/// Candidates of the greedy planner, in the order of the table of [docs/model.md, Controllers], for the robot's path.
 std::vector<Control> candidates(const DeformableSettings& scenario) {
     return scenario.process == Process::heading ? candidates_of_heading(scenario) : candidates_of_translation(scenario);
 }
 
 /// The belief that a control is expected to lead to from pose k-1 to pose k: predict, gate and take sigma at the predicted
 /// mean, update the covariance; the mean stays the predicted one. What is in range is assumed to be detected;
-/// filter.covariance has no part in it [model.md, Controllers, greedy].
+/// filter.covariance has no part in it [docs/model.md, Controllers, greedy].
 Belief expected(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     const Belief prior = predict(scenario, belief, control, k);
     std::vector<bool> seen;
@@ -105,7 +105,7 @@ Belief expected(const DeformableSettings& scenario, const Belief& belief, const 
     return {prior.x, correct(prior.P, prediction).P};
 }
 
-/// Cost of a control from the belief at pose k-1 to pose k: trace(P) there [model.md, Controllers, greedy].
+/// Cost of a control from the belief at pose k-1 to pose k: trace(P) there [docs/model.md, Controllers, greedy].
 double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     return expected(scenario, belief, control, k).P.trace();
 }
@@ -122,7 +122,7 @@ double cost_ahead(const DeformableSettings& scenario, const Belief& belief, cons
 }
 
 /// Index of the choice among the costs: going through them in order, one replaces the choice when its cost is
-/// <= best (1 + 1e-12), best being the running minimum [model.md, Controllers, greedy].
+/// <= best (1 + 1e-12), best being the running minimum [docs/model.md, Controllers, greedy].
 int greedy_choice(const Eigen::VectorXd& cost) {
     int choice = 0;
     double best = std::numeric_limits<double>::infinity();

@@ -18,7 +18,7 @@ int row_of_position(const DeformableSettings& scenario) { return scenario.proces
 
 int row_of_feature(const DeformableSettings& scenario, int j) { return pose_dimension(scenario) + 2 * j; }
 
-/// Edges in graph order: `all` takes every pair a < b, a outer; `chain` takes (j, j+1) [model.md, Filter, Edges].
+/// Edges in graph order: `all` takes every pair a < b, a outer; `chain` takes (j, j+1) [docs/model.md, Filter, Edges].
 std::vector<Edge> graph(const DeformableSettings& scenario) {
     const int M = feature_count(scenario);
     std::vector<Edge> edges;
@@ -36,7 +36,7 @@ std::vector<Edge> graph(const DeformableSettings& scenario) {
     return edges;
 }
 
-/// R(theta) = [cos, -sin; sin, cos], from the body's frame to the world's [model.md, Two process models].
+/// R(theta) = [cos, -sin; sin, cos], from the body's frame to the world's [docs/model.md, Two process models].
 Eigen::Matrix2d rotation(double theta) {
     Eigen::Matrix2d R;
     R << std::cos(theta), -std::sin(theta),
@@ -44,7 +44,7 @@ Eigen::Matrix2d rotation(double theta) {
     return R;
 }
 
-/// J = [0, -1; 1, 0], so that dR/dtheta = R J = J R [model.md, Two process models].
+/// J = [0, -1; 1, 0], so that dR/dtheta = R J = J R [docs/model.md, Two process models].
 Eigen::Matrix2d quarter_turn() {
     Eigen::Matrix2d J;
     J << 0, -1,
@@ -53,7 +53,7 @@ Eigen::Matrix2d quarter_turn() {
 }
 
 /// Translation t_k (2, world, length) of every feature from pose k to k+1: straight (d, 0); circle
-/// d (cos phi_k, sin phi_k), phi_k = delta/2 + k delta; still 0 [model.md, Truth].
+/// d (cos phi_k, sin phi_k), phi_k = delta/2 + k delta; still 0 [docs/model.md, Truth].
 Eigen::Vector2d translation(const DeformableSettings& scenario, int k) {
     const double d = scenario.features.step, delta = scenario.features.turn;
     const double phi = delta / 2 + k * delta;
@@ -66,7 +66,7 @@ Eigen::Vector2d translation(const DeformableSettings& scenario, int k) {
 }
 
 /// Known local deformation o_{k,j} (2, world, length) = A (sin psi, cos psi) - A (sin psi_0, cos psi_0),
-/// psi = 2 pi k/T + 2 pi j/M [model.md, Truth].
+/// psi = 2 pi k/T + 2 pi j/M [docs/model.md, Truth].
 Eigen::Vector2d local_deformation(const DeformableSettings& scenario, int k, int j) {
     const double A = scenario.features.sway_amplitude, T = scenario.features.sway_period;
     const double psi_0 = 2 * std::numbers::pi * j / feature_count(scenario);
@@ -77,7 +77,7 @@ Eigen::Vector2d local_deformation(const DeformableSettings& scenario, int k, int
 namespace {
 
 /// Deformed features p (2 x M, world) at pose k: c + o + sigma_def eps^def for jitter; c + o for walk, whose
-/// deformation is already in the centres [model.md, Truth; Truth against filter].
+/// deformation is already in the centres [docs/model.md, Truth; Truth against filter].
 Eigen::Matrix2Xd deformed(const DeformableSettings& scenario, const Eigen::Matrix2Xd& c, int k, const Noise& noise) {
     Eigen::Matrix2Xd p = c;
     for (int j = 0; j < feature_count(scenario); ++j) {
@@ -90,7 +90,7 @@ Eigen::Matrix2Xd deformed(const DeformableSettings& scenario, const Eigen::Matri
 
 }  // namespace
 
-/// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [model.md, Truth; design.md,
+/// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [docs/model.md, Truth; design.md,
 /// The scenario file, noise].
 World first_world(const DeformableSettings& scenario, const Noise& noise) {
     World world;
@@ -107,7 +107,7 @@ World first_world(const DeformableSettings& scenario, const Noise& noise) {
 }
 
 /// World at pose k from that at pose k-1 and the control between them: the robot turns and moves by its heading of
-/// before; centres translate and walk, and with deformation = walk gain the deformation too [model.md, Truth; Truth
+/// before; centres translate and walk, and with deformation = walk gain the deformation too [docs/model.md, Truth; Truth
 /// against filter].
 World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
@@ -129,7 +129,7 @@ World next_world(const DeformableSettings& scenario, const World& world, const C
     return next;
 }
 
-/// True state (n) in the order of the filter's x, with the deformed features [model.md, Two process models].
+/// True state (n) in the order of the filter's x, with the deformed features [docs/model.md, Two process models].
 Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& world) {
     Eigen::VectorXd x(state_dimension(scenario));
     if (scenario.process == Process::heading) x[0] = world.theta;
@@ -138,13 +138,13 @@ Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& worl
     return x;
 }
 
-/// Whether a feature at range q is in the sensor's range, both ends included [model.md, Filter, See].
+/// Whether a feature at range q is in the sensor's range, both ends included [docs/model.md, Filter, See].
 bool in_range(const DeformableSettings& scenario, double q) {
     return scenario.sensor.range_min <= q && q <= scenario.sensor.range_max;
 }
 
 /// True sigma_feat(q) (length): constant, or sigma_near + (sigma_far - sigma_near) max(0, q - r_min)/(r_max - r_min),
-/// not clamped above [model.md, Targets].
+/// not clamped above [docs/model.md, Targets].
 double measurement_sigma(const DeformableSettings& scenario, double q) {
     const SensorSettings& sensor = scenario.sensor;
     if (sensor.noise == RangeNoise::constant) return sensor.sigma;
@@ -152,7 +152,7 @@ double measurement_sigma(const DeformableSettings& scenario, double q) {
                                    (sensor.range_max - sensor.range_min);
 }
 
-/// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [model.md, Filter, See].
+/// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [docs/model.md, Filter, See].
 Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise) {
     const Eigen::Vector2d offset = world.p.col(j) - world.r;
     return rotation(world.theta).transpose() * offset +
@@ -160,7 +160,7 @@ Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World
 }
 
 /// Construction measurement z (2, world frame) = p_b - p_a of edge e in graph order at pose k, plus sigma_def eps^edge
-/// with independent edge noise [model.md, Filter, Edges; Truth against filter].
+/// with independent edge noise [docs/model.md, Filter, Edges; Truth against filter].
 Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise) {
     const Edge edge = graph(scenario)[static_cast<std::size_t>(e)];
     Eigen::Vector2d z = world.p.col(edge.to) - world.p.col(edge.from);

@@ -35,7 +35,7 @@ using Names = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("compare: without --arms, a horizon stands against greedy, or without that against fixed") {
+TEST_CASE("compare: without --arms, a horizon is compared with greedy, or without that with fixed") {
     const auto arms_of = [](std::vector<Controller> controllers) {
         DeformableSettings planned = scenario("h");
         planned.arms.controllers = std::move(controllers);

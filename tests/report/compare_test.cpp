@@ -1,4 +1,4 @@
-// Arms and runs compared trial by trial: the figures, their signs, ties, and failed trials.
+// Arms and runs compared trial by trial: the numbers, their signs, ties, and failed trials.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ void fail(ScenarioResults& results, std::size_t arm, std::size_t first, std::siz
 
 }  // namespace
 
-TEST_CASE("compare: every figure is that of the columns") {
+TEST_CASE("compare: every number is computed from the columns") {
     const Study study = small_study(1, 300, 1);
     const CompareReport report = compared({{"small.h5", study}});
     REQUIRE(report.pairs.size() == 2);
@@ -56,7 +56,7 @@ TEST_CASE("compare: every figure is that of the columns") {
             CHECK(pair.b.mean[c] == Approx(mean_of(b)).epsilon(1e-12));
         }
     }
-    // The same to the last bit as what a report shows beside its arms.
+    // The same to the last bit as in a report beside the arms.
     const std::vector<Comparison> reported = planned_against_partners(study);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < 6; ++c) {
@@ -105,7 +105,7 @@ TEST_CASE("compare: a study and the same world with filter.measurement=0.8") {
     CHECK(pair.differences[0].key == "filter.measurement");
     CHECK(pair.differences[0].a == "0.8");
     CHECK(pair.differences[0].b == "1");
-    // An independent implementation has NEES/n 1.382 +- 0.006 [model.md, last section] and 1 exactly: 4 standard errors
+    // An independent implementation has NEES/n 1.382 +- 0.006 [docs/model.md, last section] and 1 exactly: 4 standard errors
     // are exceeded with 6e-5.
     const Summary& nees = of(pair, column_nees_ratio).difference;
     CHECK(std::abs(nees.mean - 0.382) < 4 * std::hypot(nees.standard_error, 0.006));

@@ -20,7 +20,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TEST_CASE("html: whatever somebody wrote is text") {
+TEST_CASE("html: any text from outside is escaped") {
     CHECK(escaped("<script>alert('1')</script> & \"co\"").text() ==
           "&lt;script&gt;alert(&#39;1&#39;)&lt;/script&gt; &amp; &quot;co&quot;");
     CHECK(escaped("größer").text() == "größer");
@@ -37,7 +37,7 @@ TEST_CASE("html: whatever somebody wrote is text") {
     CHECK_THAT(svg.html("x", "<b>", "<b>").text(), !Contains("<b>"));
 }
 
-TEST_CASE("html: a figure shows rounded and carries its exact value") {
+TEST_CASE("html: a number is shown rounded and carries its exact value") {
     CHECK(number_html(0.1, 2).text() == "<data value=\"0.1\">0.10</data>");
     CHECK(number_html(none, 2).text() == "-");
     CHECK_THAT(number_html(1.0 / 3, 4).text(), Contains("\"0.3333333333333333\">0.3333<"));

@@ -1,4 +1,4 @@
-// NEES in another chart of the error stands beside the Euclidean one, and no verdict uses it.
+// NEES in another chart of the error is shown beside the Euclidean one, and no verdict uses it.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -33,7 +33,7 @@ std::size_t column_named(const ScenarioResults& results, const std::string& name
 
 }  // namespace
 
-TEST_CASE("charts: the evidence is the figures' totals over their dimension") {
+TEST_CASE("charts: the evidence is the series' totals over their dimension") {
     const Study study = two_charts();
     const ScenarioResults& results = study.scenarios.front();
     for (const ArmResults& arm : results.arms) {

@@ -1,4 +1,4 @@
-// The page says what the JSON says, whatever names a file brings, and loads nothing.
+// The page has the same values as the JSON, whatever names a file contains, and loads nothing.
 
 #include "catch.hpp"
 #include "program.hpp"
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-/// A small study of one scenario under both arms, with a published figure.
+/// A small study of one scenario under both arms, with a published value.
 Report titled_report(const std::string& title) {
     DeformableSettings scenario = small_scenarios().back();
     scenario.title = title;
@@ -85,7 +85,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("page: every figure of the JSON is on it") {
+TEST_CASE("page: every number of the JSON is on it") {
     const Report with_charts = charts_report();
     for (const Report* report : {&with_charts, &small_report()}) {
         std::vector<std::string> missing;
@@ -96,7 +96,7 @@ TEST_CASE("page: every figure of the JSON is on it") {
     const Json arms = Json::parse(report_json(small_report()));
     const std::set<std::string> shown = numbers_of(page_of(small_report()));
     std::vector<std::string> missing;
-    Json changed = arms.front();  // the test itself: a figure that is not there is missed
+    Json changed = arms.front();  // the test itself: a missing number is detected
     changed["blocks"][0]["anees"]["ratio"][2] = 0.123456789;
     missing_numbers(changed, "", shown, missing);
     CHECK(missing.size() == 1);

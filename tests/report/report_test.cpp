@@ -1,4 +1,4 @@
-// The report says what the study holds.
+// The report has the values of the study.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -47,19 +47,19 @@ TEST_CASE("report: its means are the means of the columns") {
     CHECK(report.pairs[1].name() == std::string("greedy.kf - fixed.kf"));
 }
 
-TEST_CASE("report: failed trials are counted and shown, and figures are given without them") {
+TEST_CASE("report: failed trials are counted and shown, and columns are summarised without them") {
     const Study study = with_failures();
     const Report report = make_report(study, 0.05);
     CHECK(report.arms.front().trials == 300);
     CHECK(report.arms.front().failed == 30);
     CHECK(report.arms.front().columns[column_unseen].summary.count == 270);
-    CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is no figure
+    CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is not a value
     CHECK(report.pairs.front().columns[column_trace_P].paired.pairs == 270);
     CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
     CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
 }
 
-TEST_CASE("report: diverged trials stay in the figures and are named") {
+TEST_CASE("report: diverged trials stay in the columns and are named") {
     Study study = small_study(1, 300, 1);
     study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::diverged);
     const Report report = make_report(study, 0.05);
@@ -69,7 +69,7 @@ TEST_CASE("report: diverged trials stay in the figures and are named") {
     CHECK_THAT(report_text(report), Contains("1 trials of heading-straight/fixed.ekf diverged"));
 }
 
-TEST_CASE("report: a published figure is shown at its percentile") {
+TEST_CASE("report: a published value is shown at its percentile") {
     std::vector<DeformableSettings> scenarios = small_scenarios();
     scenarios.front().published.unseen = {{"greedy.ekf", 2}};
     Study study = new_study(scenarios, 1);
@@ -84,7 +84,7 @@ TEST_CASE("report: a published figure is shown at its percentile") {
     CHECK_FALSE(report.arms[0].columns[column_unseen].published);
 }
 
-TEST_CASE("report: JSON has every figure with NaN as null, CSV a row for each") {
+TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") {
     Study study = with_failures();
     for (double& status : study.scenarios.front().arms.front().columns[column_status]) status = 3;  // all failed
     const Report report = make_report(study, 0.05);

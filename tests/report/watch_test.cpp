@@ -1,4 +1,4 @@
-// Following a run: a look says what the trials so far say, and the run does not notice.
+// Watching a run: a snapshot has the means of the trials so far, and the run is not affected.
 
 #include "watch_support.hpp"
 
@@ -18,7 +18,7 @@ std::int64_t bytes_read() {
 
 }  // namespace
 
-TEST_CASE("watch: after every commit a look says what the trials so far say, and reads no more than they take") {
+TEST_CASE("watch: after every commit a snapshot has the means of the trials so far, and reads no more than these") {
     const TemporaryFolder folder;
     const Asked asked = small(1100);  // 5 blocks of each scenario, the last of 76 trials
     const std::string path = folder / "x.h5", journal = path + ".journal";
@@ -49,7 +49,7 @@ TEST_CASE("watch: after every commit a look says what the trials so far say, and
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("watch: a journal cut anywhere is followed up to its last whole record, and on from there") {
+TEST_CASE("watch: a journal cut anywhere is followed up to its last whole commit, and on from there") {
     const TemporaryFolder folder;
     const Asked asked{600, 1, {}, {tiny("a")}, 1};
     const std::string path = folder / "x.h5", journal = path + ".journal";

@@ -34,7 +34,7 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
     check_says(look, opened(path, small(1000)).study());
 }
 
-TEST_CASE("watch: a journal that begins like the last one but has other records is read from its start") {
+TEST_CASE("watch: a journal that begins like the last one but has other commits is read from its start") {
     const TemporaryFolder folder;
     const Asked asked = small(2000);
     const std::string path = folder / "x.h5";
@@ -69,7 +69,7 @@ TEST_CASE("watch: a run is neither locked out nor kept waiting, and nothing is w
     CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("watch: failed trials are counted and in no figure") {
+TEST_CASE("watch: failed trials are counted and left out of every mean") {
     const TemporaryFolder folder;
     const Study study = made_up_study();
     write_results(folder / "x.h5", study, run_facts);

@@ -1,4 +1,4 @@
-// Who steers [model.md, Controllers].
+// Who steers [docs/model.md, Controllers].
 
 #include "catch.hpp"
 #include "filter_samples.hpp"
@@ -52,7 +52,7 @@ TEST_CASE("controller: the planner's candidates are the oracle's, in its order")
     }
 }
 
-TEST_CASE("controller: the seed's candidates are those of the table") {
+TEST_CASE("controller: the reference study's candidates are those of the table") {
     const auto list = [](const char* process, const char* path) {
         return planner_candidates(scenario_with({{"model.process", process}, {"features.path", path}}));
     };
@@ -131,7 +131,7 @@ TEST_CASE("controller: the planner believes that what is in range will be detect
     CHECK(sure.columns[column_unseen] < unsure.columns[column_unseen]);
 }
 
-TEST_CASE("controller: every candidate's cost is told, in order, and the choice is made from them") {
+TEST_CASE("controller: every candidate's cost is reported, in order, and the choice is made from them") {
     const DeformableSettings scenario = scenario_with({{"features.path", "circle"}});
     const Run run = run_arm(scenario, Controller::greedy, keyed_noise(scenario, 4, 1));
     const std::vector<Control> candidates = planner_candidates(scenario);

@@ -18,7 +18,8 @@ struct Ratio {
     double mean = 0, error = 0;
 };
 
-/// NEES over its dimension, mean over steps and trials, with its standard error; by arm. `figure` 0 is all, 1 the pose.
+/// NEES over its dimension, mean over steps and trials, with its standard error; by arm. `figure` 0 is the series of
+/// all, 1 that of the pose.
 std::vector<Ratio> ratios(const Problem& problem, int blocks, int figure, int dimension) {
     const std::size_t arms = arms_of(problem.scenario()).size();
     const int steps = problem.view().poses - 1;
@@ -41,7 +42,7 @@ std::vector<Ratio> ratios(const Problem& problem, int blocks, int figure, int di
     return result;
 }
 
-/// A row of the table: what ekf, ideal, fej, riekf and iekf have, all and pose, with the error in the last digits.
+/// A row of the table: the values of ekf, ideal, fej, riekf and iekf, all and pose, with the error in the last digits.
 struct Row {
     std::string path, poses, sigma;
     int blocks;

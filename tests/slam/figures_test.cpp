@@ -1,5 +1,5 @@
-// What thousands of trials say, against an independent implementation's figures [docs/model.md]. Both sides carry an
-// error: bounds are 4 standard errors of the difference, a false alarm in 16,000 for each figure.
+// Means over thousands of trials, against those of an independent implementation [docs/model.md]. Both sides have an
+// error: bounds are 4 standard errors of the difference, a false alarm in 16,000 for each number.
 
 #include "catch.hpp"
 #include "matched.hpp"

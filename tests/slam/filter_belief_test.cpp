@@ -1,4 +1,4 @@
-// What a belief must always be, and what can be asked of it.
+// The invariants of a belief, and the quantities that are computed from it.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -86,7 +86,7 @@ TEST_CASE("filter: without noise the heading model's estimate is the truth") {
     CHECK(run.steps.back().truth[0] == Approx(19 * 0.31415926535897931).epsilon(1e-14));
 }
 
-/// The squared error of one block of a state.
+/// The squared error of one component group.
 template <int n>
 SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd& e, int first, int count) {
     Elimination<double, n> work;
@@ -97,7 +97,7 @@ SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd
     return result;
 }
 
-TEST_CASE("filter: squared errors of the whole state and of its blocks are e' P^-1 e") {
+TEST_CASE("filter: squared errors of the whole state and of its groups are e' P^-1 e") {
     constexpr int n = 9;
     for (unsigned seed = 1; seed < 50; ++seed) {
         const MatrixXd P = random_covariance(n, seed);

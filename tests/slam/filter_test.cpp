@@ -9,7 +9,7 @@ using namespace credence::test;
 
 namespace {
 
-/// A noise-free look at state x: sightings in the frame of the heading that the rows are made for, then edges.
+/// A noise-free observation of state x: sightings in the frame of the heading that the rows are made for, then edges.
 template <class Layout>
 VectorXd measured(const Problem& problem, const VectorXd& x, double made_for) {
     const ProblemView& view = problem.view();

@@ -253,7 +253,7 @@ TEST_CASE("horizon: a limit leaves exact what lies below it") {
     }
 }
 
-TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any unit") {
+TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any target") {
     for (const Settings& kind : small_kinds()) {
         const Problem problem(planning(with(kind, {{"planner.horizon", kind[1].second == "circle" ? "2" : "3"}})));
         const std::vector<Arm> arms = arms_of(problem.scenario());

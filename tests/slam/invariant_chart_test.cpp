@@ -1,4 +1,4 @@
-// NEES with the error in the invariant chart, against the logarithm of a matrix, and what it is for.
+// NEES with the error in the invariant chart, against the logarithm of a matrix, and its use.
 
 #include "slam/trial/step_evaluation.hpp"
 
@@ -100,7 +100,7 @@ TEST_CASE("invariant chart: a trial reports it where other estimators run beside
     CHECK(relative(quarter.figure("nees_invariant", 5), run.figure("nees_invariant", 5) / 4) < 1e-14);
 }
 
-TEST_CASE("invariant chart: scenarios of the process model's own estimator have the figures that they had") {
+TEST_CASE("invariant chart: scenarios of the process model's own estimator have the series that they had") {
     const auto count = [](const Settings& settings) { return step_series(scenario_with(settings)).size(); };
     CHECK(count({{"arms.estimators", "ekf, riekf"}}) == count({}) + 2);
     CHECK(count({{"arms.estimators", "iekf"}}) == count({}) + 2);

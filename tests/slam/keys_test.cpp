@@ -18,7 +18,7 @@ enum class Way { up, down };
 struct Influence {
     std::string key, value;
     Settings base;                       ///< what else must be set for the key to matter
-    Controller controller;               ///< whose figure
+    Controller controller;               ///< whose column
     ColumnIndex column;                  ///< that changes
     Way way;                             ///< where the mean over the trials goes
     std::vector<ColumnIndex> untouched;  ///< the same bits for every trial
@@ -83,7 +83,8 @@ const std::vector<Influence>& influences() {
     return list;
 }
 
-/// Keys that change no figure: names, and what is only shown or chosen among arms (block_test.cpp).
+/// Keys that change no column: names, and settings that are only shown or select among arms
+/// (tests/engine/block_test.cpp).
 const std::set<std::string> silent_keys{"scenario.name",      "scenario.title",   "scenario.length_unit",
                                         "arms.controllers",   "arms.estimators",  "published.trace_P",    "published.unseen",
                                         "published.pose_error"};
@@ -111,14 +112,14 @@ Settings with_change(const Influence& influence) {
 
 }  // namespace
 
-TEST_CASE("keys: every key is known to change a figure, or known to change none") {
+TEST_CASE("keys: every key is known to change a column, or known to change none") {
     std::set<std::string> covered = silent_keys, present;
     for (const Influence& influence : influences()) covered.insert(influence.key);
     for (const DeformableKey& key : scenario_keys()) present.insert(key.name);
     CHECK(covered == present);
 }
 
-TEST_CASE("keys: changing a key changes the figure that it should, in its direction, and no other that it should not") {
+TEST_CASE("keys: changing a key changes the column that it should, in its direction, and no other that it should not") {
     for (const Influence& influence : influences()) {
         CAPTURE(described(influence.base), influence.key, influence.value);
         const auto before = columns_of(scenario_with(influence.base), influence.controller);
@@ -156,7 +157,7 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
             }
 }
 
-TEST_CASE("keys: names, titles, units and published figures change no bit") {
+TEST_CASE("keys: names, titles, units and published values change no bit") {
     const DeformableSettings plain = scenario_with({});
     const DeformableSettings named = scenario_with({{"scenario.name", "other"}, {"scenario.title", "Other"}, {"scenario.length_unit", "m"},
                                           {"arms.controllers", "greedy"}, {"planner.horizon", "1"},

@@ -12,12 +12,12 @@ using namespace credence::test;
 
 namespace {
 
-/// What one planner did, step by step, beside the plain form.
+/// The choices of one planner, step by step, beside the direct form.
 struct Tally {
     std::int64_t candidates = 0, choices = 0, different = 0, ties = 0;
 };
 
-/// Compares, at every step of a greedy trial, what was chosen with what the plain form chooses.
+/// Compares, at every step of a greedy trial, the choice with that of the direct form.
 class Comparison {
 public:
     Comparison(const ProblemView& view, Tally& tally) : view_(view), tally_(tally) {}

@@ -1,4 +1,4 @@
-// The published figures, on the recorded noise that they were made with [model.md, Published figures]. The records stay
+// The published figures, on the recorded noise that they were made with [docs/model.md, Published figures]. The records stay
 // outside the project; CREDENCE_SHARED_DATA is their folder, an absolute path.
 
 #include "catch.hpp"
@@ -15,7 +15,7 @@ using namespace credence::test;
 
 namespace {
 
-/// A record of the shared data, or nothing where it is missing; the test then says so and succeeds.
+/// A noise record of the shared data, or nothing where it is missing; the test then says so and succeeds.
 std::optional<NoiseRecord> shared_record(const std::string& name) {
     const std::string path = std::string(CREDENCE_SHARED_DATA) + "/" + name;
     if (std::filesystem::exists(path)) return read_noise_record(path);

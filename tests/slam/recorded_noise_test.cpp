@@ -1,4 +1,4 @@
-// Recorded noise, its layout and what it must cover.
+// Recorded noise: its layout, and the draws that it must cover.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int poses = 20, features = 3, edges = 3;
 
-/// A record whose every number tells its place: 1000 array + 100 row ... in the order of the file.
+/// A noise record whose every number encodes its place: 1000 array + 100 row ... in the order of the file.
 NoiseRecord telling_record() {
     NoiseRecord record;
     record.poses = poses, record.features = features, record.edges = edges;

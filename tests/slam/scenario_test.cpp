@@ -20,7 +20,7 @@ struct KeyCase {
     std::vector<std::string> good, bad;  ///< texts that come back as they are; texts that are refused
 };
 
-/// The keys of design.md, The scenario file, with the seed's defaults.
+/// The keys of a scenario, with the reference study's defaults.
 const std::vector<KeyCase>& key_cases() {
     static const std::vector<std::string> not_a_length{"-1", "-1e-9", "2e9"}, not_positive{"0", "-1", "2e9"};
     static const std::vector<KeyCase> cases{
@@ -112,7 +112,7 @@ void check_refused(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-TEST_CASE("scenario: the keys are those of the design, each with a line of help") {
+TEST_CASE("scenario: the keys are those of the list, each with a line of help") {
     std::set<std::string> designed, present;
     for (const KeyCase& one : key_cases()) designed.insert(one.name);
     for (const DeformableKey& key : scenario_keys()) {
@@ -124,7 +124,7 @@ TEST_CASE("scenario: the keys are those of the design, each with a line of help"
     CHECK(present.size() == scenario_keys().size());
 }
 
-TEST_CASE("scenario: every key has the seed's default") {
+TEST_CASE("scenario: every key has the reference study's default") {
     for (const KeyCase& one : key_cases()) {
         CAPTURE(one.name);
         CHECK(key_named(one.name).get(DeformableSettings{}) == one.default_text);

@@ -1,4 +1,4 @@
-// The sensor [model.md, Filter: See, Edges], with noise that the test chooses.
+// The sensor [docs/model.md, Filter: See, Edges], with noise that the test chooses.
 
 #include "catch.hpp"
 #include "filter_samples.hpp"
@@ -169,7 +169,7 @@ TEST_CASE("sensor: a feature in range is seen with the probability of detection,
 }
 
 TEST_CASE("sensor: a share of the features in range is detected") {
-    // 38000 looks: the share errs by 5 of its standard deviations with 6e-7.
+    // 38000 sightings: the share errs by 5 of its standard deviations with 6e-7.
     const DeformableSettings scenario = scenario_with({{"sensor.detection", "0.3"}, {"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
     double seen = 0, looks = 0;
     for (std::uint64_t trial = 0; trial < 667; ++trial) {

@@ -1,5 +1,4 @@
-// Numerical trouble inside a trial is data: its status, the pose where it happened, and what is left of its
-// columns [model.md, Conventions; design.md, House style].
+// Numerical trouble inside a trial is data: its status, the pose where it happened, and the columns that remain.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -22,7 +21,7 @@ void check_status(const Run& run, double status, double pose) {
     CHECK(run.columns[column_status_pose] == pose);
 }
 
-/// The outcome of judging one belief: nothing but what note_trouble sees.
+/// The outcome of the step evaluation of one belief: only what note_trouble checks.
 Outcome<double> trouble_with(const Belief<double, 9>& belief, double squared_errors = 1, bool positive_definite = true) {
     Outcome<double> outcome;
     note_trouble(belief, 9, squared_errors, positive_definite, 4, outcome);
@@ -65,7 +64,7 @@ TEST_CASE("status: a feature whose truth is no number is not seen, and the trial
     CHECK(run.steps.back().mean.allFinite());  // the filter never knew
 }
 
-TEST_CASE("status: a trial that diverges goes on and keeps its figures") {
+TEST_CASE("status: a trial that diverges goes on and keeps its columns") {
     const DeformableSettings scenario = scenario_with(lost);
     const Run run = run_with(scenario, keyed_noise(scenario, 61, 1));
     check_status(run, diverged, 1);
@@ -126,7 +125,7 @@ TEST_CASE("status: whatever is not finite in x, P or the squared errors is notic
     CHECK(trouble_with(Belief<double, 9>{}, 1, false).status == not_positive_definite);
 }
 
-TEST_CASE("status: the short look finds trouble wherever the long one does") {
+TEST_CASE("status: the short check finds trouble wherever the long one does") {
     const Layout<Process::heading, 3> layout(3);
     const auto agree = [&](const Belief<double, 9>& belief, double squared_errors, bool positive_definite) {
         const bool found = trouble_with(belief, squared_errors, positive_definite).status != completed;

@@ -1,4 +1,4 @@
-// One trial. Which draws it asks for, and what its columns and figures mean [model.md, Reported per trial].
+// One trial: which draws it uses, and the meaning of its columns and series [docs/model.md, Reported per trial].
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -64,7 +64,7 @@ std::vector<Settings> worlds() {
             {{"edges.graph", "none"}, {"noise.truncate", "1"}, {"features.path", "circle"}}};
 }
 
-/// e' (f P)^-1 e of a block of the state at a pose.
+/// e' (f P)^-1 e of a component group at a pose.
 double squared_error(const RunStep& step, int first, int count, double factor) {
     const Eigen::VectorXd e = (step.mean - step.truth).segment(first, count);
     return e.dot((factor * step.covariance.block(first, first, count, count)).ldlt().solve(e));
@@ -144,7 +144,7 @@ TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     CHECK(std::isnan(run.columns[column_nis_ratio]));  // there never was a row
 }
 
-TEST_CASE("trial: figures of a step are what their names say") {
+TEST_CASE("trial: series of a step are what their names say") {
     for (const char* process : {"heading", "translation"}) {
         const DeformableSettings scenario = scenario_with({{"model.process", process}, {"features.path", "circle"},
                                                  {"filter.covariance", "2.25"}, {"noise.heading", "0.01"}});
@@ -171,7 +171,7 @@ TEST_CASE("trial: figures of a step are what their names say") {
     }
 }
 
-TEST_CASE("trial: a heading error is judged the short way round") {
+TEST_CASE("trial: a heading error is evaluated the short way round") {
     // The robot turns by 3.1 a step: after two steps truth and belief have passed pi, with different windings.
     const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
                                              {"sensor.range_max", "0.11"}});

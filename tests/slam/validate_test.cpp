@@ -1,4 +1,4 @@
-// What keys together may not say, and the defaults that depend on other keys.
+// Combinations of keys that are refused, and the defaults that depend on other keys.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// The truth [model.md, Truth], with noise that the test chooses.
+// The truth [docs/model.md, Truth], with noise that the test chooses.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -22,7 +22,7 @@ AnyNoise constant_noise(Source source, Vector2<double> pair) {
     return noise;
 }
 
-/// A draw that tells its source, pose and index apart from all others.
+/// A draw that encodes its source, pose and index.
 AnyNoise telling_noise() {
     AnyNoise noise = silent_noise();
     noise.normal_draw = [](Source source, int pose, int index) {

@@ -76,7 +76,7 @@ TEST_CASE("bootstrap: the same bits for any number of threads, in any order of c
     omp_set_num_threads(threads);
 }
 
-TEST_CASE("bootstrap: seed and figure key the draws") {
+TEST_CASE("bootstrap: root seed and column key the draws") {
     const std::vector<double> values{1, 2, 4, 8, 16, 32, 64};
     const Interval interval = bootstrap_mean_interval(values, 1, "trace_P");
     CHECK(same(interval, bootstrap_mean_interval(values, 1, "trace_P")));

@@ -69,7 +69,7 @@ TEST_CASE("credibility: NaN where the mean square error has no inverse") {
     check_none({1, 1}, {1, 0, 0, 1}, 2, 2);                              // N = n
     check_none({1, missing, 1}, {1, 0, 3, 4, 0, 1}, 2, 2);               // N = n of those with a NEES
     check_none({1, 1, 1, 1}, {1, 3, 0.1, 0.3, -0.7, -2.1, 2, 6}, 2, 4);  // one component is three times the other
-    for (const double h : {1e-8, 3e-8, 1e-7})                            // or nearly so: only rounding tells them apart
+    for (const double h : {1e-8, 3e-8, 1e-7})                            // or nearly so, but for rounding
         check_none({1, 1, 1, 1}, {1, 3 + h, 0.1, 0.3 - h, -0.7, -2.1 + h, 2, 6 + h}, 2, 4);
     check_none({1, 1, 1}, {1, 0, 2, 0, 3, 0}, 2, 3);        // one is always 0
     check_none({1, 1, 1}, {1, missing, 2, 0, 3, 1}, 2, 3);  // one is not known
@@ -84,7 +84,7 @@ TEST_CASE("credibility: units do not matter") {
     check_agrees(b.inclination, a.inclination);
 }
 
-TEST_CASE("credibility: a filter that is right is credible, one told 0.8 of sigma inclines to optimism") {
+TEST_CASE("credibility: a filter that is right is credible, one that assumes 0.8 of sigma inclines to optimism") {
     // The mean of log rho has a standard deviation of about sqrt(2 / (n N)) = 0.013, times 10 / log 10 = 0.056: beyond
     // 0.28 with 6e-7. |log10 rho| of a trial is about that of its own direction: below 0.28 too.
     const Errors right(67, 4000, 1), wrong(67, 4000, 0.8);

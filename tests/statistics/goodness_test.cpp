@@ -1,4 +1,4 @@
-// Goodness of fit, against SciPy and published figures, and by replication.
+// Goodness of fit, against SciPy and published values, and by replication.
 
 #include <algorithm>
 #include <chrono>
@@ -61,7 +61,7 @@ TEST_CASE("goodness: Wilson's interval misses 99 % of 1000 trials as often as do
     CHECK_THAT(missed, WithinAbs(0.0365, 5e-5));
 }
 
-TEST_CASE("goodness: the chi-square band agrees with SciPy and the published figures") {
+TEST_CASE("goodness: the chi-square band agrees with SciPy and the published values") {
     for (const Json& row : reference("chi_square_band")) {
         const Interval band = chi_square_band(row[0], row[1]);
         check_agrees(band.low, row[2]);

@@ -27,7 +27,7 @@ struct Pairs {
 
 }  // namespace
 
-TEST_CASE("paired: every figure agrees with SciPy and NumPy") {
+TEST_CASE("paired: every number agrees with SciPy and NumPy") {
     // With failed trials; with many zero differences and ties; with three pairs; with all differences of one sign.
     for (const Json& one : reference("paired")) {
         const PairedComparison c = compare_paired(numbers(one["a"]), numbers(one["b"]), 99, "paired");

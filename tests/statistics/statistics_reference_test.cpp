@@ -1,4 +1,4 @@
-// Quantiles and figures of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
+// Quantiles and statistics of samples, against SciPy and NumPy (tests/reference/make_statistics.py).
 
 #include "reference.hpp"
 
@@ -19,7 +19,7 @@ TEST_CASE("statistics: chi-square quantiles agree with SciPy") {
         check_agrees(chi_square_upper_quantile(row[0], row[1]), row[2]);
 }
 
-TEST_CASE("statistics: figures of samples agree with NumPy and SciPy") {
+TEST_CASE("statistics: statistics of samples agree with NumPy and SciPy") {
     for (const Json& sample : reference("samples")) {
         const std::vector<double> values = numbers(sample["values"]);
         const Summary summary = summarise(values);

@@ -18,7 +18,7 @@ Asked by(const std::string& release, std::int64_t trials, Shard shard = {}) {
     return {trials, 1, shard, {tiny("a"), tiny("b")}, 1, Keep::trials, release};
 }
 
-/// What /run says of who computed the trials.
+/// The entry in /run on the releases that computed the trials.
 std::string computed_by(const std::string& path) {
     for (const auto& [name, text] : read_results(path).run)
         if (name == "computed_by") return text;

@@ -1,4 +1,4 @@
-// What blocks add up to.
+// The totals over blocks.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"
@@ -67,7 +67,7 @@ bool same(const ScenarioResults& a, const ScenarioResults& b) {
 
 }  // namespace
 
-TEST_CASE("results: empty results have room for what the scenario declares, and nothing in it") {
+TEST_CASE("results: empty results have the dimensions that the scenario declares, and no values") {
     const DeformableSettings scenario = scenario_with({});
     const ScenarioResults results = empty_results(scenario);
     REQUIRE(results.arms.size() == 2);
@@ -107,7 +107,7 @@ TEST_CASE("results: totals are those of the trials that did not fail") {
         ++counted;
     }
     CHECK(results.arms[0].counted == counted);
-    // trace_P is the last step's figure; 300 roundings of a sum of positive numbers.
+    // trace_P is the last step's value; 300 roundings of a sum of positive numbers.
     CHECK(relative(results.arms[0].totals[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
 }
 

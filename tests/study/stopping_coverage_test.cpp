@@ -18,7 +18,7 @@ namespace {
 /// How a replication went over many of them.
 struct Replicated {
     int missed = 0;                 ///< last intervals that do not cover the truth
-    std::vector<int> stops;         ///< by look
+    std::vector<int> stops;         ///< by analysis
     int analyses_used() const {
         int used = 0;
         for (const int count : stops) used += count > 20;
@@ -53,7 +53,7 @@ int most_missed(int replications) {
 double normal_draw(Normals& normals) { return 10 + normals(); }
 double exponential_draw(Normals& normals) { return normals.chi_square(2) / 2; }
 
-/// The half-width that a sample of sd 1 has at `times` the first look's trials: looks after it come into play.
+/// The half-width that a sample of sd 1 has at `times` the first analysis's trials: later analyses then matter.
 StoppingRule rule_of(std::int64_t first_analysis, double times, const std::string& unit = "") {
     const double width = 2.2414 / std::sqrt(static_cast<double>(first_analysis) * times) * (unit == "%" ? 100 : 1);
     return {{parse_goal("x=" + std::to_string(width) + unit)}, first_analysis * 16 + 7, first_analysis};
@@ -61,7 +61,7 @@ StoppingRule rule_of(std::int64_t first_analysis, double times, const std::strin
 
 }  // namespace
 
-TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped at any look", "[long]") {
+TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped at any analysis", "[long]") {
     for (const double times : {0.8, 1.4, 2.8}) {
         const Replicated r = replicate(2000, rule_of(16, times), 10, normal_draw, decide);
         CAPTURE(times, r.missed, r.stops);
@@ -70,7 +70,7 @@ TEST_CASE("stopping: intervals of normal values cover the truth in 95 %, stopped
     }
 }
 
-TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, stopped at any look", "[long]") {
+TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, stopped at any analysis", "[long]") {
     // Where the sample's spread is small, so is its mean: stopping prefers samples that miss.
     for (const double times : {0.8, 1.4, 2.8}) {
         const Replicated r = replicate(2000, rule_of(64, times), 1, exponential_draw, decide);
@@ -84,7 +84,7 @@ TEST_CASE("stopping: intervals of exponential values cover the truth in 95 %, st
     CHECK(relative.analyses_used() >= 2);
 }
 
-TEST_CASE("stopping: so they do at the first look that is used, 4096 trials", "[long]") {
+TEST_CASE("stopping: so they do at the first analysis that is used, 4096 trials", "[long]") {
     const Replicated r = replicate(2000, rule_of(first_analysis_trials, 1), 1, exponential_draw, decide);
     CAPTURE(r.missed, r.stops);
     CHECK(r.missed <= most_missed(2000));
@@ -101,7 +101,7 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
 }
 
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {
-    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [model.md, Truth
+    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [docs/model.md, Truth
     // against filter].
     DeformableSettings matched = matched_linear();
     matched.poses = 8;

@@ -1,4 +1,4 @@
-// Goals as they are written, and what of a study they are about.
+// Parsing of goals, and the parts of a study that they refer to.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -54,7 +54,7 @@ TEST_CASE("stopping: what is no goal is refused, saying why") {
     }
 }
 
-TEST_CASE("stopping: goals of which the study has not the figure or the arms are refused, with what it has") {
+TEST_CASE("stopping: goals of which the study has not the column or the arms are refused, with what it has") {
     Study study = new_study(small_scenarios(), 1);
     CHECK(refusal_of("trace_P=1", study).empty());
     CHECK(refusal_of("unseen[greedy-fixed]=1", study).empty());

@@ -1,4 +1,4 @@
-// Stopping at a precision: looks, and the study that grows from look to look.
+// Stopping at a precision: interim analyses, and the study that grows from one to the next.
 
 #include "catch.hpp"
 #include "study_support.hpp"
@@ -30,14 +30,14 @@ std::vector<std::string> names(const InterimAnalysis& look) {
     return names;
 }
 
-/// A look at one sample of this sd, for which `allowed` was asked and not met.
+/// An analysis of one sample of this sd, for which `allowed` was requested and not met.
 InterimAnalysis one_snapshot(double sd, double allowed, std::int64_t count = 4096) {
     return {4096, 1, analysis_alpha(1), {{"x", count, 0, sd, allowed * 2, allowed}}, false};
 }
 
 }  // namespace
 
-TEST_CASE("stopping: looks are at 4096 trials, then doubled, and at the ceiling") {
+TEST_CASE("stopping: analyses are at 4096 trials, then doubled, and at the ceiling") {
     CHECK(analysis_trials(10000) == std::vector<std::int64_t>{4096, 8192, 10000});
     CHECK(analysis_trials(8192) == std::vector<std::int64_t>{4096, 8192});
     CHECK(analysis_trials(100) == std::vector<std::int64_t>{100});
@@ -77,7 +77,7 @@ TEST_CASE("stopping: failed trials are left out, and too few values never suffic
     CHECK(decide({0.0, 0.0}, parse_goal("x=1%"), 1).met());  // nothing varies: known exactly
 }
 
-TEST_CASE("stopping: a look has every arm and scenario, or every pair, of the first trials only") {
+TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of the first trials only") {
     const Study study = small_study(1, 700, 2);
     const InterimAnalysis look = look_at(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
     CHECK(look.alpha == 0.00625);
@@ -115,7 +115,7 @@ TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm an
 }
 
 TEST_CASE("stopping: the number of trials that it takes is predicted from the spread so far") {
-    // t sd / sqrt(N) with sd = 1 at looks 2, 3, 4 ...: 0.02760, 0.02137, 0.01633, 0.01236, 0.00928 (SciPy).
+    // t sd / sqrt(N) with sd = 1 at analyses 2, 3, 4 ...: 0.02760, 0.02137, 0.01633, 0.01236, 0.00928 (SciPy).
     const StoppingRule rule{{}, 1 << 20};
     CHECK(predicted_trials(one_snapshot(1, 0.0277), rule) == 8192);
     CHECK(predicted_trials(one_snapshot(1, 0.0276), rule) == 16384);
@@ -125,7 +125,7 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
     CHECK(predicted_trials(one_snapshot(1, 0.0217), {{}, 16000}) == 16000);  // or at it: 2.7347 / sqrt(16000) = 0.02162
     CHECK_FALSE(predicted_trials(one_snapshot(1, 1e-10), rule));
     CHECK_FALSE(predicted_trials(one_snapshot(missing, 1, 1), rule));
-    InterimAnalysis at_the_ceiling = one_snapshot(1, 0.028, 9000);  // 0.0288 there, and 0.0276 at the look before
+    InterimAnalysis at_the_ceiling = one_snapshot(1, 0.028, 9000);  // 0.0288 there, and 0.0276 at the analysis before
     at_the_ceiling.trials = 9000;
     at_the_ceiling.number = 3;
     CHECK(predicted_trials(at_the_ceiling, {{}, 9000}) == 16384);
@@ -143,7 +143,7 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
     CHECK(predicted_trials(met, rule) == 4096);
 }
 
-TEST_CASE("stopping: a study stops at the first look that is precise enough, as computed by hand") {
+TEST_CASE("stopping: a study stops at the first analysis that is precise enough, as computed by hand") {
     const Study all = small_study(1, 2048, 2);
     const auto half_width = [&](std::int64_t trials, int number) {
         const std::vector<double>& column = all.scenarios[0].arms[0].columns[column_trace_P];
@@ -159,7 +159,7 @@ TEST_CASE("stopping: a study stops at the first look that is precise enough, as 
         Study study = new_study({scenario}, 1);
         const InterimAnalysis last = run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
                                     [&](const InterimAnalysis& look) { looks.push_back(look.trials); });
-        CHECK(study.scenarios[0].trials == last.trials);  // nothing beyond the look
+        CHECK(study.scenarios[0].trials == last.trials);  // no trials beyond the analysis
         CHECK(study.complete);
         return last;
     };
@@ -178,7 +178,7 @@ TEST_CASE("stopping: a study stops at the first look that is precise enough, as 
     CHECK(ceiling.number == 4);
     CHECK(looks == std::vector<std::int64_t>{256, 512, 1024, 2000});
     looks.clear();
-    CHECK(stopped(1.01 * half_width(2000, 4), looks).met);  // the ceiling's look counts too
+    CHECK(stopped(1.01 * half_width(2000, 4), looks).met);  // the analysis at the ceiling counts too
     CHECK(looks.back() == 2000);
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("stopping: all goals must be met") {
     CHECK_FALSE(look_at(study, goals({"trace_P=1e-9", "unseen=1"}), 300, 1).met);
 }
 
-TEST_CASE("stopping: any number of threads and any history stop at the same look, with the same study") {
+TEST_CASE("stopping: any number of threads and any history stop at the same analysis, with the same study") {
     const StoppingRule rule{goals({"unseen[greedy-fixed]=0.25"}), 3000, 64};
     const auto grown = [&](std::int64_t had, int threads) {
         Study study = new_study(small_scenarios(), 1);
@@ -207,7 +207,7 @@ TEST_CASE("stopping: any number of threads and any history stop at the same look
     REQUIRE(look.trials < 2000);
     for (const int threads : {2, 5}) CHECK(same_results(grown(0, threads).second, study));
     for (const std::int64_t had : {1, 64, 65, 300}) CHECK(same_results(grown(had, 2).second, study));
-    const auto [late, longer] = grown(2500, 2);  // more than the look needs: judged the same, and not shrunk
+    const auto [late, longer] = grown(2500, 2);  // more than the analysis needs: the same result, and not reduced
     CHECK(late.trials == look.trials);
     CHECK(late.states[0].half_width == look.states[0].half_width);
     CHECK(same_results(longer, small_study(1, 2500, 2)));
@@ -221,7 +221,7 @@ TEST_CASE("stopping: scenarios of different length are first brought to the long
     CHECK(same_results(study, small_study(1, 300, 2)));
 }
 
-TEST_CASE("stopping: a goal that cannot be judged is refused before any trial") {
+TEST_CASE("stopping: a goal that cannot be evaluated is refused before any trial") {
     Study study = new_study(small_scenarios(), 1);
     CHECK_THROWS_AS(run_until(study, {goals({"trase_P=1"}), 3000, 64}, {0, 2, {}}), InputError);
     CHECK(study.scenarios[0].trials == 0);

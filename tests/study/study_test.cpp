@@ -74,7 +74,7 @@ TEST_CASE("study: its hash names scenarios, seed and order, and nothing of how i
 }
 
 TEST_CASE("study: all arms of a trial share their noise") {
-    // With nothing to steer by, both arms must end in the same figures: a planner with one candidate, the fixed control.
+    // Without any choice, both arms must have the same values: a planner with one candidate, the fixed control.
     std::vector<DeformableSettings> scenarios = small_scenarios();
     DeformableSettings& s = scenarios.front();
     s.planner.turns = std::vector<double>{0.0};

@@ -99,7 +99,7 @@ TEST_CASE("calibration: NIS of rows that vary has their number of degrees, and w
     }
 }
 
-TEST_CASE("calibration: bias, shape and credibility of NumPy's draws are SciPy's") {
+TEST_CASE("calibration: bias, distribution and credibility of NumPy's draws are SciPy's") {
     const Evidence found = evidence();
     REQUIRE(found.bias.size() == n);
     for (std::size_t j = 0; j < n; ++j)

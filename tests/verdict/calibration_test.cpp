@@ -1,5 +1,5 @@
 // The judge is judged. Where the filter is exact, every test rejects as often as it says, over replications
-// with fixed seeds [statistics.md, The judge is judged]. Each count must lie within the central 99.9 % of its binomial:
+// with fixed seeds [docs/statistics.md, Calibration and power]. Each count must lie within the central 99.9 % of its binomial:
 // another set of seeds fails a count with 1e-3, of 90 here. 2,000 replications tell 5 % from 3.5 % and from 6.7 %.
 
 #include <credence/consistency.hpp>
@@ -19,7 +19,7 @@ constexpr std::size_t middle = 9;  ///< of the steps: where one step is looked a
 /// Of several independent tests, that at least one rejects.
 double any_of(double level, int tests) { return 1 - std::pow(1 - level, tests); }
 
-/// The level of Student's interval for a skewed figure, to second order [Hall 1992, 2.6]: 5 % plus
+/// The level of Student's interval for a skewed quantity, to second order [Hall 1992, 2.6]: 5 % plus
 /// 2 phi(z) z (skewness^2 (z^4 + 2 z^2 - 3) / 18 - kurtosis (z^2 - 3) / 12) / N. A sum of squared normal errors over
 /// steps is at most as skewed as chi-square(1), skewness^2 8 and kurtosis 12: 5.45 % at N = 400; one over independent
 /// steps is nearly normal.

@@ -1,5 +1,5 @@
 // Filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
-// the test names, and with the figures of model.md [statistics.md, The judge is judged; model.md, Truth against
+// the test names, and with the figures of model.md [docs/statistics.md, Calibration and power; docs/model.md, Truth against
 // filter].
 
 #include <credence/consistency.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int seeds = 50;
 
-/// Verdicts by name, and by block the mean of NEES/dim over the seeds and its standard error.
+/// Verdicts by name, and by group the mean of NEES/dim over the root seeds and its standard error.
 struct Verdicts {
     std::map<std::string, int> count;
     std::map<std::string, Moments> ratio;
@@ -47,7 +47,7 @@ void check_ratio(const Verdicts& verdicts, const std::string& block, double thei
 
 }  // namespace
 
-TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic for 200 trials, whatever the seed",
+TEST_CASE("calibration: assuming 0.8 of the measurement noise, a filter is optimistic for 200 trials, whatever the seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
@@ -61,7 +61,7 @@ TEST_CASE("calibration: a filter told 0.8 of the measurement noise is optimistic
     check_ratio(v, "feature_2", 1.165, 0.015);
 }
 
-TEST_CASE("calibration: a filter told sqrt(0.7) of all process noises is optimistic for 400 trials, whatever the seed",
+TEST_CASE("calibration: assuming sqrt(0.7) of all process noises, a filter is optimistic for 400 trials, whatever the seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.heading = s.filter.odometry = s.filter.features = std::sqrt(0.7);

@@ -1,4 +1,4 @@
-// What shared draws gain, and how often a conclusion is wrong, by replication.
+// The gain by shared draws, and the frequency of wrong conclusions, by replication.
 
 #include <algorithm>
 #include <credence/detail/draws.hpp>

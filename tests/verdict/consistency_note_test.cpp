@@ -1,4 +1,4 @@
-// What stands beside a verdict, and what few trials may not be told.
+// The notes beside a verdict, and the limits of verdicts on few trials.
 
 #include "catch.hpp"
 #include "matched.hpp"
@@ -102,7 +102,7 @@ TEST_CASE("consistency: a wrong size of S is not taken for correlation") {
     CHECK(wrong.nis.front().ratio == Approx(4).margin(0.1));
 }
 
-TEST_CASE("consistency: a single trial is judged by its innovations") {
+TEST_CASE("consistency: the verdict on a single trial uses its innovations") {
     Evidence evidence = evidence_of_values({1.3});
     evidence.nis = {nis_of(1.01, 0.01)};
     evidence.whiteness = {{1, 1'000'000, 0.001, 0.001, 0.00196, 0.00196}};

@@ -72,7 +72,7 @@ TEST_CASE("consistency: few trials do not make a consistent filter look inconsis
     }
 }
 
-TEST_CASE("consistency: one block outside is enough to decide, so the trials that decide are its own") {
+TEST_CASE("consistency: one group outside is enough to decide, so the trials that decide are its own") {
     ScenarioResults results = simulated(matched_linear(), 60);
     SeriesTotals& pose = results.arms.front().totals[1];
     for (ExactSum& step : pose.sum) step.add(0.12 * step.rounded());  // the pose outside the margin, the others inside
@@ -82,7 +82,7 @@ TEST_CASE("consistency: one block outside is enough to decide, so the trials tha
     CHECK(c.trials_to_decide < 3000);  // (3.7 sd / 0.07)^2 for an sd of 0.5 to 1; to bring the others inside takes more
 }
 
-TEST_CASE("consistency: a filter told 0.8 of the measurement noise is optimistic, in its features and not in its pose") {
+TEST_CASE("consistency: assuming 0.8 of the measurement noise, a filter is optimistic in its features and not in its pose") {
     DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 4000));
@@ -107,7 +107,8 @@ TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic
 }
 
 TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") {
-    // statistics.md: the seed's EKF with sigma_head = 0.042 gives 0.97 over all, 1.20 for the pose, 0.70 for the features.
+    // statistics.md: the reference study's EKF with sigma_head = 0.042: 0.97 over all, 1.20 for the pose, 0.70 for the
+    // features.
     DeformableSettings s;
     s.noise.heading = 0.042;
     s.arms.controllers = {Controller::fixed};
@@ -119,7 +120,8 @@ TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") 
     CHECK(has(c, "pessimistic", "features"));
 }
 
-TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent", "[long]") {
+TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent",
+          "[long]") {
     ScenarioResults results = simulated(matched_linear(), 20000);
     REQUIRE(judge(evidence_of_first_arm(results), 0.05).verdict == Verdict::consistent);
     const auto bias = std::find_if(results.all_series.begin(), results.all_series.end(),

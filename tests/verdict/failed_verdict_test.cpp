@@ -127,7 +127,7 @@ TEST_CASE("failed: no record with more failed trials than the share is consisten
     }
 }
 
-TEST_CASE("failed: the verdict stands above what the other trials say, and above every finding") {
+TEST_CASE("failed: the verdict takes precedence over the other trials and over every finding") {
     for (const double scale : {0.1, 1.0, 10.0}) {
         const FailingTrial failure{"errors of another size, and a tenth of the trials cut", [&](Values& v, std::size_t t) {
                                   if (t < 100) return cut(v, t);

@@ -1,4 +1,4 @@
-// Mistakes that were found in well-known tools [statistics.md, The judge is judged], as far as no
+// Mistakes that were found in well-known tools [docs/statistics.md, Calibration and power], as far as no
 // other test would catch them. The others: alpha in each tail (statistics_reference_test, goodness_test,
 // calibration_test), the 99th percentile itself (statistics_reference_test), N m degrees (calibration_reference_test),
 // seeds that share trials (study_test, draws_test), resumed runs that restart at 0 (study_test, store_test, cli_test).
@@ -37,7 +37,7 @@ double mean_ratio(const ArmResults& arm, const std::function<bool(Status)>& coun
     return sum / count;
 }
 
-/// Trials that a step's shape was counted on.
+/// The number of trials with which a step's distribution was counted.
 std::int64_t counted_cells(const ArmResults& arm, std::size_t k) {
     const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells);
     return std::accumulate(first, first + distribution_cells, std::int64_t{0});
@@ -52,7 +52,7 @@ std::vector<double> values_with(std::size_t place, double outlier, std::size_t c
     return values;
 }
 
-/// A look at the first of the values, as the production judges it.
+/// An interim analysis of the first values, as the program makes it.
 InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count, int number) {
     const GoalState state = decide({values.begin(), values.begin() + count}, rule.goals.front(), number);
     return {count, number, analysis_alpha(number), {state}, state.met()};
@@ -107,7 +107,7 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
     CHECK(figure.summary.mean - 1.645 * figure.summary.standard_deviation < 0);
 }
 
-TEST_CASE("mistakes: diverged trials stay in every figure of the evidence, and are counted") {
+TEST_CASE("mistakes: diverged trials stay in all of the evidence, and are counted") {
     DeformableSettings s;
     s.noise.odometry = 1.2e6;  // where nothing is seen at a pose, which happens in some trials, P is beyond 1e12
     s.sensor.sigma = 1e3;
@@ -129,7 +129,7 @@ TEST_CASE("mistakes: diverged trials stay in every figure of the evidence, and a
     CHECK(evidence.blocks.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
-TEST_CASE("mistakes: a look is judged by its own values, not by the widest or narrowest look so far") {
+TEST_CASE("mistakes: an analysis uses its own values, not the widest or narrowest analysis so far") {
     // An outlier of 100 among the first 16: their half-width is 16, and falls about as 1/N. Had the rule kept the
     // running maximum, it would never stop.
     const StoppingRule rule{{parse_goal("x=0.5")}, 4096, 16};
@@ -147,7 +147,7 @@ TEST_CASE("mistakes: a look is judged by its own values, not by the widest or na
     const double width =
         t_quantile(analysis_alpha(last.number), static_cast<double>(last.trials) - 1) * summary.standard_error;
     CHECK(last.states.front().half_width == Approx(width).epsilon(1e-12));
-    // An outlier that comes late: the next look is wider than the one before, and says so.
+    // After a late outlier the next analysis is wider than the one before, and shows it.
     values = values_with(20, 100, 64);
     CHECK(look_at_first(values, rule, 16, 1).states.front().half_width < 1);
     CHECK(look_at_first(values, rule, 32, 2).states.front().half_width > 5);

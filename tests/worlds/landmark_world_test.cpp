@@ -73,7 +73,7 @@ TEST_CASE("landmark world: its keys have help, and their defaults are those of t
     CHECK(defaults.arms.size() == 5);
 }
 
-TEST_CASE("landmark world: what makes no sense is refused by the line it stands in") {
+TEST_CASE("landmark world: nonsense is refused with its line") {
     CHECK_THAT(refusal_of("[features]\npath = circle\n"), Contains("test:4: unknown key features.path"));
     CHECK_THAT(refusal_of("[loop]\nsides = 2\n"), Contains("test:4: invalid loop.sides=2 (must be at least 3"));
     CHECK_THAT(refusal_of("[loop]\nstep = 0\n"), Contains("must be above 0"));

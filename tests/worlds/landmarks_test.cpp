@@ -98,7 +98,7 @@ TEST_CASE("landmarks: nothing is left of what was believed before first sight") 
     }
 }
 
-TEST_CASE("landmarks: figures count rows, what is out of sight and first sights as they are") {
+TEST_CASE("landmarks: series count rows, landmarks out of sight and first sights") {
     const LandmarkSettings scenario = classical(30);
     const LandmarkRun run = run_landmarks(scenario, Estimator::ekf, noise_of(0));
     double unseen = 0;

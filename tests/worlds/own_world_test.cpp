@@ -218,7 +218,7 @@ TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
     CHECK(missing.whiteness[0].count == 20 * (8 * 3 - 2));
 }
 
-TEST_CASE("own world: figures are those of the formulas") {
+TEST_CASE("own world: series are those of the formulas") {
     // P = I and S = I: NEES |e|^2 with e the draw itself, NIS the same of the innovation.
     const ScenarioResults results = run_spoiled(1).scenarios[0];
     const KeyedDraws<double> draws(1, 0, std::numeric_limits<double>::infinity());
@@ -252,7 +252,7 @@ TEST_CASE("own world: what a world does wrong is said, not counted") {
     REQUIRE_THROWS_AS(check_declared(broken), std::invalid_argument);
 }
 
-TEST_CASE("own world: a key of a draw that the counter has no room for is refused with its number") {
+TEST_CASE("own world: a key of a draw that exceeds the counter is refused with its number") {
     const std::string last = "134217727";
     REQUIRE_THROWS_WITH(keyed(16, 1, 0), "world keyed: invalid source of a draw 16 (must be 0 to 15).");
     REQUIRE_THROWS_WITH(keyed(-1, 1, 0), "world keyed: invalid source of a draw -1 (must be 0 to 15).");

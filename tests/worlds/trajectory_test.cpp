@@ -1,4 +1,4 @@
-// A replayed trial is the engine's, bit for bit, and what it writes down agrees with itself.
+// A replayed trial is the engine's, bit for bit, and its stored quantities are consistent.
 
 #include "catch.hpp"
 #include "study_support.hpp"

@@ -1,6 +1,7 @@
 #pragma once
-// Module statistics: totals over trials of the columns, for studies whose columns nobody could store: from them follow means,
-// spreads and paired differences, but no median and no distribution [docs/results-format.md, Aggregates].
+// Module statistics: totals over trials of the columns, for studies whose columns would be too large to store. Means,
+// spreads and paired differences follow from them, but no median and no distribution [docs/results-format.md,
+// Aggregates].
 
 #include <credence/detail/block.hpp>
 #include <credence/detail/exact_sum.hpp>
@@ -17,12 +18,12 @@ struct ExactMoments {
     ExactSum sum, square_sum;
 
     void add(const ExactMoments& other);
-    /// Takes values back that were added: what is left is as if they never had been.
+    /// Removes values that were added before, exactly.
     void subtract(const ExactMoments& other);
 };
 
 /// mean = S/n and sd = sqrt((n Q - S^2) / (n (n - 1))) of n values of sum S and sum of squares Q; n Q - S^2, in which
-/// nearly all digits of values cancel that vary little, is rounded once.
+/// nearly all digits cancel for values that vary little, is rounded once.
 Moments moments_of(const ExactMoments& values);
 
 /// The differences a - b of a column, over the trials that failed in neither arm and have it in both.
@@ -36,27 +37,27 @@ struct DifferenceTotals {
     DifferenceTotals reversed() const;
 };
 
-/// What is kept of an arm's columns where no trial is kept.
+/// The totals of an arm's columns where no trial is kept.
 struct ArmAggregates {
     std::vector<std::int64_t> statuses;      ///< [statuses] trials, by how they ended
-    std::vector<ExactMoments> columns;       ///< [column_count] over the trials that did not fail; of series only
-    /// [earlier arms, column_count] this arm minus that one; of series only
+    std::vector<ExactMoments> columns;       ///< [column_count] over the trials that did not fail; of real columns only
+    /// [earlier arms, column_count] this arm minus that one; of real columns only
     std::vector<std::vector<DifferenceTotals>> differences;
 
     void add(const ArmAggregates& other);
     void subtract(const ArmAggregates& other);
-    std::int64_t trials() const;             ///< that there are, failed ones too
+    std::int64_t trials() const;             ///< number of trials, including failed ones
     std::int64_t counted() const;            ///< that did not fail
 };
 
-/// What is wrong with them that no trials could give: a count below 0 or larger than one that it is a part of. Nullptr
-/// where nothing is.
+/// Describes an impossible value: a count below 0 or larger than the count that contains it. Nullptr where there is
+/// none.
 const char* problem_of(const ArmAggregates& aggregates);
 
-/// Those of no trial, by arm.
+/// The aggregates of no trial, by arm.
 std::vector<ArmAggregates> empty_aggregates(const std::vector<Column>& columns, std::size_t arms);
 
-/// Those of a block, by arm.
+/// The aggregates of a block, by arm.
 std::vector<ArmAggregates> aggregates_of(const std::vector<Column>& columns, const Block& block);
 
 }  // namespace credence

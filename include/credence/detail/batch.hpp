@@ -1,24 +1,24 @@
 #pragma once
-// Module engine: consecutive trials of one arm: what a simulation is asked for, and where its results go.
+// Module engine: a batch: consecutive trials of one arm, as requested of a simulation, and the arrays for its results.
 
 #include <cstddef>
 #include <cstdint>
 
 namespace credence {
 
-/// Sizes of what the trials of a scenario report.
+/// Sizes of a scenario's columns and series.
 struct SimulationShape {
     int poses = 0;          ///< K
     int state_size = 0;     ///< n
     int column_count = 0, series_count = 0;
-    int group_count = 0;    ///< blocks of the state: the first series are their NEES, the whole state's before all
+    int group_count = 0;    ///< component groups: the first series are their NEES, the whole state's first
 };
 
-/// Trials are kept eight by eight, one next to the other: a pack of lanes finds its numbers where they belong.
+/// Trials are stored eight by eight, adjacent to each other, so that a pack of lanes can be loaded and stored directly.
 inline constexpr int octet = 8;
 
-/// Consecutive trials of one arm, and where their results go. Results are the same bits from every target. Sums are eight
-/// running sums, trial i of the batch going to the one of i mod 8 in trial order; failed trials do not enter them.
+/// Consecutive trials of one arm, and the arrays for their results. Results are the same bits from every target. Sums
+/// are eight running sums, trial i of the batch added to number i mod 8 in trial order; failed trials are left out.
 struct Batch {
     std::uint64_t root_seed = 0;
     std::int64_t first_trial = 0;
@@ -27,7 +27,7 @@ struct Batch {
     double* sums = nullptr;             ///< [series_count, K - 1, 8], added to
     double* square_sums = nullptr;      ///< [series_count, K - 1, 8], added to
     double* run_square_sums = nullptr;  ///< [series_count, 8], added to: of each trial's sum over its steps
-    std::int32_t* covered = nullptr;    ///< [blocks, K - 1, levels], added to: trials below the coverage bounds
+    std::int32_t* covered = nullptr;    ///< [groups, K - 1, levels], added to: trials below the coverage bounds
     double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
     // Of detailed trials only; null for others.
     double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too

@@ -1,6 +1,6 @@
 #pragma once
-// Module engine: the block: 256 consecutive trials of one scenario under every arm. A pure function of (scenario, root seed,
-// block index): threads, shards and resumed runs only choose which blocks to run.
+// Module engine: the block: 256 consecutive trials of one scenario under every arm. It is a pure function of (scenario,
+// root seed, block index): threads, shards and resumed runs only choose which blocks to run.
 
 #include <credence/worlds.hpp>
 
@@ -11,14 +11,14 @@ namespace credence {
 
 inline constexpr int block_size = 256;
 
-/// One arm's part of a block. Sums run over the trials that did not fail: eight running sums, trial i going to the one
-/// of i mod 8 in trial order, then added up in order. That is the same for every lane width up to 8.
+/// One arm's part of a block. Sums are over the trials that did not fail: eight running sums, trial i added to number i
+/// mod 8 in trial order, which are then added up in order. The result is the same for every lane width up to 8.
 struct ArmBlock {
     std::vector<double> columns;            ///< [columns, trials], failed trials filled
     std::vector<double> sums;               ///< [series_count, K - 1]
     std::vector<double> square_sums;        ///< [series_count, K - 1]
     std::vector<double> run_square_sums;    ///< [series_count], of each trial's sum over its steps
-    std::vector<std::int32_t> covered;      ///< [blocks of the state, K - 1, levels] trials below each coverage bound
+    std::vector<std::int32_t> covered;      ///< [component groups, K - 1, levels] trials below each coverage bound
     std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
     int counted = 0;                        ///< trials that did not fail
 
@@ -41,10 +41,10 @@ struct Block {
 std::int64_t block_count(std::int64_t trials);
 int trials_in_block(std::int64_t trials, std::int64_t index);
 
-/// Whether the trials of a block are detailed ones. A block is so as a whole.
+/// Whether the trials of a block are detailed: either all of them are or none.
 bool detailed(const SimulationShape& shape, std::int64_t index);
 
-/// A scenario made ready to run its blocks.
+/// A scenario prepared for running its blocks.
 class BlockRunner {
 public:
     explicit BlockRunner(const Scenario& scenario);

@@ -1,5 +1,5 @@
 #pragma once
-// Module study: which blocks of a study are there, as ranges: all of a study are one, however many blocks it has.
+// Module study: sets of a study's blocks, stored as ranges: a complete study is one range, however many blocks it has.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +18,8 @@ struct BlockRange {
     bool operator==(const BlockRange&) const = default;
 };
 
-/// A set of blocks, rising: 24 bytes a range, whatever its length. Ranges neither overlap nor follow each other without
-/// a gap, so the same set has the same ranges. The blocks of one shard of several are a range each.
+/// A set of blocks as increasing ranges of 24 bytes each, whatever their length. Ranges neither overlap nor are
+/// adjacent, so that equal sets have equal ranges. In one shard of several, each block is a range.
 class BlockRanges {
 public:
     BlockRanges() = default;
@@ -34,21 +34,21 @@ public:
     std::int64_t count() const { return spans_.empty() ? 0 : spans_.back().before + spans_.back().range.count(); }
     std::int64_t front() const { return spans_.front().range.first; }
     std::int64_t back() const { return spans_.back().range.last; }
-    /// The block that has `place` blocks before it.
+    /// The block at index `place`.
     std::int64_t operator[](std::size_t place) const;
     bool contains(std::int64_t block) const { return place_of(block).has_value(); }
-    /// How many come before it; nothing where it is not there.
+    /// The index of a block; nothing where it is not in the set.
     std::optional<std::int64_t> place_of(std::int64_t block) const;
-    /// Blocks that are lower than this one.
+    /// Number of blocks that are lower than this one.
     std::int64_t count_below(std::int64_t block) const;
     std::vector<BlockRange> ranges() const;
 
-    /// Adds those that are not there.
+    /// Adds the blocks that are not in the set yet.
     void add(const BlockRange& range);
     void add(std::int64_t block) { add(BlockRange{block, block}); }
     void add(const BlockRanges& others);
     void remove(std::int64_t block) { *this = without({block}); }
-    /// Those that the others do not have, and those that they have too.
+    /// The difference to the others, and the intersection with them.
     BlockRanges without(const BlockRanges& others) const;
     BlockRanges common(const BlockRanges& others) const { return without(without(others)); }
 

@@ -1,8 +1,9 @@
 #pragma once
-// Module numeric: draws. A draw is a pure function of (root seed, trial, pose, source, index, attempt): never of the order of
-// calls, of the thread, or of what an arm saw or planned. All arms of a trial therefore share their noise.
+// Module numeric: draws. A draw is a pure function of (root seed, trial, pose, source, index, attempt): it does not
+// depend on the order of calls, on the thread, or on an arm's measurements and plans. All arms of a trial therefore
+// share their noise.
 //
-// The face of a noise source, here and in recorded_noise.hpp:
+// The interface of a noise source, here and in recorded_noise.hpp:
 //   Vector2<Real> normal(Source, int pose, int index)   two independent standard-normal draws
 //   Real          uniform(Source, int pose, int index)  in [0, 1)
 
@@ -11,7 +12,7 @@
 
 namespace credence {
 
-/// What a draw is for. The numbers are part of the key: never renumber them within a schema version.
+/// The purpose of a draw. The numbers are part of the key: never renumber them within a schema version.
 enum class Source : std::uint32_t {
     odometry_heading = 0,   ///< first of the pair; on arrival at the pose, at pose 0 the initial heading
     odometry_position = 1,  ///< on arrival at the pose, at pose 0 the initial position
@@ -20,28 +21,28 @@ enum class Source : std::uint32_t {
     measurement = 4,        ///< by feature; at pose 0 the initial estimate
     edge = 5,               ///< by edge in graph order
     detection = 6,          ///< by feature, uniform
-    landmark_prior = 7,     ///< by landmark: what is believed of it before it is seen
+    landmark_prior = 7,     ///< by landmark: the error of its prior estimate
 };
 
-/// What a draw is keyed by, beside the trial. Its index takes 16 bits.
+/// The key of a draw, beside the trial. Its index has 16 bits.
 struct DrawKey {
     Source source;
     int pose, index;
 };
 
-/// How many sources a key can tell apart.
+/// The number of sources that a key can distinguish.
 constexpr int source_count = 16;
 
 /// The largest index of draws that are never truncated.
 constexpr int largest_wide_index = (1 << 27) - 1;
 
-/// The index of a key whose draw is never truncated, from one up to largest_wide_index: the attempt of such a draw is 0,
-/// so that the bits above the sixteenth have room where the attempt is in others. Below 65536 it is the index itself.
+/// The index of a key whose draw is never truncated, from one up to largest_wide_index: the attempt of such a draw is
+/// 0, so the bits above the sixteenth are stored in the attempt's place. Below 65536 it is the index itself.
 constexpr int wide_index(int index) { return (index & 0xffff) | (index >> 16) << 20; }
 
 inline namespace CREDENCE_TARGET {
 
-/// Four 32-bit words, each in the low half of a 64-bit one (one per lane); the high halves hold nothing in particular.
+/// Four 32-bit words, each in the low half of a 64-bit one (one per lane); the high halves are unspecified.
 template <class Word>
 struct PhiloxBlock {
     Word word[4];
@@ -62,8 +63,8 @@ struct PhiloxKeys {
     }
 };
 
-/// Philox4x32-10 [Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3, SC11]: ten rounds of a
-/// keyed bijection on a 128-bit counter. Checked bit for bit against the Random123 library in tests/draws.
+/// Philox4x32-10 [Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3, SC11]: ten rounds of a keyed
+/// bijection on a 128-bit counter. Checked bit for bit against the Random123 library in tests/numeric/draws_test.cpp.
 template <class Word>
 PhiloxBlock<Word> philox(PhiloxBlock<Word> counter, const PhiloxKeys& keys) {
     Word w0 = counter.word[0], w1 = counter.word[1], w2 = counter.word[2], w3 = counter.word[3];
@@ -112,7 +113,7 @@ public:
         return draw;
     }
 
-    /// The same for several draws, step by step together. `keys` [count], `draws` [count].
+    /// The same for several draws, whose steps are interleaved. `keys` [count], `draws` [count].
     template <int count>
     void normals(const DrawKey* keys, Vector2<Real>* draws) const {
         using Together = Several<Real, count>;
@@ -129,12 +130,12 @@ public:
 
 private:
     static constexpr std::uint32_t attempts = 4096;
-    /// sqrt(-2 log 2^-52) = 8.5: the transform gives nothing beyond.
+    /// sqrt(-2 log 2^-52) = 8.5: the largest value of the transform.
     static constexpr double largest_draw = 9;
 
-    /// Draws again what lies beyond the truncation. Kept out of the way of those who do not truncate.
+    /// Draws values beyond the truncation again. Not inlined, so that draws without truncation stay short.
     [[gnu::noinline]] void redraw(Vector2<Real>& draw, const DrawKey& key) const {
-        // Each component is redrawn by itself; the attempt's number is part of the key [model.md, Conventions].
+        // Each component is redrawn by itself; the number of the attempt is part of the key.
         for (std::uint32_t again = 1; again < attempts; ++again) {
             const Mask<Real> redraw_x = absolute(draw.x) > truncate_, redraw_y = absolute(draw.y) > truncate_;
             if (!any(either(redraw_x, redraw_y))) break;
@@ -153,7 +154,7 @@ private:
                  none + what}};
     }
 
-    /// The words of several draws, as many at a time as the registers hold: 32 of 64 bytes, of others 16.
+    /// The words of several draws, as many at a time as fit into registers: 32 for Reals of 64 bytes, otherwise 16.
     template <int count>
     CREDENCE_INLINE PhiloxBlock<Several<Bits<Real>, count>> random_words(const DrawKey* keys) const {
         constexpr int held = sizeof(Real) == 64 ? 6 : 3;
@@ -182,21 +183,21 @@ private:
     Real truncate_;
 };
 
-/// So many draws, from any source of noise. `keys` [count], `draws` [count].
+/// A number of draws, from any source of noise. `keys` [count], `draws` [count].
 template <int count, class Noise, class Real>
 void draw_several(const Noise& noise, const DrawKey* keys, Vector2<Real>* draws) {
     for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);
 }
 
-/// Keyed draws, together; one copy of the code for all who draw.
+/// Keyed draws, interleaved; one copy of the code for all callers.
 template <int count, class Real>
 [[gnu::noinline]] CREDENCE_FLAT void draw_several(const KeyedDraws<Real>& noise, const DrawKey* keys,
                                                   Vector2<Real>* draws) {
     noise.template normals<count>(keys, draws);
 }
 
-/// Draws of all keys, six together: fewer leave time unfilled, more do not fit what a processor looks ahead. `keys`
-/// [count], `draws` [count].
+/// Draws of all keys, six at a time: fewer do not fill the processor's pipelines, more do not fit its reorder buffer.
+/// `keys` [count], `draws` [count].
 template <class Noise, class Count, class Real>
 void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real>* draws) {
     constexpr int most = 6;

@@ -1,14 +1,15 @@
 #pragma once
-// Module numeric: loops whose bounds the compiler may know. Where both are known, as for three features, the loop is written
-// out and every index in its body is a constant; else it rolls. Either way the same operations in the same order.
+// Module numeric: loops whose bounds may be known at compile time. Where both are known, as for three features, the
+// loop is unrolled and every index in its body is a constant; otherwise it is a plain loop. The operations and their
+// order are the same.
 
 #include <credence/detail/real.hpp>
 
 #include <type_traits>
 #include <utility>
 
-/// CREDENCE_FLAT inlines everything that a function calls, and what those call: what is written out must end in one
-/// place. Sanitizers would watch every one of those instructions, and the compiler take minutes.
+/// CREDENCE_FLAT inlines everything that a function calls, directly or not, so that unrolled code ends in one function.
+/// Not under sanitizers, which would instrument every instruction and take minutes to compile.
 #ifdef CREDENCE_SANITIZED
 #define CREDENCE_FLAT
 #define CREDENCE_INLINE inline

@@ -1,6 +1,7 @@
 #pragma once
-// Module numeric: log and sincos of our own, from additions, multiplications and fma alone, so that every machine, compiler and
-// lane width gives the same bits. Errors are below 1.5 units in the last place on the ranges stated (tests/elementary).
+// Module numeric: log and sincos from additions, multiplications and fma alone, so that every machine, compiler and
+// lane width gives the same bits. Errors are below 1.5 units in the last place on the given ranges
+// (tests/numeric/elementary_test.cpp).
 
 #include <credence/detail/real.hpp>
 
@@ -35,11 +36,11 @@ Real log(Real x) {
     return fma(e, Real(ln2_high), large + small);
 }
 
-/// Square root of a normal positive number or 0 from below: at most 0.2 % of it too little, never too much. Cheaper
-/// than sqrt where a bound is enough.
+/// Lower bound on the square root of a normal positive number or 0: at most 0.2 % below it, never above. Cheaper than
+/// sqrt where a bound is enough.
 ///
-/// One step of Newton's iteration for 1/sqrt(x), which comes from below whatever it starts from: here the well-known
-/// shift, within 3.5 %.
+/// One step of Newton's iteration for 1/sqrt(x), whose result is never above 1/sqrt(x), from the well-known shift,
+/// which is within 3.5 %.
 template <class Real>
 Real sqrt_from_below(Real x) {
     const Real y = from_bits(Bits<Real>(0x5fe6eb50c7b537a9u) - (bits_of(x) >> 1));

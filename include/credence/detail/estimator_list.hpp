@@ -1,6 +1,7 @@
 #pragma once
-// Module slam: every estimator there is: ESTIMATOR(name, process, type), one line each. Its name in arms.estimators and in
-// arms, the process model that it is for, and the class template that it is, which estimators.hpp includes.
+// Module slam: the list of all estimators: ESTIMATOR(name, process, type), one line each. The name is used in
+// arms.estimators and in arms; then the process model that it is for, and its class template, which
+// src/slam/estimators/estimators.hpp includes.
 
 #define CREDENCE_ESTIMATORS(ESTIMATOR)             \
     ESTIMATOR(ekf, heading, KalmanFilter)          \

@@ -1,6 +1,6 @@
 #pragma once
-// Module numeric: sums without rounding, so that a total is the same bits in whatever order its parts arrive, and can be
-// merged, extended and taken back.
+// Module numeric: sums without rounding, so that a total has the same bits in whatever order its parts arrive, and can
+// be merged, extended and reduced again.
 
 #include <vector>
 

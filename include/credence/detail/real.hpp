@@ -1,11 +1,11 @@
 #pragma once
-// Module numeric: the scalar that the equations are written on.
+// Module numeric: the scalar type of the equations.
 //
-// World, sensor, filter and controller are templates on `Real`. `double` is the readable reference; a pack of doubles
-// runs several trials at once. The equations therefore never branch on a Real: they compare to a mask and select.
+// World, sensor, filter and controller are templates on `Real`. With `double` they run one trial; with a pack of
+// doubles several trials at once. The equations therefore never branch on a Real: they compare to a mask and select.
 //
-// Everything a unit of the engine inlines lives in `inline namespace CREDENCE_TARGET`: each instruction set compiles
-// its own copy under its own name, so that the linker can never hand one machine another machine's code.
+// Everything that a target of the engine inlines is in `inline namespace CREDENCE_TARGET`: each instruction set
+// compiles its own copy under its own name, so that the linker can never combine code for different machines.
 
 #include <cstdint>
 
@@ -59,8 +59,8 @@ inline bool finite(double x) { return x - x == 0.0; }
 inline bool within(double x, double low, double high) { return low <= x && x <= high; }
 inline double absolute(double x) { return __builtin_fabs(x); }
 
-/// The same object, of which the compiler forgets what it has read: what it would keep of large arrays does not fit the
-/// registers, and goes to the stack and back.
+/// The same object, whose values the compiler must read again: values of large arrays that it kept would not fit into
+/// the registers, and would be spilled to the stack.
 template <class T>
 T& read_anew(T& object) {
     T* place = &object;
@@ -72,8 +72,8 @@ T& read_anew(T& object) {
 /// low bits of the sum are those of the integer.
 inline constexpr double integer_shifter = 6755399441055744.0;  // 1.5 * 2^52
 
-/// A vector of the plane. Like a Real, it holds nothing in particular until it is told: arrays of vectors that began
-/// with zeros would be kept in memory, not in registers.
+/// A vector of the plane. Like a Real, it is not initialised: arrays of vectors that were set to zero first would be
+/// kept in memory, not in registers.
 template <class Real>
 struct Vector2 {
     Real x, y;

@@ -1,7 +1,7 @@
 #pragma once
-// Module numeric: N numbers that take every step together. Several<Real, N> is itself a Real, as far as elementary.hpp and
-// draws.hpp ask: the steps of one logarithm wait for each other, and a processor looks only a few dozen instructions
-// ahead for others that do not. Part i gives the bits that a Real would.
+// Module numeric: N numbers that take every step together. Several<Real, N> is itself a Real, as far as elementary.hpp
+// and draws.hpp need it: the steps of one logarithm depend on each other, and a processor finds independent
+// instructions only within a few dozen. Part i gives the same bits as a Real.
 
 #include <credence/detail/each.hpp>
 
