@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes docs/figures, or the folder named, by default figures/ where this is installed: the document's Figures 1 to 4 from trial 0 of seed 1 (not a picked one), each beside the 10,000
-# trials that it is one of. Needs python3-h5py, python3-scipy and python3-matplotlib. The same program and matplotlib
-# make the same bytes.
+# Makes docs/figures, or the folder named, by default figures/ where this is installed: the document's Figures 1 to 4
+# from trial 0 of seed 1 (not a picked one), each beside the 10,000 trials that it is one of. Needs python3-h5py,
+# python3-scipy and python3-matplotlib. The same program and matplotlib make the same bytes.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 if [ -d "$root/docs" ]; then

@@ -1,4 +1,5 @@
-// Whether all contenders do the same trials: their columns, trial by trial, in the run that quotes their ratios.
+// Checks that all contenders simulate the same trials: their columns, trial by trial, in the run that reports their
+// ratios.
 
 #include <cmath>
 #include "worlds/deformable/deformable.hpp"
@@ -15,7 +16,7 @@ namespace credence::bench {
 namespace {
 
 constexpr std::uint64_t root_seed = 1;
-constexpr double tolerance = 1e-9;  // relative: the joint update's rounding is far below it, any slip far above
+constexpr double tolerance = 1e-9;  // relative: the joint update's rounding is far below it, any error far above
 
 [[noreturn]] void disagree(const Row& row, const std::string& who, int trial, int column, double theirs, double ours) {
     std::ostringstream text;
@@ -43,7 +44,7 @@ void compare(const Row& row, const std::string& who, const std::unique_ptr<Basel
     }
 }
 
-/// Other units, the counted one among them, must give the same bits.
+/// Other targets, the counted one among them, must give the same bits.
 void compare(const Row& row, const Target& target, const std::vector<double>& columns, int trials) {
     const std::vector<double> own = run_block(row.problem, root_seed, 0, trials, target).arms.front().columns;
     for (std::size_t i = 0; i < columns.size(); ++i)

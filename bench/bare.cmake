@@ -33,7 +33,7 @@ without(src/slam/trial/step_evaluation.hpp
 without(src/slam/update.hpp
   "return nis_of_edges(belief.covariance, filter, layout, contrasts, work)" "return (void)work, Real(0)"
   "    update.nis_features = update.nis" "    (void)0")
-# What is left: NEES by block, NIS, its rows, trace(P).
+# The series that remain: NEES by group, NIS, its rows, trace(P).
 without(src/engine/simulate_batch.hpp
   "problem.series_count" "(problem.group_count + 3)"
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")

@@ -1,8 +1,8 @@
 #pragma once
-// The yardsticks: a whole trial of model.md as a user of Eigen would write it, one trial at a time.
-//   A  everything dynamic, the formulas as they stand (baseline_dynamic.cpp)
+// The baselines: a whole trial of docs/model.md as a user of Eigen would write it, one trial at a time.
+//   A  everything dynamic, the formulas as written (baseline_dynamic.cpp)
 //   B  fixed sizes, Cholesky instead of an inverse, nothing on the heap (baseline_fixed.cpp)
-// This face names no Eigen, so that the baselines alone are compiled for the machine they run on.
+// This header does not include Eigen, so that only the baselines are compiled for the machine they run on.
 
 #include "slam/trial/problem.hpp"
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace credence::bench {
 /// credence's own draws, so that columns can be compared.
 enum class Draws { standard, keyed };
 
-/// The first columns of ColumnIndex; the baselines know no status.
+/// The first columns of ColumnIndex; the baselines have no status.
 inline constexpr int compared_columns = column_nis_ratio + 1;
 
-/// One arm of a scenario made ready: everything that trials share is computed once.
+/// One arm of a scenario, prepared: everything that trials have in common is computed once.
 class Baseline {
 public:
     virtual ~Baseline() = default;

@@ -1,4 +1,4 @@
-// Baseline A: plain dynamic Eigen, the formulas of model.md as they stand.
+// Baseline A: plain dynamic Eigen, the formulas of docs/model.md as written.
 
 #include "baseline_run.hpp"
 
@@ -35,7 +35,7 @@ struct Plain {
         double squared(const Measurement& nu) const { return nu.dot(S_inverse * nu); }
     };
 
-    /// An inverse leaves K (P H')' not quite symmetric, and what is not grows from step to step.
+    /// With an inverse, K (P H')' is not quite symmetric, and the asymmetry grows from step to step.
     static void settle(Covariance& P) { P = 0.5 * (P + P.transpose()).eval(); }
 
     static double squared_error(const Covariance& P, const State& error) { return error.dot(P.ldlt().solve(error)); }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a baseline's standard-normal draws come from: both kinds have the face that the trial asks for.
+// A baseline's sources of standard-normal draws: both kinds have the interface that the trial uses.
 
 #include <Eigen/Core>
 #include <credence/detail/draws.hpp>
@@ -7,7 +7,7 @@
 
 namespace credence::bench {
 
-/// A generator seeded for each trial, asked in order.
+/// A generator seeded for each trial, used in order.
 class StandardNoise {
 public:
     StandardNoise(std::uint64_t root_seed, std::int64_t trial)

@@ -1,11 +1,11 @@
 #pragma once
-// A baseline's trial, poses in order: the truth, the filter on it, and what a trial reports.
+// A baseline's trial, poses in order: the truth, the filter on it, and the trial's columns.
 
 #include "baseline_trial.hpp"
 
 namespace credence::bench {
 
-/// Where everything really is, world frame.
+/// The true state, world frame.
 struct World {
     double heading = 0;
     Eigen::Vector2d robot = Eigen::Vector2d::Zero();

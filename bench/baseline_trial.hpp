@@ -1,6 +1,6 @@
 #pragma once
-// The trial that both baselines run; what differs is in their `Style`: the types, the prediction of P, and how S is
-// solved for.
+// The trial that both baselines run; they differ in their `Style`: the types, the prediction of P, and the solution for
+// S.
 //
 //   x  mean [n], P  covariance [n, n], Q  diagonal of the process noise [n], R(theta) = [cos, -sin; sin, cos]
 //   H  stacked rows of the seen features (body frame) and of all edges [m, n], N  their noise variances [m]
@@ -23,7 +23,7 @@ struct Seen {
     double variance = 0;
 };
 
-/// Filter and planner of model.md.
+/// Filter and planner of docs/model.md.
 template <class Style, Process process>
 class Filter {
 public:
@@ -57,7 +57,7 @@ public:
         return sensor.sigma_near + sensor.sigma_slope * std::max(0.0, q - sensor.range_min);
     }
 
-    /// What the filter believes of a measurement whose standard deviation is sigma.
+    /// The filter's assumed variance of a measurement whose standard deviation is sigma.
     double believed_variance(double sigma) const {
         const double believed = problem_.filter.measurement_factor * sigma;
         return believed * believed;
@@ -109,7 +109,7 @@ public:
         }
     }
 
-    /// nu = z - z^, of the seen features and of the edges, whose true differences are told by edge_measurement(edge).
+    /// nu = z - z^, of the seen features and of the edges, whose true differences edge_measurement(edge) gives.
     template <class EdgeMeasurement>
     Measurement innovation(const State& x, const std::vector<Seen>& seen, const EdgeMeasurement& z_edge) const {
         const Eigen::Matrix2d Rt = rotation(x).transpose();

@@ -1,6 +1,6 @@
 #pragma once
-// A Real that counts what it is asked to compute: + - * / sqrt as one operation, fma as two. Comparing, selecting,
-// changing a sign and all work on bits (the generator's) count nothing.
+// A Real that counts its operations: + - * / sqrt as one operation, fma as two. Comparing, selecting, changing a sign
+// and all operations on bits (the generator's) are not counted.
 
 #include <credence/detail/draws.hpp>
 
@@ -49,7 +49,7 @@ struct BitsOf<Counted> {
     using type = std::uint64_t;
 };
 
-/// One after the other: from_bits gives doubles, of which Several would make no Counted.
+/// One after the other: from_bits gives doubles, which Several would not convert to Counted.
 template <int count>
 void draw_several(const KeyedDraws<Counted>& noise, const DrawKey* keys, Vector2<Counted>* draws) {
     for (int i = 0; i < count; ++i) draws[i] = noise.normal(keys[i].source, keys[i].pose, keys[i].index);

@@ -1,5 +1,5 @@
-// The engine's own source once more, one trial at a time, so that only useful work is done: what no lane sees is
-// skipped, and there is one lane.
+// The engine's own source, compiled once more for one trial at a time, so that only useful operations are counted: with
+// a single lane, work for unseen features is skipped.
 
 #include "counted_unit.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The engine on counting numbers: a unit like any other, which gives the same columns and counts its operations.
+// The engine on counting numbers: a target like any other, which gives the same columns and counts its operations.
 
 #include "worlds/simulate.hpp"
 

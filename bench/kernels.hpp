@@ -12,15 +12,15 @@ namespace credence::bench {
 struct Kernels {
     const char* target = "";
     int lanes = 1;
-    int chains = 1;                                    ///< of fused multiply-adds that do not wait for one another
-    bool hardware_fma = false;                         ///< else an fma is a library call, and its rate no peak
+    int chains = 1;                                    ///< independent chains of fused multiply-adds
+    bool hardware_fma = false;                         ///< else an fma is a library call, and its rate not a peak
     double (*normals)(std::int64_t rounds) = nullptr;  ///< 2 `lanes` standard-normal draws each
-    /// Predict, update and judge on a pack of `lanes` trials each; heading model, M = 3, every feature in sight.
+    /// Predict, update and evaluate on a pack of `lanes` trials each; heading model, M = 3, every feature in sight.
     double (*filter_steps)(const ProblemView& problem, std::int64_t steps) = nullptr;
     double (*multiply_adds)(std::int64_t rounds) = nullptr;  ///< `chains` * `lanes` fused multiply-adds each
 };
 
-/// Those that this processor can run, the best first.
+/// The kernels that this processor can run, the best first.
 std::vector<Kernels> runnable_kernels();
 
 }  // namespace credence::bench

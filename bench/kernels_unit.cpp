@@ -1,4 +1,4 @@
-// One instruction set's kernels. As in the engine's targets, nothing here may emit a symbol outside the namespace.
+// One instruction set's kernels. As in the engine's targets, no symbol may be emitted outside the namespace.
 
 #include "numeric/lane.hpp"
 #include "slam/trial/trial.hpp"
@@ -34,7 +34,7 @@ double normals(std::int64_t rounds) {
 
 double filter_steps(const ProblemView& problem, std::int64_t steps) {
     using Layout = credence::Layout<Process::heading, 3>;
-    constexpr int room = 64;  // for the figures of one step
+    constexpr int room = 64;  // for the series of one step
     const Layout layout(problem.features);
     const KeyedDraws<Real> draws(1, Bits<Real>{}, std::numeric_limits<double>::infinity());
     Workspace<Layout, Real> work;
@@ -73,7 +73,7 @@ constexpr int chains = 12;
 #define CREDENCE_REGISTER "+m"
 #endif
 
-/// Keeps a number in its register and forgets what it is: equal chains could be computed once.
+/// Keeps a number in its register and hides its value from the compiler: equal chains could be computed once.
 template <class Number>
 void forget(Number& x) {
     if constexpr (lanes<Number> == 1)

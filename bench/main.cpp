@@ -32,7 +32,7 @@ std::string cpu_model() {
     return family.empty() ? model : model + " (family " + family + ", model " + number + ")";
 }
 
-/// What the numbers stand on.
+/// The conditions of the measurements.
 Json context(const Effort& effort) {
     std::string targets;
     for (const Target& target : runnable_targets())

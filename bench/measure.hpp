@@ -1,5 +1,5 @@
 #pragma once
-// Between Google Benchmark, which times, and the tables: what was timed, by name.
+// The interface between Google Benchmark, which times, and the tables: measured times by name.
 
 #include <benchmark/benchmark.h>
 
@@ -15,14 +15,14 @@ struct Effort {
     bool quick = false;
     int repetitions() const { return quick ? 3 : 9; }
     double seconds() const { return quick ? 0.001 : 0.03; }  ///< at least, of one repetition
-    /// The full number, or the one for a quick look.
+    /// The full number, or the one for a quick run.
     template <class Number>
     Number of(Number full, Number when_quick) const {
         return quick ? when_quick : full;
     }
 };
 
-/// What the repetitions of a benchmark gave, seconds per iteration.
+/// The results of a benchmark's repetitions, seconds per iteration.
 struct Samples {
     std::vector<double> real, cpu;
     std::map<std::string, std::vector<double>> counters;
@@ -34,8 +34,8 @@ double median(std::vector<double> values);
 benchmark::internal::Benchmark* add(const std::string& name, const Effort& effort,
                                     const std::function<void(benchmark::State&)>& body);
 
-/// Runs the registered benchmarks of a group, `group/...`, their repetitions in random order, so that a clock that
-/// drifts meets all of them alike. By name without the group.
+/// Runs the registered benchmarks of a group, `group/...`, their repetitions in random order, so that a drifting clock
+/// affects all of them alike. Results are by name without the group.
 std::map<std::string, Samples> measure(const std::string& group);
 
 /// Seconds of CPU time that this process has used, all threads.

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t rounds = 1020;  // of draws six together
 
-/// Two poses in a world that stands still, every feature in sight: any number of steps is the same work.
+/// Two poses in a static world, every feature in sight: any number of steps is the same work.
 const Problem& standing_problem() {
     static const Problem problem(scenario_with("part", {"features.path", "static", "scenario.poses", "2",
                                                         "sensor.range_min", "0", "sensor.range_max", "inf"}));

@@ -5,7 +5,7 @@
 
 namespace credence::bench {
 
-/// Registers part/UNIT/draws, part/UNIT/filter_step and part/UNIT/peak.
+/// Registers part/TARGET/draws, part/TARGET/filter_step and part/TARGET/peak.
 void add_parts(const Effort& effort);
 
 Table parts_table();

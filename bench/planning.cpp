@@ -1,5 +1,5 @@
-// What a step costs with each controller: the fixed path, the greedy planner, and horizons of two and three steps, on the
-// best unit. All are measured in turns in one process, by the processor's time; medians, since the clock drifts.
+// The cost of a step with each controller: the fixed path, the greedy planner, and horizons of two and three steps, on
+// the best target. All are measured in turns in one process, by the processor's time; medians, since the clock drifts.
 //   credence_bench_planning [ROUNDS]      (default 5)
 
 #include "worlds/deformable/deformable.hpp"
@@ -16,7 +16,7 @@
 namespace credence::bench {
 namespace {
 
-// Beyond the trials that are looked at in more detail.
+// Beyond the detailed trials.
 constexpr std::int64_t block_index = 20;
 
 double processor_seconds() {

@@ -61,12 +61,12 @@ void write_bytes(const std::string& path, std::size_t size) {
     if (!written) throw std::runtime_error("cannot write " + path);
 }
 
-/// What the parts of a case share.
+/// The data that the parts of a case have in common.
 struct Job {
     const test::TemporaryFolder folder;
     DeformableSettings scenario;
     std::int64_t trials = 0;
-    Study study;  ///< run once, for what is written
+    Study study;  ///< run once, for the parts that write it
     std::size_t size = 0;
 
     Job(const Case& c, const Effort& effort)

@@ -31,7 +31,7 @@ std::vector<Cell> cells() {
     return all;
 }
 
-/// M features: the seed's first, then on a spiral about the robot, in range and apart from one another.
+/// M features: the reference study's first, then on a spiral about the robot, in range and apart from one another.
 std::string positions(int M) {
     std::string text = "0.5 0.5, 0.9 0.8, 0.3 0.4";
     if (M < 3) return M == 1 ? "0.5 0.5" : "0.5 0.5, 0.9 0.8";

@@ -1,5 +1,5 @@
 #pragma once
-// What is measured: scenarios with one arm each.
+// The measured scenarios, with one arm each.
 
 #include "slam/trial/problem.hpp"
 #include <deque>
@@ -8,7 +8,7 @@
 
 namespace credence::bench {
 
-/// One arm of one scenario, made ready. `trials` of a block are run at once.
+/// One arm of one scenario, prepared. `trials` of a block are run at once.
 struct Row {
     std::string name;
     Controller controller = Controller::fixed;
@@ -22,7 +22,7 @@ struct Row {
     int steps() const { return trials * (problem.view().poses - 1); }
 };
 
-/// The seed's cells (process, path, noise, controller), and greedy planning with more heading noise.
+/// The reference study's cells (process, path, noise, controller), and greedy planning with more heading noise.
 const std::deque<Row>& seed_rows();
 
 /// Growth with the number of features: M = 1 ... 64 on the fixed path, up to 16 planned; heading model, straight.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the benchmarks in build-bench/ and runs them: parts, whole trials against baselines A and B, growth, threads and
-# the whole program. Installs what is missing. Further arguments go to the benchmark program:
+# Builds the benchmarks in build-bench/ and runs them: parts, whole trials against baselines A and B, growth, threads
+# and the whole program. Installs what is missing. Further arguments go to the benchmark program:
 #   --quick    few repetitions      --json    the tables as JSON      --benchmark_filter=REGEX    Google Benchmark's own
 # What it says of its progress goes to standard error, the tables to standard output.
 set -euo pipefail

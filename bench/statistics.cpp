@@ -1,4 +1,4 @@
-// What the statistics cost: the engine as it is beside the engine without all but NEES, NIS and trace(P) [bare.cmake].
+// The cost of the statistics: the engine beside the engine without all but NEES, NIS and trace(P) [bare.cmake].
 
 #include "statistics.hpp"
 
@@ -43,7 +43,7 @@ void add_cells(const Row& row, const Effort& effort) {
     });
 }
 
-/// Its instruction set is that of the best unit.
+/// Its instruction set is that of the best target.
 bool has_bare_unit() {
 #ifdef CREDENCE_X86_TARGETS
     return best_target().name == "v4";

@@ -1,5 +1,5 @@
 #pragma once
-// What the statistics beyond NEES, NIS and trace(P) cost.
+// The cost of the statistics beyond NEES, NIS and trace(P).
 
 #include "measure.hpp"
 #include "rows.hpp"

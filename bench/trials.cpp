@@ -31,8 +31,8 @@ void add_baseline(const Row& row, const std::string& name, MakeBaseline make, co
     });
 }
 
-/// The first block that is timed. A study's first 4096 trials are looked at in more detail, which costs once what some
-/// thousand more trials do: no matter for a study of a million [docs/performance.md].
+/// The first block that is timed. A study's first 4096 trials are detailed, which costs once as much as some thousand
+/// other trials: this does not matter for a study of a million [docs/performance.md].
 constexpr std::int64_t usual_block = 1000;
 
 /// One block an iteration.

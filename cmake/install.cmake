@@ -4,8 +4,8 @@ include(CMakePackageConfigHelpers)
 set(CREDENCE_DATA ${CMAKE_INSTALL_DATADIR}/credence)
 set(CREDENCE_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/credence)
 
-# The manual page and the completion are what the program says of itself. They are written when they are installed: what
-# was built may have been the program alone.
+# The program itself prints the manual page and the completion. They are written during installation, because the
+# program alone may have been built.
 set(pages ${PROJECT_BINARY_DIR}/pages)
 install(CODE "file(MAKE_DIRECTORY \"${pages}\")
 execute_process(COMMAND \"$<TARGET_FILE:credence>\" manual OUTPUT_FILE \"${pages}/credence.1\" COMMAND_ERROR_IS_FATAL ANY)

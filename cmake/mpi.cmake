@@ -1,13 +1,14 @@
-# MPI where it can be used. FindMPI ends the configuration, in spite of QUIET, where the wrapper of the compiler names folders
-# that do not exist: Open MPI's programs come without its headers when another package, such as Octave, asks for them.
+# MPI where it can be used. FindMPI ends the configuration, in spite of QUIET, where the wrapper of the compiler names
+# folders that do not exist: Open MPI's programs come without its headers when another package, such as Octave, asks for
+# them.
 set(CREDENCE_MPI AUTO CACHE STRING "Build with MPI: AUTO (where it is found), ON (it must be found), OFF")
 set_property(CACHE CREDENCE_MPI PROPERTY STRINGS AUTO ON OFF)
 if(NOT CREDENCE_MPI MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "invalid CREDENCE_MPI=${CREDENCE_MPI} (not one of its choices). Give AUTO, ON or OFF.")
 endif()
 
-# credence_probe_mpi(WHY): what is wrong with MPI, empty where nothing is. A project of its own looks for it, with what this
-# one was told of it; a success is remembered.
+# credence_probe_mpi(WHY): what is wrong with MPI, empty where nothing is. A separate project looks for MPI, with this
+# project's settings; a success is remembered.
 function(credence_probe_mpi why)
   set(${why} "" PARENT_SCOPE)
   if(CREDENCE_MPI_USABLE)

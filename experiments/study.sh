@@ -4,7 +4,7 @@ source experiments/setup.sh
 
 credence=${CREDENCE:-build/credence}
 
-# Installs and builds what is missing of the program, unless CREDENCE names one.
+# Installs and builds missing parts of the program, unless CREDENCE names one.
 build_program() {
   [ -z "${CREDENCE:-}" ] || return 0
   install_missing $build_packages
@@ -13,8 +13,8 @@ build_program() {
   build build credence "${tests[@]}"
 }
 
-# study STEM TRIALS SCENARIO.ini [section.key=value | --sweep=section.key=VALUES ...]: runs it, or goes on with what is
-# there, and reports it: STEM.h5 and STEM.csv.
+# study STEM TRIALS SCENARIO.ini [section.key=value | --sweep=section.key=VALUES ...]: runs the study, or resumes it,
+# and writes its report: STEM.h5 and STEM.csv.
 study() {
   local stem=$1 trials=$2 scenario=$3 settings=() setting
   shift 3
@@ -26,7 +26,7 @@ study() {
   "$credence" report "$stem.h5" --format csv >"$stem.csv"
 }
 
-# interval FILE.csv ARM FIGURE [SCENARIO]: `mean ± half-width` of a figure, with two digits of the half-width; of the
+# interval FILE.csv ARM FIGURE [SCENARIO]: `mean ± half-width` of a column, with two digits of the half-width; of the
 # first scenario where none is named.
 interval() {
   awk -F, -v arm="$2" -v figure="$3" -v scenario="${4:-}" '

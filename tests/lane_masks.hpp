@@ -7,8 +7,8 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// In how many lanes packs of W of the numbers are told wrong whether low <= x <= high, or lose the answer on the way from
-/// a mask to bits and back. `numbers` [count], count a multiple of W.
+/// In how many lanes packs of W of the numbers are told wrong whether low <= x <= high, or lose the answer on the way
+/// from a mask to bits and back. `numbers` [count], count a multiple of W.
 template <int W>
 int wrong_masks(const double* numbers, int count, double low, double high) {
     int wrong = 0;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The include rule: a module includes itself and those before it, never one after it. Its order is that of the list below,
-# which CONTRIBUTING.md explains. A source's module is its folder in src; a public header names its own in its first
-# comment. Public headers include no private ones, are at most 30, and each compiles alone.
+# The include rule: a module includes itself and those before it, never one after it. Its order is that of the list
+# below, which CONTRIBUTING.md explains. A source's module is its folder in src; a public header names its own in its
+# first comment. Public headers include no private ones, are at most 30, and each compiles alone.
 # modules_test.sh SOURCE_FOLDER CXX EIGEN_FOLDER
 set -euo pipefail
 cd "$1"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Breaks the equations and protocols one at a time, as tests/mutants.txt says, and runs the core tests on each; where none
-# fails, the tests of the label long, and then the digest, which changes with every bit: a mutant that only the digest
-# notices may need a test that says more. Exits with 1 where nothing fails, where a mutant no longer applies, or where it
-# does not compile. This tree is left as it is.
+# Breaks the equations and protocols one at a time, as tests/mutants.txt says, and runs the core tests on each; where
+# none fails, the tests of the label long, and then the digest, which changes with every bit: a mutant that only the
+# digest notices may need a test that says more. Exits with 1 where nothing fails, where a mutant no longer applies, or
+# where it does not compile. This tree is left as it is.
 #   tests/mutants.sh [PATTERN]      only the mutants whose line matches the grep pattern; DRY=1 shows what would change
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ git ls-files -z | xargs -0 cp --parents -t "$tree"
 compile() { cmake --build "$build" -j "$(nproc)" --target "$@" >"$work/compile.log" 2>&1; }
 passes() { timeout 600 "$build/tests/$1" "${@:2}" >"$work/tests.log" 2>&1; }
 
-# What notices: prints the kind of test that fails, or nothing.
+# Prints the kind of test that fails, or nothing.
 noticed_by() {
   if ! passes credence_tests '~[long]'; then echo "core"; return; fi
   compile credence_long_tests && ! passes credence_long_tests && { echo "long"; return; }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The engine's targets share no symbol: everything one defines for others to link is in its own namespace, and it calls
-# nothing but the C library. Else the linker could hand an old processor a new one's instructions.
-#   tests/target_symbols.sh TARGET OBJECT...
+# The engine's targets share no symbol: every symbol that one defines for others to link is in its own namespace, and it
+# calls only the C library. Otherwise the linker could give an old processor a new one's instructions.
+#   tests/target_symbols.sh UNIT OBJECT...
 set -euo pipefail
 unit=$1
 shift

@@ -12,9 +12,10 @@
 #include <random>
 #include <vector>
 
-/// `error` [trials, steps, n] = estimate - truth, wrapped where it is an angle; `covariance` [trials, steps, n, n]; both
-/// NaN where there is no such step (a run that ends early counts as failed, unless a dataset `steps` [trials] declares how
-/// many steps it has). `blocks` such as "position 0:2, velocity 2:4", half-open and from 0. False if HDF5 fails.
+/// `error` [trials, steps, n] = estimate - truth, wrapped where it is an angle; `covariance` [trials, steps, n, n];
+/// both NaN where there is no such step (a run that ends early counts as failed, unless a dataset `steps` [trials]
+/// declares how many steps it has). `blocks` such as "position 0:2, velocity 2:4", half-open and from 0. False if HDF5
+/// fails.
 bool write_record(const char* path, hsize_t trials, hsize_t steps, hsize_t n, const double* error,
                   const double* covariance, const char* blocks) {
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

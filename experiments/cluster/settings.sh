@@ -1,4 +1,4 @@
-# What is run, and where it goes: edit this, or set the variables in the environment of submit.sh. Paths are as seen from
+# The settings of the study: edit this file, or set the variables in the environment of submit.sh. Paths are relative to
 # the folder in which submit.sh is called. Sourced by the scripts here.
 : "${STUDY:=experiments/seed/*.ini}"          # scenario files
 : "${TRIALS:=1e6}"                            # of each scenario

@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# Power of the judge: the smallest factor on the reported P, above and below 1, that N = 1,000, 10,000 and 100,000 trials
-# find in at least 80 % of the seeds, by the verdict (margin 5 %) and by the classical band of ANEES (a step outside
-# the joint 95 % band). Searched on steps of 0.05 %, by halving: for one seed NEES scales with 1/P exactly, so what finds
-# one factor finds a larger one too. Prints the table of docs/statistics.md; about four minutes on 2 cores.
+# Power of the verdict: the smallest factor on the reported P, above and below 1, that N = 1,000, 10,000 and 100,000
+# trials detect with at least 80 % of the root seeds, by the verdict (margin 5 %) and by the classical band of ANEES (a
+# step outside the joint 95 % band). Searched on steps of 0.05 %, by halving: for one root seed NEES scales with 1/P
+# exactly, so trials that detect one factor detect a larger one too. Prints the table of docs/statistics.md; about four
+# minutes on 2 cores.
 #
 #   bash experiments/consistency/power.sh
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 scenario=experiments/consistency/matched-linear.ini
 
-# look TRIALS FACTOR SEED: the verdict, and the steps of the whole state outside the joint band. Kept for other searches.
+# look TRIALS FACTOR SEED: the verdict, and the steps of the whole state outside the joint band. Cached for other
+# searches.
 look() {
   local kept=$folder/$1-$2-$3 own=$folder/$1-$2-$3.$BASHPID
   if [ ! -f "$kept" ]; then
@@ -23,7 +25,7 @@ look() {
   cat "$kept"
 }
 
-# finds JUDGE SIDE TRIALS FACTOR SEEDS: whether at least 80 % of the seeds see it. Ends as soon as that is known.
+# finds JUDGE SIDE TRIALS FACTOR SEEDS: whether at least 80 % of the seeds detect it. Ends as soon as this is known.
 finds() {
   local seed verdict outside found=0 missed=0
   for ((seed = 1; seed <= $5; ++seed)); do

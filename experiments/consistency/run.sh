@@ -9,7 +9,7 @@ build_program >&2
 trials=${1:-300000}
 here=experiments/consistency out=results/consistency
 
-# figures LABEL FILE.csv [SCENARIO]: a row.
+# figures LABEL FILE.csv [SCENARIO]: a row of a table.
 figures() {
   local label=$1 csv=$2 scenario=${3:-} arm part
   arm=$(awk -F, 'NR == 2 { print $2 }' "$csv")

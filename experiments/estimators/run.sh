@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Which estimator's covariance can be believed in the document's world, matched to the filter? Heading noise from 0.001 to
-# 0.1, straight and circle, five estimators on the same draws; 100,000 trials each (some minutes on 2 cores), or as many as
-# the first argument says. Writes results/estimators/*.h5 and prints the tables of docs/estimators.md.
+# Which estimator's covariance can be believed in the document's world, matched to the filter? Heading noise from 0.001
+# to 0.1, straight and circle, five estimators on the same draws; 100,000 trials each (some minutes on 2 cores), or as
+# many as the first argument says. Writes results/estimators/*.h5 and prints the tables of docs/estimators.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh
@@ -9,7 +9,7 @@ build_program >&2
 trials=${1:-100000}
 out=results/estimators arms="ekf ideal fej riekf iekf"
 
-# row PATH POSES SIGMA FIGURE...: a study, if it is not there yet, and a row of each arm's figures.
+# row PATH POSES SIGMA FIGURE...: a study, unless it exists already, and a row with each arm's values.
 row() {
   local path=$1 poses=$2 sigma=$3 name=$1-$2-$3 arm figure cell
   shift 3

@@ -1,4 +1,4 @@
-// credence with one world more.
+// The program credence with one more world, the tracker of tracker.hpp.
 
 #include "tracker.hpp"
 

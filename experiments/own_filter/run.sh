@@ -21,5 +21,5 @@ mkdir -p $project results
 $project/tracker run "$here/tracker.ini" --trials "${1:-10000}" --quiet --overwrite -o $results
 $project/tracker report $results
 $project/tracker compare $results --arms calm,kf
-# Any credence reads the file. What somebody's CI would ask:
+# Any credence reads the file. This is the check for a project's continuous integration:
 "$prefix/bin/credence" report $results --require consistent >/dev/null || echo "exit code $?, as it should be"

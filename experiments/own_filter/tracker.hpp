@@ -1,5 +1,6 @@
 #pragma once
-// A world of one's own: a target that moves with nearly constant velocity, seen by its position, and two filters for it.
+// A world of one's own: a target that moves with nearly constant velocity, seen by its position, and two filters for
+// it.
 //
 //   x = [p_x, p_y, v_x, v_y]   p in m, v in m/s; T  time between steps (s)
 //   x_k = F x_{k-1} + G a_k,   F = [I, T I; 0, I],  G = [T^2/2 I; T I],  a ~ N(0, acceleration^2 I)
@@ -33,7 +34,7 @@ struct Tracker {
     }
     static int innovation_rows(const Settings&) { return 2; }
 
-    /// `kf` knows the model; `calm` takes Q for a fifth of what it is, a mistake that is easily made.
+    /// `kf` knows the model; `calm` assumes a fifth of the true Q, a common mistake.
     static std::vector<std::string> arms(const Settings&) { return {"kf", "calm"}; }
 
     static std::vector<credence::Column> columns(const Settings&) {
@@ -41,7 +42,7 @@ struct Tracker {
     }
 
     static void run(const Settings& s, credence::OwnTrial& trial) {
-        // Sources of draws: any number of one's own from 0 to 15, each used for one thing only.
+        // Sources of draws: any numbers from 0 to 15, each used for one purpose only.
         enum Source { initial_position, initial_velocity, acceleration, measurement, detection };
         const Model model(s);
         const double believed = trial.arm() == 0 ? 1 : 0.2;

@@ -82,11 +82,12 @@ struct CompareReport {
 ///
 /// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors, m
 /// the number of comparisons, so that all conclusions hold together at 95 %, and where the bootstrap's 95 % interval
-/// leaves 0 out too: trace(P) is heavy-tailed. Where no trial is kept there is no bootstrap, and the t interval decides.
+/// leaves 0 out too: trace(P) is heavy-tailed. Where no trial is kept there is no bootstrap, and the t interval
+/// decides.
 ///
 /// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
-/// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and for
-/// arms of different files of which one keeps no trials.
+/// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and
+/// for arms of different files of which one keeps no trials.
 CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice);
 
 /// The comparison as text: the conclusions first, then a table with a row per column for each pair.

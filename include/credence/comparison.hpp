@@ -1,6 +1,6 @@
 #pragma once
-// Module verdict: arms compared by trial: planned against fixed, one estimator against another, one study against another that
-// shares its draws [docs/statistics.md, Comparison].
+// Module verdict: arms compared by trial: planned against fixed, one estimator against another, one study against
+// another that shares its draws [docs/statistics.md, Comparison].
 
 #include <credence/paired.hpp>
 #include <credence/study.hpp>

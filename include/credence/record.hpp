@@ -22,12 +22,13 @@ struct RecordTrouble {
 
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
 /// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
-/// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and `run_square_sum` of
-///   real series (but NIS) are of the trial's mean over its own steps times the number of steps in the file;
+/// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and
+///   `run_square_sum` of real series (but NIS) are of the trial's mean over its own steps times the number of steps in
+///   the file;
 /// - NIS and its series are only there with innovations, and `products` are of all trials;
 /// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state;
-/// - `distribution_distance` is exact up to 2^24 values; beyond, it is empty and `cells` are used, but over 4096 steps `cells` are
-///   empty, and `distribution_distance` is NaN where the values were too many.
+/// - `distribution_distance` is exact up to 2^24 values; beyond, it is empty and `cells` are used, but over 4096 steps
+///   `cells` are empty, and `distribution_distance` is NaN where the values were too many.
 struct Record {
     ScenarioResults results;
     bool has_innovations = false;

@@ -45,7 +45,8 @@ struct SweepAxis {
 /// swept: those that name a scenario, or give values for display only.
 SweepAxis parse_axis(const std::string& text);
 
-/// The axes of a grid. Throws InputError beyond most_swept_scenarios, where a key is swept twice or a value given twice.
+/// The axes of a grid. Throws InputError beyond most_swept_scenarios, where a key is swept twice or a value given
+/// twice.
 std::vector<SweepAxis> parse_grid(const std::vector<std::string>& texts);
 
 /// The number of points; 1 without axes.

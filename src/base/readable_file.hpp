@@ -22,8 +22,8 @@ private:
 /// The remedy for an error of the system that kept a file from being read.
 std::string remedy_for_reading(int error);
 
-/// The first `most` bytes of a regular file, fewer where it is shorter. It neither waits for the other end of a pipe nor
-/// opens a device. Throws Unreadable.
+/// The first `most` bytes of a regular file, fewer where it is shorter. It neither waits for the other end of a pipe
+/// nor opens a device. Throws Unreadable.
 std::string start_of_file(const std::string& path, std::size_t most);
 
 }  // namespace credence

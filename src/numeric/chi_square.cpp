@@ -28,7 +28,8 @@ double decay(double x) {
 }
 
 /// Density and distribution of chi-square(degrees) at x > 0 [Abramowitz and Stegun 6.5.29, 26.4]: with a = degrees/2,
-/// y = x/2 the distribution is y^a e^-y / Gamma(a + 1) (1 + y/(a + 1) + y^2/((a + 1)(a + 2)) + ...), all terms positive.
+/// y = x/2 the distribution is y^a e^-y / Gamma(a + 1) (1 + y/(a + 1) + y^2/((a + 1)(a + 2)) + ...), all terms
+/// positive.
 struct ChiSquare {
     double density = 0, distribution = 0;
 };

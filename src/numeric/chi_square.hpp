@@ -29,7 +29,8 @@ public:
         const std::uint16_t* first;
         double limit, scale;
 
-        /// The cell of a value, 0 ... distribution_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) / cells)).
+        /// The cell of a value, 0 ... distribution_cells - 1: cell i holds [quantile(i / cells), quantile((i + 1) /
+        /// cells)).
         int cell(double value) const {
             if (!(value < limit)) return distribution_cells - 1;
             int cell = value > 0 ? first[static_cast<int>(value * scale)] : 0;

@@ -13,8 +13,8 @@
 
 namespace credence {
 
-/// The exact sum of at most 1024 doubles, as integers: chunk c counts units of 2^(32 c - 1075), and a double adds to two
-/// of them [Neal, Fast exact summation using small and large superaccumulators, 2015, arXiv 1505.05571, section 2].
+/// The exact sum of at most 1024 doubles, as integers: chunk c counts units of 2^(32 c - 1075), and a double adds to
+/// two of them [Neal, Fast exact summation using small and large superaccumulators, 2015, arXiv 1505.05571, section 2].
 class Superaccumulator {
 public:
     void add(double value) {

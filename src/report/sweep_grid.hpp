@@ -32,8 +32,8 @@ struct Grid {
 /// The grids of a study, in the order of their first points. `places` has the place of each scenario in its grid.
 std::vector<Grid> grids_of(const std::vector<SweepPoint>& places);
 
-/// Whether values look evenly spaced on a logarithmic rather than on a linear axis: all are positive, there are at least
-/// three, and their ratios vary less, by coefficient of variation, than their differences.
+/// Whether values look evenly spaced on a logarithmic rather than on a linear axis: all are positive, there are at
+/// least three, and their ratios vary less, by coefficient of variation, than their differences.
 bool evenly_by_ratio(std::vector<double> values);
 
 /// The axis along which curves are drawn: the first one with numbers, or the first.

@@ -73,7 +73,8 @@ TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file
     CHECK(here.credence("report credence.h5 >/dev/full").exit_code == 1);
     CHECK(here.credence("show >/dev/full").exit_code == 1);
     const Outcome rows = here.shell("grep -c '^ekf-straight-constant,' t.csv");
-    // 2 arms and their pair, 6 figures each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9 components.
+    // 2 arms and their pair, 6 figures each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9
+    // components.
     CHECK(rows.out == std::to_string(18 + 2 * (8 * (2 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2)) + "\n");
 }
 

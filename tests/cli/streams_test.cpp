@@ -20,8 +20,8 @@ bool holds(const std::string& bytes, const std::string& text) { return bytes.fin
 TEST_CASE("cli: what a library prints on a closed error stream gets into no file") {
     const Workplace here;
     here.write("small.ini", small_world);
-    // Eight threads with stacks of 1 GB have no room in 4 GB, though two have: OpenMP's library says so and ends the process
-    // while the journal is open.
+    // Eight threads with stacks of 1 GB have no room in 4 GB, though two have: OpenMP's library says so and ends the
+    // process while the journal is open.
     for (const std::string closed : {"2>&-", "<&- >&- 2>&-", ">&- 2>&-"}) {
         CAPTURE(closed);
         const std::string run = CREDENCE_PROGRAM " run small.ini --trials 700 --quiet -o x.h5 ";

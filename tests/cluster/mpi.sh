@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs that the ranks of mpirun share: the same bytes for any number of ranks and threads, after a rank was killed, after
-# a signal; one message for bad input.
+# Runs that the ranks of mpirun share: the same bytes for any number of ranks and threads, after a rank was killed,
+# after a signal; one message for bad input.
 # usage: mpi.sh CREDENCE   (built with MPI; needs mpirun and h5diff)
 set -euo pipefail
 credence=$(realpath "$1")

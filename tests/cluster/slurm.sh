@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The scripts of experiments/cluster on a real Slurm of one node: an array of 8 tasks, of which one is told that its time
-# is over, one is put back into the queue by hand and one is killed; then everything is submitted again. The merged results
-# are those of one run. And srun's processes as shards.
-# usage: slurm.sh [CREDENCE]   as root, on a machine or container of its own (Debian 12: it installs slurm-wlm and munge,
-# and starts their daemons where none run); without CREDENCE it builds build/credence. About five minutes: Slurm waits
-# two before it starts a task again.
+# The scripts of experiments/cluster on a real Slurm of one node: an array of 8 tasks, of which one is told that its
+# time is over, one is put back into the queue by hand and one is killed; then everything is submitted again. The merged
+# results are those of one run. And srun's processes as shards.
+# usage: slurm.sh [CREDENCE]   as root, on a machine or container of its own (Debian 12: it installs slurm-wlm and
+# munge, and starts their daemons where none run); without CREDENCE it builds build/credence. About five minutes: Slurm
+# waits two before it starts a task again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/setup.sh

@@ -1,5 +1,5 @@
-// A digest of a small study: one line of 64 bits for each world and arm, from the modules base to worlds only. Every compiler,
-// optimisation, lane width, instruction set and processor must print the lines of expected.txt.
+// A digest of a small study: one line of 64 bits for each world and arm, from the modules base to worlds only. Every
+// compiler, optimisation, lane width, instruction set and processor must print the lines of expected.txt.
 //   credence_digest [TARGET...]    the targets to run (default: all that this processor runs); they must agree
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Label digest: the core print the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and the
-# core's own build of them on older x86 processors, both emulated. The core label has g++ at -O3, the label compilers
-# clang at -O2. (g++ at -O2 on this processor: `cmake --preset digest-o2`.)
+# Label digest: the core prints the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and from
+# the core's own build on older x86 processors, both emulated. The core label has g++ at -O3, the label compilers clang
+# at -O2. (g++ at -O2 on this processor: `cmake --preset digest-o2`.)
 set -euo pipefail
 for tool in aarch64-linux-gnu-g++ qemu-aarch64 qemu-x86_64; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Label docs: every output and table of README.md and docs that takes minutes to make again, beside those of the core tests.
+# Label docs: every output and table of README.md and docs that takes minutes to reproduce; the core tests check the
+# others.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, scipy, matplotlib, PIL' 2>/dev/null ||
   { echo "SKIPPED: python3-h5py, python3-scipy, python3-matplotlib or python3-pil is not installed"; exit 0; }

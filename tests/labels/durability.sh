@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Label durability: killed before and after changes to its files, killed at random times, and refused by the system, the
-# program loses nothing that was committed. A part of the long middle of each sweep; without a number it is all of it.
+# program loses nothing that was committed. Only a part of the long middle of each sweep is run; sweep.sh without a
+# number runs all of it.
 set -euo pipefail
 for tool in cc h5diff; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }

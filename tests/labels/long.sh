@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Label long: the tests that run many trials: those of the core's program that are tagged [long], and all of a program of
-# their own, as many at once as there are cores.
+# Label long: the tests that run many trials: those of the core's program that are tagged [long], and all tests of a
+# separate program, as many at once as there are cores.
 set -euo pipefail
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
 cmake --build build --target credence_long_tests -j "$(nproc)" >"$log/build" 2>&1 || { tail -n 60 "$log/build"; exit 1; }
-# names PROGRAM [TAG]: its tests, one a line behind the program's name; names may hold commas, which Catch2 takes for its
-# own.
+# names PROGRAM [TAG]: its tests, one a line after the program's name; names may contain commas, which separate tests
+# for Catch2.
 names() {
   "build/tests/$1" --list-test-names-only ${2:+"$2"} | sed -e 's/[][,\\*"]/\\&/g' -e "s/^/$1 /" || true
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Label readers: the files of credence in other people's hands, and the scripts of analysis/, on the languages that run
+# Label readers: credence's files as read by other programs, and the scripts of analysis/, in the languages that run
 # them.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Label sanitizers: tests of everything that reads files from elsewhere, and the fuzz targets, under clang's address and
 # undefined-behaviour sanitizers, warnings as errors. All tests: `cmake --preset sanitizers`.
-# The program gives the bits of g++'s. Of the fuzz targets: their checksums are HDF5's own, and what is kept passes.
+# The program gives the bits of g++'s. Of the fuzz targets: their checksums are HDF5's own, and the kept inputs pass.
 set -euo pipefail
 for tool in clang++ llvm-symbolizer; do
   command -v $tool >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
@@ -13,7 +13,7 @@ cmake --build --preset fuzz -j "$FUZZ_JOBS" | tail -n 3
   export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
   export LSAN_OPTIONS=suppressions=$PWD/tests/labels/leaks.supp:print_suppressions=0
   log=build-fuzz/tests.log
-  # One test alone takes most of a minute here, and seconds elsewhere.
+  # One test takes most of a minute here, and seconds without sanitizers.
   ctest --test-dir build-fuzz -L core -E 'totals in a journal that no trials could give' -j "$FUZZ_JOBS" \
     --output-on-failure >$log 2>&1 || { tail -n 100 $log; exit 1; }
   grep 'tests passed' $log
@@ -26,9 +26,10 @@ done
 h5diff --exclude-path /run "$work/build.h5" "$work/build-fuzz.h5"
 echo "g++ and clang: the same bits in 8 scenarios"
 build-fuzz/tests/fuzz/fuzz_checksums tests/fuzz/seeds/*/*.h5 | { ! grep CHANGED; }
-# Seeds that the program itself no longer takes would lead a target nowhere.
+# Seeds that the program no longer accepts would be useless for a target.
 for seed in tests/fuzz/seeds/results/*.h5; do build/credence report "$seed" >/dev/null; done
-# What is kept must pass. New findings of a few seconds are shown, and are for a person to look at: chance fails no build.
+# The kept inputs must pass. New findings of a few seconds are shown for a person to examine: chance must not fail a
+# build.
 for target in scenario noise judge results journal; do
   folders=()
   for folder in tests/fuzz/{seeds,found}/$target; do [ ! -d "$folder" ] || folders+=("$folder"); done

@@ -1,5 +1,5 @@
-// Elementary functions against the 80-bit long double functions of the C library. Bounds in units in the last place (ulp) of the
-// correctly rounded double.
+// Elementary functions against the 80-bit long double functions of the C library. Bounds in units in the last place
+// (ulp) of the correctly rounded double.
 
 #include "catch.hpp"
 

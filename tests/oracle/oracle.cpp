@@ -26,8 +26,8 @@ double condition(const Eigen::MatrixXd& symmetric) {
     return solver.eigenvalues().maxCoeff() / solver.eigenvalues().minCoeff();
 }
 
-/// Control from pose k-1 to k, with the candidates' costs when planned [docs/model.md, Controllers]. A horizon ends at the
-/// last pose.
+/// Control from pose k-1 to k, with the candidates' costs when planned [docs/model.md, Controllers]. A horizon ends at
+/// the last pose.
 void choose_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k, Step& step) {
     if (controller == Controller::fixed) {
         step.control = fixed_control(scenario, k - 1);

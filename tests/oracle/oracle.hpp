@@ -74,7 +74,7 @@ std::vector<Edge> graph(const DeformableSettings& scenario);                 ///
 Eigen::Matrix2d rotation(double theta);                            ///< R(theta)
 Eigen::Matrix2d quarter_turn();                                    ///< J
 
-// World [docs/model.md, Truth] ---------------------------------------------------------------------------------------------
+// World [docs/model.md, Truth] ----------------------------------------------------------------------------------------
 
 /// True state of the world at one pose; c and p are 2 x M. theta stays 0 in the translation model.
 struct World {
@@ -93,7 +93,7 @@ double measurement_sigma(const DeformableSettings& scenario, double q);      ///
 Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise);
 Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise);
 
-// Filter [docs/model.md, Filter] -------------------------------------------------------------------------------------------
+// Filter [docs/model.md, Filter] --------------------------------------------------------------------------------------
 
 struct Belief {
     Eigen::VectorXd x;
@@ -125,7 +125,7 @@ Prediction predicted_measurements(const DeformableSettings& scenario, const Eige
                                   const Eigen::VectorXd& sigma);
 Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction);
 
-// Controllers [docs/model.md, Controllers] ---------------------------------------------------------------------------------
+// Controllers [docs/model.md, Controllers] ----------------------------------------------------------------------------
 
 Path path_of_robot(const DeformableSettings& scenario);                      ///< control.path, or the features' own
 Control fixed_control(const DeformableSettings& scenario, int k);            ///< from pose k to k+1

@@ -86,8 +86,8 @@ std::vector<Control> candidates(const DeformableSettings& scenario) {
     return scenario.process == Process::heading ? candidates_of_heading(scenario) : candidates_of_translation(scenario);
 }
 
-/// The belief that a control is expected to lead to from pose k-1 to pose k: predict, gate and take sigma at the predicted
-/// mean, update the covariance; the mean stays the predicted one. What is in range is assumed to be detected;
+/// The belief that a control is expected to lead to from pose k-1 to pose k: predict, gate and take sigma at the
+/// predicted mean, update the covariance; the mean stays the predicted one. What is in range is assumed to be detected;
 /// filter.covariance has no part in it [docs/model.md, Controllers, greedy].
 Belief expected(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     const Belief prior = predict(scenario, belief, control, k);
@@ -110,8 +110,8 @@ double candidate_cost(const DeformableSettings& scenario, const Belief& belief, 
     return expected(scenario, belief, control, k).P.trace();
 }
 
-/// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any sequence
-/// of them has.
+/// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any
+/// sequence of them has.
 double cost_ahead(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k, int steps) {
     const Belief next = expected(scenario, belief, control, k);
     if (steps == 1) return next.P.trace();

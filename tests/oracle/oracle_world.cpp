@@ -90,8 +90,8 @@ Eigen::Matrix2Xd deformed(const DeformableSettings& scenario, const Eigen::Matri
 
 }  // namespace
 
-/// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [docs/model.md, Truth; design.md,
-/// The scenario file, noise].
+/// World at pose 0: c_0 = f_0; the robot at 0, or drawn about it with the initial sigmas [docs/model.md,
+/// Truth].
 World first_world(const DeformableSettings& scenario, const Noise& noise) {
     World world;
     if (scenario.process == Process::heading)
@@ -107,8 +107,8 @@ World first_world(const DeformableSettings& scenario, const Noise& noise) {
 }
 
 /// World at pose k from that at pose k-1 and the control between them: the robot turns and moves by its heading of
-/// before; centres translate and walk, and with deformation = walk gain the deformation too [docs/model.md, Truth; Truth
-/// against filter].
+/// before; centres translate and walk, and with deformation = walk gain the deformation too [docs/model.md, Truth;
+/// Truth against filter].
 World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
     World next;
@@ -152,7 +152,8 @@ double measurement_sigma(const DeformableSettings& scenario, double q) {
                                    (sensor.range_max - sensor.range_min);
 }
 
-/// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [docs/model.md, Filter, See].
+/// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [docs/model.md, Filter,
+/// See].
 Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise) {
     const Eigen::Vector2d offset = world.p.col(j) - world.r;
     return rotation(world.theta).transpose() * offset +

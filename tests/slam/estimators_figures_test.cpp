@@ -76,7 +76,8 @@ TEST_CASE("estimators: NEES in the matched world is what an independent implemen
                                  invariant = ratios(problem, row.blocks, problem.view().series_count - 1, 3);
         for (std::size_t arm = 0; arm < 5; ++arm) {
             CAPTURE(row.path, row.sigma, arm);
-            // Four standard errors of the difference: of 40 comparisons one in 400 runs fails by chance; seeds are fixed.
+            // Four standard errors of the difference: of 40 comparisons one in 400 runs fails by chance; seeds are
+            // fixed.
             CHECK(std::abs(all[arm].mean - row.all[arm].mean) < 4 * std::hypot(all[arm].error, row.all[arm].error));
             CHECK(std::abs(pose[arm].mean - row.pose[arm].mean) < 4 * std::hypot(pose[arm].error, row.pose[arm].error));
             // What the independent implementation found of the invariant chart, of all but `ideal`.

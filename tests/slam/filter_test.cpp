@@ -1,5 +1,6 @@
 // The filter's pieces by themselves: its Jacobians against finite differences of its own functions, its update
-// against the joint one, its covariance, its squared errors. Whole trials: filter_oracle_test.cpp, filter_long_test.cpp.
+// against the joint one, its covariance, its squared errors. Whole trials: filter_oracle_test.cpp,
+// filter_long_test.cpp.
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

@@ -128,7 +128,8 @@ TEST_CASE("horizon: controls and their costs are the oracle's brute force, two a
                 const Difference worst = difference(ours, oracle::run(scenario, Controller::horizon, for_oracle(noise)));
                 CAPTURE(described(kind), steps, trial);
                 CHECK(worst.same_control);
-                // cond(S) is below 1e4: up to three updates of 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before each.
+                // cond(S) is below 1e4: up to three updates of 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before
+                // each.
                 CHECK(worst.condition < 1e4);
                 CHECK(worst.cost < 1e-10);
             }

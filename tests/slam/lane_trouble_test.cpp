@@ -126,8 +126,8 @@ TEST_CASE("lanes: a covariance that is not finite or not positive definite fails
 }
 
 TEST_CASE("lanes: a singular innovation covariance fails its own trial only") {
-    // S = H P H' + N I of the first sighting is 0 where P is -N I for that feature and 0 elsewhere; what its inverse gives
-    // is not finite, which is the graver of the two things that are wrong.
+    // S = H P H' + N I of the first sighting is 0 where P is -N I for that feature and 0 elsewhere; what its inverse
+    // gives is not finite, which is the graver of the two things that are wrong.
     const double sigma = DeformableSettings{}.sensor.sigma;
     check_covariance(Status::non_finite, [=](Covariance& P, int lane) {
         for (int i = 0; i < ThreeFeatures::capacity; ++i)

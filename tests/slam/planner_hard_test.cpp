@@ -1,5 +1,5 @@
-// What the planner executes costs no more than the least that the plain form finds, in scenarios drawn at random: many of
-// them badly conditioned, so that the fast forms lose most or all of their digits.
+// What the planner executes costs no more than the least that the plain form finds, in scenarios drawn at random: many
+// of them badly conditioned, so that the fast forms lose most or all of their digits.
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -71,8 +71,8 @@ private:
         set("sensor.sigma_far", std::to_string(near * std::pow(10, uniform(0, 1.5))));
     }
 
-    /// The robot loses itself, the features hardly move: what is left after the sightings is a small difference of large
-    /// numbers.
+    /// The robot loses itself, the features hardly move: what is left after the sightings is a small difference of
+    /// large numbers.
     void draw_extremes(bool heading) {
         set("noise.odometry", between(1, 1e3));
         set("noise.walk", between(1e-4, 0.1));
@@ -92,8 +92,8 @@ private:
     Settings settings_;
 };
 
-/// Steps planned, and those whose control costs more than the least by more than 1e-9 of it (which rounding may have made
-/// negative). A control that is no candidate costs infinitely much.
+/// Steps planned, and those whose control costs more than the least by more than 1e-9 of it (which rounding may have
+/// made negative). A control that is no candidate costs infinitely much.
 struct Tally {
     int scenarios = 0, steps = 0, dearer = 0;
 };

@@ -1,5 +1,5 @@
-// The published figures, on the recorded noise that they were made with [docs/model.md, Published figures]. The records stay
-// outside the project; CREDENCE_SHARED_DATA is their folder, an absolute path.
+// The published figures, on the recorded noise that they were made with [docs/model.md, Published figures]. The records
+// stay outside the project; CREDENCE_SHARED_DATA is their folder, an absolute path.
 
 #include "catch.hpp"
 #include "store_study.hpp"

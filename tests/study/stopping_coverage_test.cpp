@@ -101,8 +101,8 @@ TEST_CASE("stopping: intervals that were not widened would cover too rarely, and
 }
 
 TEST_CASE("stopping: the engine's own intervals cover, where the truth is known exactly", "[long]") {
-    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [docs/model.md, Truth
-    // against filter].
+    // The matched linear world: NEES ~ chi-square(n) and NIS ~ chi-square(m), both ratios have mean 1 [docs/model.md,
+    // Truth against filter].
     DeformableSettings matched = matched_linear();
     matched.poses = 8;
     const StoppingRule rule{{parse_goal("nees_ratio=3.4%"), parse_goal("nis_ratio=0.0225")}, 5000, 256};

@@ -1,6 +1,6 @@
 // Filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
-// the test names, and with the figures of model.md [docs/statistics.md, Calibration and power; docs/model.md, Truth against
-// filter].
+// the test names, and with the figures of model.md [docs/statistics.md, Calibration and power; docs/model.md, Truth
+// against filter].
 
 #include <credence/consistency.hpp>
 
@@ -47,7 +47,7 @@ void check_ratio(const Verdicts& verdicts, const std::string& block, double thei
 
 }  // namespace
 
-TEST_CASE("calibration: assuming 0.8 of the measurement noise, a filter is optimistic for 200 trials, whatever the seed",
+TEST_CASE("calibration: assuming 0.8 of the measurement noise, a filter is optimistic for 200 trials, any seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
@@ -61,7 +61,7 @@ TEST_CASE("calibration: assuming 0.8 of the measurement noise, a filter is optim
     check_ratio(v, "feature_2", 1.165, 0.015);
 }
 
-TEST_CASE("calibration: assuming sqrt(0.7) of all process noises, a filter is optimistic for 400 trials, whatever the seed",
+TEST_CASE("calibration: assuming sqrt(0.7) of all process noises, a filter is optimistic for 400 trials, any seed",
           "[long]") {
     DeformableSettings s = matched_linear();
     s.filter.heading = s.filter.odometry = s.filter.features = std::sqrt(0.7);

@@ -58,7 +58,8 @@ TEST_CASE("consistency: the same filter is undecided with few trials, and the tr
 }
 
 TEST_CASE("consistency: few trials do not make a consistent filter look inconsistent", "[long]") {
-    // 100 studies of N trials of the matched filter. The corrected level is 5 %: more than 12 of 100 has probability 4e-4.
+    // 100 studies of N trials of the matched filter. The corrected level is 5 %: more than 12 of 100 has probability
+    // 4e-4.
     for (const std::int64_t trials : {20, 50, 100}) {
         int wrong = 0;
         for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -82,7 +83,7 @@ TEST_CASE("consistency: one group outside is enough to decide, so the trials tha
     CHECK(c.trials_to_decide < 3000);  // (3.7 sd / 0.07)^2 for an sd of 0.5 to 1; to bring the others inside takes more
 }
 
-TEST_CASE("consistency: assuming 0.8 of the measurement noise, a filter is optimistic in its features and not in its pose") {
+TEST_CASE("consistency: assuming 0.8 of the measurement noise, a filter is optimistic in its features only") {
     DeformableSettings s = matched_linear();
     s.filter.measurement = 0.8;
     const Evidence evidence = evidence_of_first_arm(simulated(s, 4000));

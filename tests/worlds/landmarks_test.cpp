@@ -1,5 +1,5 @@
-// The world of landmarks [docs/landmarks.md]: its truth, first sight, and every estimator in it against dense matrices on
-// a state that grows.
+// The world of landmarks [docs/landmarks.md]: its truth, first sight, and every estimator in it against dense matrices
+// on a state that grows.
 
 #include "landmark_run.hpp"
 
