@@ -47,7 +47,7 @@ benchmark::internal::Benchmark* add(const std::string& name, const Effort& effor
     return benchmark::RegisterBenchmark(name.c_str(), body)
         ->Repetitions(effort.repetitions())
         ->MinTime(effort.seconds())
-        ->Target(benchmark::kMicrosecond);
+        ->Unit(benchmark::kMicrosecond);
 }
 
 std::map<std::string, Samples> measure(const std::string& group) {

@@ -106,7 +106,7 @@ void add_part(const std::string& name, const Effort& effort, const std::function
         ->Iterations(1)
         ->Repetitions(effort.of(5, 1))
         ->UseManualTime()
-        ->Target(benchmark::kMillisecond);
+        ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

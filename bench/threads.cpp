@@ -49,7 +49,7 @@ void add_threads(const Effort& effort) {
                 ->Iterations(1)
                 ->Repetitions(effort.repetitions())
                 ->UseRealTime()
-                ->Target(benchmark::kMillisecond);
+                ->Unit(benchmark::kMillisecond);
         }
     }
 }
