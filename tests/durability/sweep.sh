@@ -14,7 +14,8 @@ read_logs() {
   read -r committed commits least appends < <(awk '
     $2 !~ /\.journal$/ { next }
     FILENAME == "../log2" && $1 != "unlink" && (least == "" || $3 < least) { least = $3 }
-    FILENAME == "../log2" && $1 ~ /^pwrite/ { ++appends }
+    FILENAME == "../log2" && $1 ~ /^pwrite/ { appended = 1 }
+    FILENAME == "../log2" && $1 == "fdatasync" { appends += appended; appended = 0 }
     FILENAME == "../log2" { next }
     $3 < committed { begun = committed = 0 }
     $1 ~ /^pwrite/ { written = 1 }
