@@ -8,7 +8,7 @@
 namespace credence {
 
 /// The input cannot be used: nothing has been computed or written. The program exits with 2. The message reads
-/// `<problem>: name=value (<why>). <remedy>`, on one line.
+/// `invalid NAME=VALUE (WHY). REMEDY.` or `cannot DO SOMETHING (WHY). REMEDY.`, on one line [CONTRIBUTING.md, Errors].
 class InputError : public std::runtime_error {
 public:
     explicit InputError(const std::string& message, std::string key = {})

@@ -151,7 +151,7 @@ namespace {
 
 /// Carries the turn of everything about the origin, which nothing observes, through an estimator's own F, and returns
 /// the most that its own rows say of it: 0 for a filter that does not believe to learn what it cannot
-/// [docs/estimators.md, Gauge]. Static features on a loop; estimates wander about the truth as a filter's would.
+/// [docs/estimators.md, A heading that nothing observes]. Static features on a loop; estimates wander about the truth as a filter's would.
 template <template <class, class> class Type>
 double learned_of_the_turn(unsigned seed) {
     DeformableSettings scenario = scenario_with({{"features.path", "static"}, {"control.path", "circle"}, {"scenario.poses", "121"},

@@ -117,6 +117,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
 
 void RecordTotals::add_columns(std::int64_t trial) {
     double row[column_count];
+    std::fill(std::begin(row), std::end(row), nan);
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;
         for (const std::size_t k : present_) sum += series(f, k);
