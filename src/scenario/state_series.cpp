@@ -4,16 +4,9 @@
 
 namespace credence {
 
-namespace {
-
-std::string described(const ComponentGroup& block) { return block.name == "all" ? "the whole state" : block.name; }
-std::string suffix(const ComponentGroup& block) { return block.name == "all" ? "" : "_" + block.name; }
-
-}  // namespace
-
-std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& block) {
+std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& group) {
     std::vector<std::string> units;
-    for (int i = block.first; i < block.first + block.count; ++i) {
+    for (int i = group.first; i < group.first + group.count; ++i) {
         const std::string& unit = components[static_cast<std::size_t>(i)].unit;
         if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
     }
@@ -23,37 +16,59 @@ std::string squared_unit(const std::vector<Component>& components, const Compone
     return text;
 }
 
-StateSeries::StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& blocks,
-                           Innovations innovations) {
-    const auto add = [&](const std::string& name, const std::string& long_name, const std::string& unit,
-                         SeriesRole role, int dimension, const std::string& part) {
-        list.push_back({name, long_name, unit, role, dimension, false, part, "", 0});
-    };
-    for (const ComponentGroup& block : blocks)
-        add("nees" + suffix(block), "normalised estimation error squared of " + described(block), "1",
-            SeriesRole::nees, block.count, block.name);
+std::string described(const ComponentGroup& group) { return group.name == "all" ? "the whole state" : group.name; }
+
+std::string of_group(const std::string& name, const ComponentGroup& group) {
+    return group.name == "all" ? name : name + "_" + group.name;
+}
+
+void add_nees(std::vector<Series>& list, const std::vector<ComponentGroup>& groups) {
+    for (const ComponentGroup& group : groups)
+        list.push_back({of_group("nees", group), "normalised estimation error squared of " + described(group), "1",
+                        SeriesRole::nees, group.count, false, group.name, "", 0});
+}
+
+void add_nis(std::vector<Series>& list) {
+    list.push_back({"nis", "normalised innovation squared of all rows", "1", SeriesRole::nis, 0, false, "all", "nis_rows", 0});
+    list.push_back({"nis_rows", "measurement rows", "1", SeriesRole::rows, 0, true, "all", "", 0});
+}
+
+void add_squared_errors(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of) {
+    for (const ComponentGroup& group : groups)
+        list.push_back({of_group("squared_error", group), "squared error of " + described(group), unit_of(group),
+                        SeriesRole::squared_error, group.count, false, group.name, "", 0});
+}
+
+void add_variances(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of,
+                   const std::string& when) {
+    for (const ComponentGroup& group : groups)
+        list.push_back({group.name == "all" ? "trace_P_step" : of_group("variance", group),
+                        "trace of the covariance of " + described(group) + when, unit_of(group), SeriesRole::variance,
+                        group.count, false, group.name, "", 0});
+}
+
+void add_standardised_errors(std::vector<Series>& list, const std::vector<Component>& components) {
+    for (const Component& component : components)
+        list.push_back({"standardised_error_" + component.name,
+                        "error of " + component.name + " over its predicted standard deviation", "1",
+                        SeriesRole::standardised_error, 1, false, component.name, "", 0});
+}
+
+StateSeries::StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& groups,
+                         Innovations innovations) {
+    const UnitOf unit_of = [&](const ComponentGroup& group) { return squared_unit(components, group); };
+    add_nees(list, groups);
     if (innovations == Innovations::given) {
         nis = list.size();
-        add("nis", "normalised innovation squared of all rows", "1", SeriesRole::nis, 0, "all");
-        list.back().rows = "nis_rows";
-        rows = list.size();
-        add("nis_rows", "measurement rows", "1", SeriesRole::rows, 0, "all");
-        list.back().integer = true;
+        rows = nis + 1;
+        add_nis(list);
     }
     squared_error = list.size();
-    for (const ComponentGroup& block : blocks)
-        add("squared_error" + suffix(block), "squared error of " + described(block), squared_unit(components, block),
-            SeriesRole::squared_error, block.count, block.name);
+    add_squared_errors(list, groups, unit_of);
     variance = list.size();
-    for (const ComponentGroup& block : blocks)
-        add(block.name == "all" ? "trace_P_step" : "variance" + suffix(block),
-            "trace of the covariance of " + described(block), squared_unit(components, block), SeriesRole::variance,
-            block.count, block.name);
+    add_variances(list, groups, unit_of, "");
     standardised_error = list.size();
-    for (const Component& component : components)
-        add("standardised_error_" + component.name,
-            "error of " + component.name + " over its predicted standard deviation", "1",
-            SeriesRole::standardised_error, 1, component.name);
+    add_standardised_errors(list, components);
 }
 
 }  // namespace credence

@@ -5,6 +5,8 @@
 #include <credence/columns.hpp>
 
 #include <cstddef>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace credence {
@@ -22,6 +24,23 @@ struct StateSeries {
 };
 
 /// Unit of a squared error of some components, and of a trace of their covariance: the sum of their units' squares.
-std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& block);
+std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& group);
+
+// The series of every world, by kind. `unit_of` is the unit of a group's squared error.
+using UnitOf = std::function<std::string(const ComponentGroup&)>;
+
+/// `the whole state`, or the group's name.
+std::string described(const ComponentGroup& group);
+/// `name`, or `name_GROUP` for a part of the state.
+std::string of_group(const std::string& name, const ComponentGroup& group);
+
+void add_nees(std::vector<Series>& list, const std::vector<ComponentGroup>& groups);
+/// `nis` of all rows, and `nis_rows`, which counts them.
+void add_nis(std::vector<Series>& list);
+void add_squared_errors(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of);
+/// `when` ends the long names, such as ` after the update`.
+void add_variances(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of,
+                   const std::string& when);
+void add_standardised_errors(std::vector<Series>& list, const std::vector<Component>& components);
 
 }  // namespace credence

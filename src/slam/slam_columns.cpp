@@ -1,22 +1,13 @@
 #include <credence/slam_columns.hpp>
 
 #include "base/nan.hpp"
+#include "scenario/state_series.hpp"
 
 #include <algorithm>
 
 namespace credence {
 
 namespace {
-
-const std::string& described(const ComponentGroup& group) {
-    static const std::string whole = "the whole state";
-    return group.name == "all" ? whole : group.name;
-}
-
-/// `name`, or `name_GROUP` for a part of the state.
-std::string of_group(const std::string& name, const ComponentGroup& group) {
-    return group.name == "all" ? name : name + "_" + group.name;
-}
 
 /// rad^2 for the heading, length^2, or the sum of both.
 std::string squared_error_unit(const SlamState& state, const ComponentGroup& group) {
@@ -85,39 +76,25 @@ std::vector<Column> trial_columns(const SlamState& state) {
 
 std::vector<Series> step_series(const SlamState& state) {
     const std::vector<ComponentGroup> groups = state_groups(state);
+    const UnitOf unit_of = [&](const ComponentGroup& group) { return squared_error_unit(state, group); };
     const int edge_rows = 2 * state.edges;
-    std::vector<Series> all_series;
-    for (const ComponentGroup& group : groups)
-        all_series.push_back({of_group("nees", group), "normalised estimation error squared of " + described(group), "1",
-                           SeriesRole::nees, group.count, false, group.name, "", 0});
-    const auto nis = [&](const std::string& name, const std::string& of, const std::string& part,
-                         const std::string& rows, int more_rows) {
-        all_series.push_back({name, "normalised innovation squared of " + of, "1", SeriesRole::nis, 0, false, part, rows,
-                           more_rows});
-    };
-    nis("nis", "all rows", "all", "nis_rows", 0);
-    all_series.push_back({"nis_rows", "measurement rows", "1", SeriesRole::rows, 0, true, "all", "", 0});
-    nis("nis_features", "the features' rows", "features", "nis_rows", -edge_rows);
-    nis("nis_edges", "the edges' rows", "edges", "", edge_rows);
-    all_series.push_back({"unseen_features", "features not seen", "1", SeriesRole::other, 0, true, "", "", 0});
-    for (const ComponentGroup& group : groups)
-        all_series.push_back({of_group("squared_error", group), "squared error of " + described(group),
-                           squared_error_unit(state, group), SeriesRole::squared_error, group.count, false,
-                           group.name, "", 0});
-    for (const ComponentGroup& group : groups)
-        all_series.push_back({group.name == "all" ? "trace_P_step" : of_group("variance", group),
-                           "trace of the covariance of " + described(group) + " after the update",
-                           squared_error_unit(state, group), SeriesRole::variance, group.count, false, group.name,
-                           "", 0});
-    for (const auto& [name, unit] : state_components(state))
-        all_series.push_back({"standardised_error_" + name, "error of " + name + " over its predicted standard deviation",
-                           "1", SeriesRole::standardised_error, 1, false, name, "", 0});
+    std::vector<Series> all;
+    add_nees(all, groups);
+    add_nis(all);
+    all.push_back({"nis_features", "normalised innovation squared of the features' rows", "1", SeriesRole::nis, 0, false,
+                   "features", "nis_rows", -edge_rows});
+    all.push_back({"nis_edges", "normalised innovation squared of the edges' rows", "1", SeriesRole::nis, 0, false, "edges",
+                   "", edge_rows});
+    all.push_back({"unseen_features", "features not seen", "1", SeriesRole::other, 0, true, "", "", 0});
+    add_squared_errors(all, groups, unit_of);
+    add_variances(all, groups, unit_of, " after the update");
+    add_standardised_errors(all, state_components(state));
     if (charts_of(state) == Charts::euclidean_and_invariant)
         for (const ComponentGroup& group : {groups[0], groups[1]})  // the whole state, the pose
-            all_series.push_back({of_group("nees_invariant", group),
-                               "NEES of " + described(group) + " with the error in the invariant chart", "1",
-                               SeriesRole::nees_in_chart, group.count, false, group.name, "", 0});
-    return all_series;
+            all.push_back({of_group("nees_invariant", group),
+                           "NEES of " + described(group) + " with the error in the invariant chart", "1",
+                           SeriesRole::nees_in_chart, group.count, false, group.name, "", 0});
+    return all;
 }
 
 }  // namespace credence
