@@ -19,7 +19,7 @@ const Problem& standing_problem() {
 
 void add_parts(const Effort& effort) {
     for (const Kernels& kernels : runnable_kernels()) {
-        const std::string group = std::string("part/") + kernels.unit + "/";
+        const std::string group = std::string("part/") + kernels.target + "/";
         add(group + "draws", effort, [kernels](benchmark::State& state) {
             for (auto _ : state) benchmark::DoNotOptimize(kernels.normals(rounds));
             state.SetItemsProcessed(state.iterations() * rounds * 2 * kernels.lanes);
@@ -38,11 +38,11 @@ Table parts_table() {
                 {"unit", "lanes", "FMA peak GFLOP/s", "ns/normal draw", "ns/filter step of a trial"},
                 {}};
     for (const Kernels& kernels : runnable_kernels()) {
-        std::map<std::string, Samples> samples = measure(std::string("part/") + kernels.unit);
+        std::map<std::string, Samples> samples = measure(std::string("part/") + kernels.target);
         const auto nanoseconds = [&](const char* name) {
             return 1e9 * median(samples[name].cpu) / (static_cast<double>(rounds) * kernels.lanes);
         };
-        table.rows.push_back({kernels.unit, kernels.lanes,
+        table.rows.push_back({kernels.target, kernels.lanes,
                               kernels.hardware_fma ? Json(peak_of(samples["peak"], kernels)) : Json(),
                               nanoseconds("draws") / 2, nanoseconds("filter_step")});
     }

@@ -50,7 +50,7 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
     total.memory = std::min(totals, most_totals_in_memory + largest) + under_way + static_cast<std::int64_t>(threads) * (16 << 20);
     if (keep_of(study) == Keep::trials) total.memory += 6 * trials * 8;
     // A scenario's settings, names and places in journal and file: measured with sweeps of 100 to 1,000 points.
-    total.memory += static_cast<std::int64_t>(study.scenarios.size()) * (150 << 10);
+    total.memory += static_cast<std::int64_t>(study.scenarios.size()) * (300 << 10);
     return total;
 }
 
