@@ -36,7 +36,8 @@ template <class Settings>
 class OwnKeys {
 public:
     OwnKeys() {
-        for (const KeyOf<OwnBasics>& basic : basic_keys()) keys_.push_back({basic.name, basic.help, basic.set, basic.get, {}});
+        for (const KeyOf<OwnBasics>& basic : basic_keys())
+            keys_.push_back({basic.name, basic.help, basic.set, basic.get, basic.choices});
     }
 
     /// A number in [low, high].

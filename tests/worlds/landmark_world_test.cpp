@@ -58,6 +58,11 @@ TEST_CASE("landmark world: a scenario names its world, and its text reads back a
     CHECK(scenario.noise.odometry == 0.3);
 }
 
+TEST_CASE("landmark world: settings of another world are not taken for its own") {
+    CHECK_THROWS_AS(landmark_settings_of(read_scenario_text("", "test", "mine")), InputError);
+    CHECK_THROWS_AS(settings_of(landmarks("poses = 40\n")), InputError);
+}
+
 TEST_CASE("landmark world: its keys have help, and their defaults are those of the classical loop") {
     const std::vector<DescribedKey> keys = find_world("landmarks")->keys();
     for (const DescribedKey& key : keys) CHECK(!key.help.empty());

@@ -59,7 +59,8 @@ public:
 
     /// Throws InputError where the scenario's settings are not those of this world.
     Settings settings_of(const Scenario& scenario) const {
-        if (scenario.own_settings) return *static_cast<const Settings*>(scenario.own_settings.get());
+        if (scenario.own_settings && scenario.world == name())
+            return *static_cast<const Settings*>(scenario.own_settings.get());
         Settings settings;
         for (const auto& [key, value] : scenario.settings)
             if (key != world_key) set_key(world_.keys(), settings, key, value);
