@@ -1,8 +1,9 @@
-// The world of landmarks as the engine and the program know it: its settings, its declaration, and its trials on every
-// unit.
+// The world of landmarks as the engine and the program know it: its settings, its scenario, and its trials on every target.
 
 #include <credence/detail/block.hpp>
+#include <credence/error.hpp>
 #include <credence/ini.hpp>
+#include "worlds/deformable/deformable.hpp"
 #include "worlds/landmarks/trial.hpp"
 #include "worlds/landmarks/landmarks.hpp"
 
