@@ -20,8 +20,7 @@ struct NoiseRecord {
     std::vector<double> edge;         ///< [poses, edges, 2], empty where the record has none
 };
 
-/// A recorded trial as a noise source. The record must outlive it and must cover the scenario (check_covers,
-/// trajectory.hpp).
+/// A recorded trial as a noise source. The record must outlive it and must cover the scenario.
 class RecordedDraws {
 public:
     explicit RecordedDraws(const NoiseRecord& record) : record_(&record) {}

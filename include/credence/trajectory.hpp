@@ -1,58 +1,60 @@
 #pragma once
-// Module worlds: the trajectory of a single trial with all its quantities, as Eigen matrices. Replay writes it; tests
-// compare it.
+// Module engine: the trajectory of a single trial of any world: what `credence replay` prints and writes.
 
-#include <credence/recorded_noise.hpp>
-#include <credence/deformable_settings.hpp>
+#include <credence/scenario.hpp>
 
-#include <Eigen/Dense>
-
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace credence {
 
-class Problem;
-
-/// One pose of a trial. What only exists after pose 0 is empty there.
-/// n state dimension, M features, m rows of the largest possible measurement (2 M + 2 edges), C candidates.
-struct TrajectoryStep {
-    Eigen::VectorXd truth;                  ///< [n] true state
-    Eigen::VectorXd mean;                   ///< [n] after the update
-    Eigen::MatrixXd covariance;             ///< [n, n] after the update, as reported (times filter.covariance)
-    Eigen::VectorXd predicted_mean;         ///< [n]
-    Eigen::MatrixXd predicted_covariance;   ///< [n, n], as the filter holds it
-    Control control;                        ///< the control on the way to this pose
-    std::vector<bool> seen;                 ///< [M]
-    Eigen::VectorXd measurement_sigma;      ///< [M] true standard deviation
-    Eigen::MatrixX2d measurement;           ///< [M, 2] body frame, NaN where not seen
-    Eigen::VectorXd innovation;             ///< [m] features (body frame) then edges, NaN where not observed
-    Eigen::MatrixXd innovation_covariance;  ///< [m, m], NaN where not observed
-    double nees = 0, nis = 0, trace_P = 0;
-    int rows = 0;
-    std::vector<double> candidate_cost;     ///< [C] predicted trace(P) of each candidate; planned only
+/// A dimension of variables: its coordinate counts from 0.
+struct TrajectoryDimension {
+    std::string name, long_name;
+    std::size_t size = 0;
 };
 
+/// The type of a variable's numbers in a file, and the value of those that do not exist: NaN, -1, -1.
+enum class TrajectoryNumbers { real, integer, flag };
+
+/// A quantity of the trial, such as the estimated state at each pose.
+struct TrajectoryVariable {
+    std::string name, long_name, unit;
+    std::vector<std::string> dimensions;  ///< names; the first is `pose` where the quantity has a value at each pose
+    TrajectoryNumbers numbers = TrajectoryNumbers::real;
+    std::string flags{};                  ///< of flags: what -1, 0, 1 ... mean, separated by blanks
+    std::vector<double> values{};         ///< row-major
+};
+
+/// One trial under one arm.
 struct Trajectory {
-    DeformableSettings scenario;                      ///< resolved
-    Arm arm;
-    std::string source;                     ///< where its noise came from: `root seed 1, trial 17`, `noise record`
-    std::vector<double> columns;            ///< [column_count], as in the results file
-    std::vector<TrajectoryStep> steps;      ///< [K]
-    std::vector<Control> candidates;        ///< [C]; planned only
+    Scenario scenario;                            ///< resolved
+    std::string arm;
+    std::string source;                           ///< of its noise: `root seed 1, trial 17`, `noise record`
+    std::vector<Column> columns;
+    std::vector<double> column_values;            ///< [columns] as in the results file
+    std::vector<TrajectoryDimension> dimensions;  ///< beside the components of the state: `component` and `component_2`
+    std::vector<TrajectoryVariable> variables;
+    std::vector<std::pair<std::string, std::string>> notes;  ///< name and text, such as why a variable is left out
 
-    /// Innovations are kept up to this many rows; beyond, a single trial would take gigabytes.
-    static constexpr int largest_innovation = 512;
+    /// Number of values of a variable: those of all poses, where it has that dimension.
+    std::size_t value_count(const TrajectoryVariable& variable) const;
+    /// Adds a variable, its values those of numbers that do not exist, and returns its place.
+    std::size_t add(TrajectoryVariable variable);
+    /// The values of that variable at a pose.
+    double* at(std::size_t variable, int pose);
 };
 
-/// Runs one trial of one arm again, on the study's draws. The same bits as the engine's.
-Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
+/// An empty trajectory with the dimension `pose`.
+Trajectory empty_trajectory(const Scenario& scenario, const std::string& arm, const std::vector<Column>& columns);
 
-/// Throws InputError where the noise record is too short, too narrow or lacks draws of the scenario. `file` names it.
-void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);
+/// `root seed 1, trial 17`
+std::string source_text(std::uint64_t root_seed, std::int64_t trial);
 
-/// Runs one arm on recorded noise, which must cover the scenario.
-Trajectory replay_record(const Problem& problem, const Arm& arm, const NoiseRecord& record);
+/// Matrices of a single trial are recorded up to this many rows; larger ones would take gigabytes.
+inline constexpr std::size_t largest_recorded_matrix = 512;
 
 }  // namespace credence

@@ -4,8 +4,10 @@
 
 #include <credence/detail/batch.hpp>
 #include <credence/scenario.hpp>
+#include <credence/trajectory.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +23,9 @@ public:
     virtual std::size_t workspace_size(std::size_t arm) const = 0;
     /// Simulates a batch of trials of the arm at that place in the scenario's list.
     virtual void simulate(std::size_t arm, const Batch& batch) const = 0;
+    /// Runs one trial of that arm again, the same bits as in a batch, and records it. `scenario` is that of the simulation.
+    virtual Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
+                              std::int64_t trial) const = 0;
 };
 
 /// A scenario while its settings are read.
@@ -67,5 +72,8 @@ const World& world_of(const Scenario& scenario);
 
 /// The scenario made ready by its world. Throws like world_of.
 std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario);
+
+/// Runs one trial of an arm of the scenario again. Throws like world_of.
+Trajectory replay_trial(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed, std::int64_t trial);
 
 }  // namespace credence

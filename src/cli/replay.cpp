@@ -9,6 +9,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/nan.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -44,13 +47,8 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
                              " does not go with --noise (a record is one trial, for all arms). Leave it out.");
     check_kind(parsed.arguments.front(), {FileKind::scenario});
     check_kind(record_path, {FileKind::noise});
-    const DeformableSettings scenario = read_deformable(parsed.arguments.front(), parsed.overrides());
-    const NoiseRecord record = read_noise_record(record_path);
-    check_covers(record, scenario, record_path);
-    const Problem problem(scenario);
-    std::vector<Trajectory> trajectories;
-    for (const Arm& arm : arms_of(scenario)) trajectories.push_back(replay_record(problem, arm, record));
-    return trajectories;
+    const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
+    return replay_record(scenario, read_noise_record(record_path), record_path);
 }
 
 std::string needed(const Parsed& parsed, const std::string& option) {
@@ -102,70 +100,95 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const ScenarioResults& results = find_scenario(study, scenario_name);
     const std::size_t a = find_arm(results, arm);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
-    const Problem problem(settings_of(results.scenario));
-    Trajectory trajectory = replay_trial(problem, arms_of(problem.scenario())[a], study.root_seed, trial);
+    Trajectory trajectory = replay_trial(results.scenario, a, study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
         const double stored = column_values(results.arms[a], c, row, 1).front();
-        if (!same(stored, trajectory.columns[c]))
+        if (!same(stored, trajectory.column_values[c]))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
-                          results.columns[c].name + " is " + to_text(trajectory.columns[c]) + ", stored is " +
+                          results.columns[c].name + " is " + to_text(trajectory.column_values[c]) + ", stored is " +
                           to_text(stored) + ".");
     }
     return {std::move(trajectory)};
 }
 
-std::string status_text(const Trajectory& t) {
-    return status_names()[static_cast<std::size_t>(t.columns[column_status])];
+/// The columns that are printed, by the names that they have in every world, with their label and digits in the text.
+struct ShownColumn {
+    const char *name, *label;
+    int digits;
+};
+constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},
+                                         {"unseen", "unseen", 15},
+                                         {"pose_error", "pose error", 5},
+                                         {"nees_ratio", "NEES/n", 4},
+                                         {"nis_ratio", "NIS/m", 4}};
+
+/// The column of that name; nullptr where the world has none.
+const Column* find_column(const Trajectory& t, const std::string& name) {
+    const auto found = std::find_if(t.columns.begin(), t.columns.end(), [&](const Column& one) { return one.name == name; });
+    return found == t.columns.end() ? nullptr : &*found;
+}
+
+Status status_of(const Trajectory& t) {
+    return static_cast<Status>(static_cast<int>(t.column_values[status_column(t.columns)]));
+}
+std::string status_text(const Trajectory& t) { return status_names()[static_cast<std::size_t>(status_of(t))]; }
+
+/// A column's value; NaN where a failed trial has none.
+double value_of(const Trajectory& t, const Column& column) {
+    if (is_reported(column) && failed(status_of(t))) return nan;
+    return t.column_values[static_cast<std::size_t>(&column - t.columns.data())];
+}
+
+nlohmann::ordered_json json_of(const Trajectory& t, const Column& column) {
+    const double value = value_of(t, column);
+    if (column.type != ColumnType::real && !std::isnan(value)) return static_cast<int>(value);
+    return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
 }
 
 std::string as_json(const std::vector<Trajectory>& trajectories) {
     nlohmann::ordered_json array = nlohmann::ordered_json::array();
     for (const Trajectory& t : trajectories) {
-        const bool missing = failed(static_cast<Status>(static_cast<int>(t.columns[column_status])));
-        nlohmann::ordered_json one{{"scenario", t.scenario.name},
-                                   {"arm", arm_name(t.arm)},
-                                   {"status", status_text(t)},
-                                   {"trace_P", t.columns[column_trace_P]},
-                                   {"unseen", nullptr},
-                                   {"pose_error", t.columns[column_pose_error]},
-                                   {"nees_ratio", t.columns[column_nees_ratio]},
-                                   {"nis_ratio", t.columns[column_nis_ratio]},
-                                   {"status_pose", static_cast<int>(t.columns[column_status_pose])}};
-        if (!missing) one["unseen"] = static_cast<int>(t.columns[column_unseen]);
+        nlohmann::ordered_json one{{"scenario", t.scenario.name}, {"arm", t.arm}, {"status", status_text(t)}};
+        for (const ShownColumn& shown : shown_columns) {
+            const Column* column = find_column(t, shown.name);
+            one[shown.name] = column ? json_of(t, *column) : nlohmann::ordered_json();
+        }
+        for (const Column& column : t.columns)
+            if (!one.contains(column.name)) one[column.name] = json_of(t, column);
         array.push_back(one);
     }
     return array.dump(2) + "\n";
 }
 
 std::string as_csv(const std::vector<Trajectory>& trajectories) {
-    std::string text = "scenario,arm,status,trace_P,unseen,pose_error,nees_ratio,nis_ratio\n";
+    std::string text = "scenario,arm,status";
+    for (const ShownColumn& shown : shown_columns) text += std::string(",") + shown.name;
+    text += "\n";
     for (const Trajectory& t : trajectories) {
-        text += t.scenario.name + "," + arm_name(t.arm) + "," + status_text(t);
-        for (int c = column_trace_P; c <= column_nis_ratio; ++c)
-            text += "," + (std::isfinite(t.columns[static_cast<std::size_t>(c)])
-                               ? to_text(t.columns[static_cast<std::size_t>(c)])
-                               : "");
+        text += t.scenario.name + "," + t.arm + "," + status_text(t);
+        for (const ShownColumn& shown : shown_columns) {
+            const Column* column = find_column(t, shown.name);
+            const double value = column ? value_of(t, *column) : nan;
+            text += "," + (std::isfinite(value) ? to_text(value) : "");
+        }
         text += "\n";
     }
     return text;
 }
 
-/// A value as text; `-` for one that a failed trial does not have.
-std::string figure_text(double value, int digits) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return std::isfinite(value) ? text : "-";
-}
-
 std::string as_text(const std::vector<Trajectory>& trajectories) {
     std::string text;
     for (const Trajectory& t : trajectories) {
-        const auto figure = [&](ColumnIndex column, int digits) { return figure_text(t.columns[column], digits); };
-        const bool unseen_known = t.columns[column_unseen] >= 0;
-        text += t.scenario.name + "/" + arm_name(t.arm) + ": " + status_text(t) + ", trace(P) " +
-                figure(column_trace_P, 5) + " " + trace_unit(t.scenario) + ", unseen " +
-                (unseen_known ? figure(column_unseen, 15) : "-") + ", pose error " + figure(column_pose_error, 5) +
-                ", NEES/n " + figure(column_nees_ratio, 4) + ", NIS/m " + figure(column_nis_ratio, 4) + "\n";
+        text += t.scenario.name + "/" + t.arm + ": " + status_text(t);
+        for (const ShownColumn& shown : shown_columns) {
+            const Column* column = find_column(t, shown.name);
+            if (column == nullptr) continue;
+            char number[40];
+            std::snprintf(number, sizeof number, "%.*g", shown.digits, value_of(t, *column));
+            text += std::string(", ") + shown.label + " " + (std::isfinite(value_of(t, *column)) ? number : "-");
+            if (column->unit != "1" && column == find_column(t, "trace_P")) text += " " + column->unit;
+        }
+        text += "\n";
     }
     return text;
 }

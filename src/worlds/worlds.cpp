@@ -51,4 +51,8 @@ std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario) {
     return world_of(scenario).simulation(scenario);
 }
 
+Trajectory replay_trial(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed, std::int64_t trial) {
+    return simulation_of(scenario)->replay(scenario, arm, root_seed, trial);
+}
+
 }  // namespace credence

@@ -3,7 +3,8 @@
 #include <credence/consistency.hpp>
 #include <credence/record.hpp>
 #include "slam/trial/problem.hpp"
-#include <credence/trajectory.hpp>
+#include "slam_steps.hpp"
+#include "worlds/deformable/deformable.hpp"
 
 #include "store_study.hpp"
 #include "support.hpp"
@@ -50,7 +51,8 @@ void write_record(const std::string& path, const DeformableSettings& scenario, s
     Values values;
     for (std::uint64_t trial = 0; trial < trials; ++trial) {
         const Trajectory trajectory = replay_trial(problem, {Controller::fixed}, seed, static_cast<std::int64_t>(trial));
-        for (std::size_t k = 1; k < trajectory.steps.size(); ++k) values.add(trajectory.steps[k]);
+        const std::vector<TrajectoryStep> all = steps_of(trajectory);
+        for (std::size_t k = 1; k < all.size(); ++k) values.add(all[k]);
     }
     const hsize_t steps = static_cast<hsize_t>(scenario.poses - 1), n = static_cast<hsize_t>(state_size(scenario)),
                   m = values.innovation.size() / trials / steps;

@@ -1,9 +1,13 @@
 // The content of results files for other tools, and that docs/results-format.md describes it.
 
+#include "slam_steps.hpp"
+#include "worlds/deformable/deformable.hpp"
 #include "slam/trial/problem.hpp"
 
 #include "results_format_page.hpp"
 #include "store_study.hpp"
+
+#include <credence/ini.hpp>
 
 #include <algorithm>
 
@@ -38,8 +42,11 @@ TEST_CASE("results format: the documentation and the files say the same of every
     write_results(folder / "study.h5", made_up_study(), {});
     DeformableSettings wide = scenario("wide");
     wide.features.positions.assign(23, {0.5, 0.5});
+    const Scenario own = read_scenario_text("[scenario]\nworld = spoiled\n", "test", "own"),
+                   large = read_scenario_text("[scenario]\nworld = large_state\nposes = 2\n", "test", "large");
     write_trajectories(folder / "trace.h5", {replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0),
-                                             replay_trial(Problem(wide), {Controller::fixed}, 1, 0)}, {});
+                                             replay_trial(Problem(wide), {Controller::fixed}, 1, 0),
+                                             replay_trial(own, 0, 1, 0), replay_trial(large, 0, 1, 0)}, {});
     Scenario point = scenario_of(scenario("swept_sigma-0p05_noise-constant"));
     point.sweep = {"swept", {{"sensor.sigma", "0.05"}, {"sensor.noise", "constant"}}};
     write_results(folder / "swept.h5", new_study(std::vector{point}, 1), {});

@@ -1,5 +1,7 @@
 // Files: recorded noise and trajectories of single trials.
 
+#include "slam_steps.hpp"
+#include "worlds/deformable/deformable.hpp"
 #include "slam/trial/problem.hpp"
 
 #include "files/hdf5/read.hpp"
@@ -100,9 +102,10 @@ TEST_CASE("store: noise records that are incomplete, of other dimensions or type
 TEST_CASE("store: a trajectory is in its file as it was") {
     const TemporaryFolder folder;
     const Trajectory greedy = replay_trial(Problem(scenario("one")), {Controller::greedy}, 1, 0);
+    const std::vector<TrajectoryStep> steps = steps_of(greedy);
     write_trajectories(folder / "trace.h5", {greedy}, run_facts);
     const Handle root = hdf5::open_file(folder / "trace.h5"), group = group_of(root, "one", "greedy.ekf");
-    const std::size_t candidates = greedy.candidates.size();
+    const std::size_t candidates = steps.back().candidate_cost.size();
     const auto truth = values(group, "truth", {4, 9}), mean = values(group, "mean", {4, 9});
     const auto P = values(group, "covariance", {4, 9, 9}), predicted = values(group, "predicted_covariance", {4, 9, 9});
     const auto nees = values(group, "nees", {4}), cost = values(group, "candidate_cost", {4, candidates});
@@ -111,7 +114,7 @@ TEST_CASE("store: a trajectory is in its file as it was") {
     const auto seen = values<std::int8_t>(group, "seen", {4, 3});
     const auto rows = values<std::int32_t>(group, "rows", {4});
     for (std::size_t k = 0; k < 4; ++k) {
-        const TrajectoryStep& step = greedy.steps[k];
+        const TrajectoryStep& step = steps[k];
         for (Eigen::Index i = 0; i < 9; ++i) {
             CHECK(truth[9 * k + static_cast<std::size_t>(i)] == step.truth[i]);
             CHECK(mean[9 * k + static_cast<std::size_t>(i)] == step.mean[i]);
@@ -175,14 +178,14 @@ TEST_CASE("store: trajectories lie in groups by scenario and arm, with the trial
     std::vector<Trajectory> trajectories;
     for (const DeformableSettings& one : {scenario("first"), scenario("second", "translation")})
         for (const Arm& arm : arms_of(one)) trajectories.push_back(replay_trial(Problem(one), arm, 1, 0));
-    trajectories[1].columns[column_status] = 2;
+    trajectories[1].column_values[column_status] = 2;
     write_trajectories(folder / "trace.h5", trajectories, run_facts);
     const Handle root = hdf5::open_file(folder / "trace.h5");
     CHECK(hdf5::read_text(root, "format") == "credence trajectories");
     CHECK(hdf5::link_names(root) == std::vector<std::string>{"first", "second", "run"});
     const Handle greedy = group_of(root, "first", "greedy.ekf");
-    CHECK(hdf5::read_number<double>(greedy, "trace_P") == trajectories[1].columns[column_trace_P]);
-    CHECK(hdf5::read_number<std::int32_t>(greedy, "unseen") == trajectories[1].columns[column_unseen]);
+    CHECK(hdf5::read_number<double>(greedy, "trace_P") == trajectories[1].column_values[column_trace_P]);
+    CHECK(hdf5::read_number<std::int32_t>(greedy, "unseen") == trajectories[1].column_values[column_unseen]);
     CHECK(hdf5::read_number<std::int8_t>(greedy, "status") == 2);
     CHECK(hdf5::read_text(greedy, "status_text") == "covariance_not_positive_definite");
     CHECK(!hdf5::has_link(group_of(root, "second", "fixed.kf"), "candidate"));

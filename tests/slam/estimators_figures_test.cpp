@@ -2,7 +2,8 @@
 // numpy, its own draws), and the engine's lanes against one trial at a time.
 
 #include <credence/detail/block.hpp>
-#include <credence/trajectory.hpp>
+#include "slam_steps.hpp"
+#include "worlds/deformable/deformable.hpp"
 
 #include <cmath>
 
@@ -99,7 +100,7 @@ TEST_CASE("estimators: in lanes, planned and fixed, on few and many features, th
                     CAPTURE(positions, target.name, arm_name(arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 20 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
-                        CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.columns[c]));
+                        CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.column_values[c]));
                 }
         }
     }

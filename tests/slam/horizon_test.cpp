@@ -4,7 +4,7 @@
 #include "support.hpp"
 
 #include "worlds/deformable/deformable.hpp"
-#include <credence/trajectory.hpp>
+#include "slam_steps.hpp"
 #include "slam/trial/trial.hpp"
 
 #include <algorithm>
@@ -205,17 +205,19 @@ TEST_CASE("horizon: the sum counts, not the next step alone") {
     // At each step the greedy choice has the least next trace, the horizon's the least sum, and somewhere they differ.
     const DeformableSettings scenario = planning({{"model.process", "translation"}, {"features.path", "circle"}});
     const Trajectory trajectory = replay_trial(Problem(scenario), {Controller::horizon, Estimator::kf}, 1, 0);
+    const std::vector<TrajectoryStep> steps = steps_of(trajectory);
+    const std::vector<Control> candidates = planner_candidates(scenario);
     int differ = 0;
     for (int k = 1; k + 1 < scenario.poses; ++k) {
         const std::size_t at = static_cast<std::size_t>(k);
-        const TrajectoryStep &before = trajectory.steps[at - 1], &step = trajectory.steps[at];
-        Eigen::VectorXd next(static_cast<Eigen::Index>(trajectory.candidates.size()));
+        const TrajectoryStep &before = steps[at - 1], &step = steps[at];
+        Eigen::VectorXd next(static_cast<Eigen::Index>(candidates.size()));
         for (Eigen::Index i = 0; i < next.size(); ++i)
             next[i] = oracle::candidate_cost(scenario, {before.mean, before.covariance},
-                                             trajectory.candidates[static_cast<std::size_t>(i)], k);
-        const auto found = std::find(trajectory.candidates.begin(), trajectory.candidates.end(), step.control);
-        REQUIRE(found != trajectory.candidates.end());
-        const std::size_t chosen = static_cast<std::size_t>(found - trajectory.candidates.begin()),
+                                             candidates[static_cast<std::size_t>(i)], k);
+        const auto found = std::find(candidates.begin(), candidates.end(), step.control);
+        REQUIRE(found != candidates.end());
+        const std::size_t chosen = static_cast<std::size_t>(found - candidates.begin()),
                           greedy = static_cast<std::size_t>(oracle::greedy_choice(next));
         const double of_chosen = next[static_cast<Eigen::Index>(chosen)], of_greedy = next[static_cast<Eigen::Index>(greedy)];
         CHECK(of_greedy <= of_chosen * (1 + 1e-12));
@@ -265,7 +267,7 @@ TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any target
                     CAPTURE(described(kind), target.name, arm_name(arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 21 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
-                        CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.columns[c]));
+                        CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.column_values[c]));
                 }
         }
     }

@@ -3,7 +3,8 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-#include <credence/trajectory.hpp>
+#include "slam_steps.hpp"
+#include "worlds/deformable/deformable.hpp"
 
 using namespace credence;
 using namespace credence::test;

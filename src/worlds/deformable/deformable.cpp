@@ -16,6 +16,10 @@ public:
     const SimulationShape& shape() const override { return simulation_.shape(); }
     std::size_t workspace_size(std::size_t arm) const override { return simulation_.workspace_size(arm); }
     void simulate(std::size_t arm, const Batch& batch) const override { simulation_.simulate(arm, batch); }
+    Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
+                      std::int64_t trial) const override {
+        return simulation_.replay(scenario, arm, root_seed, trial);
+    }
 
 private:
     Problem problem_;
@@ -53,7 +57,7 @@ Scenario scenario_of(const DeformableSettings& settings) { return WorldOf<Deform
 
 DeformableSettings settings_of(const Scenario& scenario) {
     if (scenario.world != first_world)
-        throw invalid_value(world_key, scenario.world, "only trials of the deformable world can be replayed",
+        throw invalid_value(world_key, scenario.world, "noise is recorded for the deformable world",
                             "Give a scenario of that world");
     return WorldOf<Deformable>().settings_of(scenario);
 }
@@ -70,6 +74,11 @@ std::size_t DeformableSimulation::workspace_size(std::size_t arm) const {
 
 void DeformableSimulation::simulate(std::size_t arm, const Batch& batch) const {
     target_.simulate(problem_.view(), arms_[arm], batch);
+}
+
+Trajectory DeformableSimulation::replay(const Scenario&, std::size_t arm, std::uint64_t root_seed,
+                                        std::int64_t trial) const {
+    return replay_trial(problem_, arms_[arm], root_seed, trial);
 }
 
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials, const Target& target) {

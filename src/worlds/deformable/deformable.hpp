@@ -2,6 +2,7 @@
 // The deformable world of the document as one of the worlds.
 
 #include <credence/detail/block.hpp>
+#include <credence/recorded_noise.hpp>
 #include "slam/trial/problem.hpp"
 #include "worlds/deformable/keys.hpp"
 #include "worlds/simulate.hpp"
@@ -24,6 +25,8 @@ public:
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
+    Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
+                      std::int64_t trial) const override;
 
 private:
     const Problem& problem_;
@@ -32,7 +35,17 @@ private:
     SimulationShape shape_;
 };
 
-/// A block of a problem's trials, on a unit [block.hpp].
+/// One trial of a problem.
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
+
+/// Throws InputError where the noise record is too short, too narrow or lacks draws of the scenario. `file` names it.
+void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);
+
+/// Every arm of the scenario on recorded noise. Throws InputError like check_covers, and where the scenario is of another
+/// world.
+std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file);
+
+/// A block of a problem's trials, on a target [block.hpp].
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
                 const Target& target = best_target());
 

@@ -26,6 +26,8 @@ public:
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
+    Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
+                      std::int64_t trial) const override;
 
 private:
     LandmarkProblem problem_;

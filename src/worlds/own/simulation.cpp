@@ -5,6 +5,7 @@
 #include <credence/own_trial.hpp>
 #include "scenario/state_series.hpp"
 
+#include "worlds/own/recorder.hpp"
 #include "worlds/own/step.hpp"
 #include "worlds/own/lag_products.hpp"
 #include "base/nan.hpp"
@@ -132,6 +133,7 @@ public:
     const std::vector<double>& errors() const { return errors_; }  ///< [K - 1, n]
     const LagProducts& products() const { return products_; }
     bool counts() const { return !failed(status_); }
+    std::size_t steps_taken() const { return step_; }
 
     void columns(std::vector<double>& row) const {
         const auto total = [&](std::size_t f) {
@@ -284,7 +286,36 @@ public:
         }
     }
 
+    Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
+                      std::int64_t trial) const override {
+        Trajectory trajectory = empty_trajectory(scenario, scenario.arms[arm], case_.columns);
+        trajectory.source = source_text(root_seed, trial);
+        Case recorded = case_;
+        recorded.run = [&](OwnTrial& evaluated) {
+            RecordingTrial recording(evaluated, case_.report.largest_innovation, trajectory);
+            case_.run(recording);
+        };
+        EvaluatedTrial evaluated(recorded, arm);
+        evaluated.run(root_seed, static_cast<std::uint64_t>(trial));
+        evaluated.columns(trajectory.column_values);
+        fill_failed(trajectory.columns, trajectory.column_values.data());
+        const StateSeries& at = case_.all_series;
+        add_series(trajectory, evaluated, {"nees", "normalised estimation error squared of the whole state", "1", {"pose"}}, 0);
+        if (!case_.shape.has_innovations()) return trajectory;
+        add_series(trajectory, evaluated, {"nis", "normalised innovation squared over all rows", "1", {"pose"}}, at.nis);
+        add_series(trajectory, evaluated, {"rows", "measurement rows of the update", "1", {"pose"}, TrajectoryNumbers::integer}, at.rows);
+        return trajectory;
+    }
+
 private:
+    /// The steps that the trial took.
+    void add_series(Trajectory& trajectory, const EvaluatedTrial& evaluated, TrajectoryVariable variable,
+                    std::size_t series) const {
+        const std::size_t place = trajectory.add(std::move(variable));
+        const double* first = evaluated.all_series().data() + series * case_.steps();
+        std::copy_n(first, evaluated.steps_taken(), trajectory.variables[place].values.begin() + 1);
+    }
+
     Case case_;
     SimulationShape shape_;
 };

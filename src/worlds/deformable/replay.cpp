@@ -1,0 +1,118 @@
+#include "worlds/deformable/deformable.hpp"
+
+#include <credence/error.hpp>
+#include "slam/estimators/estimators.hpp"
+#include "slam/trial/trial.hpp"
+#include "worlds/slam_recorder.hpp"
+
+#include <memory>
+
+namespace credence {
+
+namespace {
+
+/// The planner's candidates, which are the same at every pose. Returns the place of their costs.
+std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings) {
+    const std::vector<Control> candidates = planner_candidates(settings);
+    trajectory.dimensions.push_back({"candidate", "candidate of the planner", candidates.size()});
+    const std::size_t turn = trajectory.add({"candidate_turn", "turn of the candidate", "rad", {"candidate"}});
+    const std::size_t move = trajectory.add({"candidate_move", "displacement of the candidate", settings.length_unit,
+                                             {"candidate", "axis"}});
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        trajectory.variables[turn].values[i] = candidates[i].turn;
+        trajectory.variables[move].values[2 * i] = candidates[i].move.x;
+        trajectory.variables[move].values[2 * i + 1] = candidates[i].move.y;
+    }
+    return trajectory.add({"candidate_cost", "trace of the covariance that the candidate promised",
+                           trace_unit(settings), {"pose", "candidate"}});
+}
+
+/// The recorder of a trial with a planner.
+class Recorder : public SlamRecorder {
+public:
+    Recorder(const ProblemView& problem, Controller controller, const SlamVariables& variables, std::size_t cost,
+             Trajectory& trajectory)
+        : SlamRecorder(problem, variables, trajectory), problem_(problem), controller_(controller), cost_(cost) {}
+
+    /// Every candidate's cost: the trial's own planner computes few of them.
+    template <class Layout, class Belief>
+    void planned(int k, const Layout& layout, const Belief& belief) {
+        const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
+        const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
+        price_candidates(belief, problem_.control, problem_.filter, problem_.sensor, layout, k,
+                         problem_.steps_ahead(controller_, k), *ahead, *last_step,
+                         [&](int candidate, double cost) { to(cost_, k)[candidate] = cost; });
+    }
+
+private:
+    const ProblemView& problem_;
+    Controller controller_;
+    std::size_t cost_;
+};
+
+template <class Noise>
+Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source) {
+    const ProblemView& view = problem.view();
+    const DeformableSettings& settings = problem.scenario();
+    Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(arm), trial_columns(settings));
+    trajectory.source = source;
+    const SlamVariables variables = add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
+    const std::size_t cost = arm.controller == Controller::fixed ? 0 : add_candidates(trajectory, settings);
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1));
+    Recorder recorder(view, arm.controller, variables, cost, trajectory);
+    const auto run = [&](auto process, auto estimator) {
+        using StateLayout = Layout<process(), any_count>;
+        using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
+        const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
+        run_trial(view, arm.controller, noise, recorder, *work, trajectory.column_values.data(), all_series.data());
+    };
+    const auto run_process = [&](auto process) {
+        with_estimator<process()>(arm.estimator, [&](auto estimator) { run(process, estimator); });
+    };
+    if (view.process == Process::heading)
+        run_process(std::integral_constant<Process, Process::heading>{});
+    else
+        run_process(std::integral_constant<Process, Process::translation>{});
+    fill_failed(trajectory.columns, trajectory.column_values.data());
+    return trajectory;
+}
+
+}  // namespace
+
+void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file) {
+    const auto refuse = [&](const std::string& why, const std::string& remedy) {
+        throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " +
+                         remedy + ".");
+    };
+    const int features = static_cast<int>(scenario.features.positions.size());
+    const int edges = static_cast<int>(edge_list(scenario).size());
+    if (record.poses < scenario.poses)
+        refuse("it has " + std::to_string(record.poses) + " poses, the scenario " + std::to_string(scenario.poses),
+               "Lower scenario.poses or record more");
+    if (record.features < features)
+        refuse("it has " + std::to_string(record.features) + " features, the scenario " + std::to_string(features),
+               "Give fewer features.positions or record more");
+    if (scenario.truth.edge_noise == EdgeNoise::independent && record.edges != edges)
+        refuse("truth.edge_noise=independent needs `edge` [poses, " + std::to_string(edges) + ", 2]",
+               "Record it, in graph order");
+    if (scenario.sensor.detection < 1)
+        refuse("a record has no detection draws", "Set sensor.detection=1");
+}
+
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
+    return replay(problem, arm,
+                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate),
+                  source_text(root_seed, trial));
+}
+
+std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file) {
+    const DeformableSettings settings = settings_of(scenario);
+    check_covers(record, settings, file);
+    const Problem problem(settings);
+    std::vector<Trajectory> trajectories;
+    for (const Arm& arm : arms_of(settings))
+        trajectories.push_back(replay(problem, arm, RecordedDraws(record), "noise record"));
+    return trajectories;
+}
+
+}  // namespace credence

@@ -1,0 +1,35 @@
+#pragma once
+// A trial of a user's own world that records its trajectory.
+
+#include <credence/own_trial.hpp>
+#include <credence/trajectory.hpp>
+
+namespace credence {
+
+/// Hands everything on to another trial, and writes what comes into a trajectory.
+class RecordingTrial : public OwnTrial {
+public:
+    /// Adds dimensions and variables. `rows` is the most rows of an innovation.
+    RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory);
+
+    std::size_t arm() const override { return trial_.arm(); }
+    int poses() const override { return trial_.poses(); }
+    Eigen::Vector2d normal(int source, int pose, int index) const override { return trial_.normal(source, pose, index); }
+    double uniform(int source, int pose, int index) const override { return trial_.uniform(source, pose, index); }
+    void set(std::size_t column, double value) override { trial_.set(column, value); }
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) override;
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
+              const Eigen::MatrixXd& S) override;
+
+private:
+    void write_state(const Eigen::VectorXd& error, const Eigen::MatrixXd& P);
+
+    OwnTrial& trial_;
+    Trajectory& trajectory_;
+    int pose_ = 0;  ///< of the last step
+    bool small_state_;
+    Eigen::Index rows_;  ///< of the innovations that are recorded; 0: none are
+    std::size_t error_ = 0, trace_P_ = 0, covariance_ = 0, innovation_ = 0, innovation_covariance_ = 0;
+};
+
+}  // namespace credence
