@@ -39,7 +39,7 @@ inline void check_says(const Snapshot& look, const Study& study) {
             CHECK(arm.failed == results.trials - results.arms[a].counted);
             for (std::size_t f = 0; f < arm.columns.size(); ++f)
                 check_same(arm.columns[f], summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
-            const ArmResults* fixed = partner_of(results, results.arms[a]);
+            const ArmResults* fixed = baseline_of(results, results.arms[a]);
             CHECK(arm.other == (fixed ? fixed->name : ""));
             if (fixed) {
                 const std::vector<double> own = trace_of(results, results.arms[a]), other = trace_of(results, *fixed);

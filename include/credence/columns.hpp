@@ -31,6 +31,13 @@ struct Column {
     double fill = 0;                       ///< value of a failed trial: NaN for real columns
 };
 
+/// A value published elsewhere for a column of one arm, shown with its place in the distribution over the trials.
+struct PublishedNumber {
+    std::string arm;                     ///< such as greedy.kf
+    double value = 0;
+    friend bool operator==(const PublishedNumber&, const PublishedNumber&) = default;
+};
+
 /// The statistical meaning of a series.
 enum class SeriesRole {
     nees,                ///< normalised squared error of one component group, chi-square(dimension)

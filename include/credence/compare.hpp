@@ -77,7 +77,7 @@ struct CompareReport {
 };
 
 /// Compares the arms chosen, in every scenario that has both; scenarios of different files are matched by name. Without
-/// a choice: of one file, every planned arm with its partner (partner_of); of several, each later file's arms with
+/// a choice: of one file, every planned arm with its baseline (baseline_of); of several, each later file's arms with
 /// the first file's of the same name (later - first). Arms of several files are called `STEM:arm`.
 ///
 /// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors, m

@@ -59,7 +59,7 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
 /// Sets holm_p for all columns of all comparisons.
 void correct_together(std::vector<Comparison>& comparisons);
 
-/// Every planned arm against its partner: greedy - fixed of the same estimator, horizon - greedy.
-std::vector<Comparison> planned_against_partners(const Study& study);
+/// Every planned arm against its baseline: greedy - fixed of the same estimator, horizon - greedy.
+std::vector<Comparison> planned_against_baselines(const Study& study);
 
 }  // namespace credence

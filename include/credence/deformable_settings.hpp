@@ -5,6 +5,7 @@
 //
 // Units: lengths in `length_unit` (dm in the reference study), angles in radians; sigma is a standard deviation.
 
+#include <credence/columns.hpp>
 #include <credence/detail/estimator_list.hpp>
 
 #include <limits>
@@ -108,13 +109,6 @@ struct PlannerSettings {
 struct ArmSettings {
     std::vector<Controller> controllers{Controller::fixed, Controller::greedy};
     std::optional<std::vector<Estimator>> estimators;  ///< none: the process's own
-};
-
-/// A published value of one arm, shown with its place in the distribution over the trials.
-struct PublishedNumber {
-    std::string arm;                              ///< such as greedy.kf
-    double value = 0;
-    friend bool operator==(const PublishedNumber&, const PublishedNumber&) = default;
 };
 
 struct PublishedSettings {

@@ -173,9 +173,8 @@ std::vector<double> figure_values(const ScenarioResults& results, const ArmResul
 /// The arms that a name denotes: the one of that name, or all of that controller.
 std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const std::string& name);
 
-/// The arm that a planned one is compared with: `fixed.X` beside `greedy.X`; beside `horizon.X` the greedy one, or the
-/// fixed one. nullptr where there is none.
-const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& arm);
+/// The arm that this one of the scenario is compared with; nullptr where there is none.
+const ArmResults* baseline_of(const ScenarioResults& results, const ArmResults& arm);
 
 /// Trials in block `blocks[place]`.
 std::int64_t block_rows(const ScenarioResults& results, std::size_t place);

@@ -6,6 +6,7 @@
 #include <credence/sweep.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Scenario {
     std::vector<Component> components;   ///< of the state, [n]
     std::vector<ComponentGroup> groups;  ///< that are judged by themselves, the whole state (`all`) first
     std::vector<std::string> arms;       ///< `controller.estimator`, in the order in which they run
+    std::vector<std::string> baselines;  ///< by arm: the arm that it is compared with; empty: none
     SweepPoint sweep{};                  ///< its place in a grid; empty: in none
     /// The settings as its world's own type: of a scenario that its world made, so that they are read from text once.
     std::shared_ptr<const void> own_settings{};
@@ -55,6 +57,22 @@ const Setting* find_setting(const std::vector<Setting>& settings, const std::str
 
 /// A key's value; empty where the scenario has no such key.
 std::string value_of(const Scenario& scenario, const std::string& key);
+
+// Keys and sections that have the same meaning in every world. The worlds of users may have them too.
+
+/// The value of a key `published.COLUMN`, such as `fixed.kf 0.12, greedy.kf 0.1`. Throws InputError where one is no
+/// number.
+std::vector<PublishedNumber> parse_published(const std::string& key, const std::string& value);
+std::string published_text(const std::vector<PublishedNumber>& numbers);
+/// Those of a column; nothing where the scenario has no such key.
+std::optional<std::vector<PublishedNumber>> published_for(const Scenario& scenario, const std::string& column);
+
+/// Whether a key describes the scenario only, so that no number of a study depends on it: its title, published numbers.
+bool is_description(const std::string& key);
+
+/// Whether scenarios that differ in the key have the same truth and the same draws: descriptions and names, and the
+/// sections filter, control, planner and arms.
+bool keeps_the_draws(const std::string& key);
 
 /// A key in which two scenarios differ, with both values; empty where one of them has no such key.
 struct KeyDifference {

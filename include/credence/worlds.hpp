@@ -57,6 +57,10 @@ public:
     virtual std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const = 0;
 };
 
+/// The arm that each of these is compared with: `fixed.X` beside `greedy.X`; beside `horizon.X` the greedy one, or the
+/// fixed one. Empty where there is none.
+std::vector<std::string> baselines_among(const std::vector<std::string>& arms);
+
 /// Adds a world to those that there are. Not thread-safe: before anything else. Throws InputError where there is one of
 /// that name.
 void add_world(std::unique_ptr<const World> world);
@@ -75,5 +79,10 @@ std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario);
 
 /// Runs one trial of an arm of the scenario again. Throws like world_of.
 Trajectory replay_trial(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed, std::int64_t trial);
+
+struct NoiseRecord;
+/// Runs every arm of the scenario on recorded noise, `file` its name. Throws InputError where the scenario is of a world
+/// that knows no such noise, or the record does not cover it.
+std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file);
 
 }  // namespace credence

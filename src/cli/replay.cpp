@@ -3,7 +3,7 @@
 #include "cli/version.hpp"
 
 #include <credence/error.hpp>
-#include "worlds/deformable/deformable.hpp"
+#include <credence/ini.hpp>
 #include <credence/store.hpp>
 #include <credence/text.hpp>
 

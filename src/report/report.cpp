@@ -2,12 +2,10 @@
 
 #include "statistics/bootstrap.hpp"
 #include <credence/error.hpp>
-#include <credence/slam_columns.hpp>
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"
 #include "report/words.hpp"
-#include "worlds/values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +13,6 @@
 namespace credence {
 
 namespace {
-
-/// The value of `published.COLUMN`; nothing where the scenario has no such key.
-std::optional<std::vector<PublishedNumber>> published_of(const Scenario& scenario, const std::string& column) {
-    const std::string key = "published." + column;
-    const Setting* published = find_setting(scenario.settings, key);
-    if (published == nullptr) return std::nullopt;
-    return parse_published(key, published->value);
-}
 
 /// `values` may be null: then the place is unknown.
 std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedNumber>>& published,
@@ -41,7 +31,7 @@ ColumnReport aggregate_report(const ScenarioResults& results, const ArmResults& 
     const Column& column = results.columns[c];
     ColumnReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
                         std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
-                        place_of(published_of(results.scenario, column.name), arm.name, {}), std::nullopt};
+                        place_of(published_for(results.scenario, column.name), arm.name, {}), std::nullopt};
     if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
     return report;
 }
@@ -51,7 +41,7 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
     const Column& column = results.columns[c];
     if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
     std::vector<double> values = figure_values(results, arm, c);
-    const auto published = published_of(results.scenario, column.name);
+    const auto published = published_for(results.scenario, column.name);
     ColumnReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
                         place_of(published, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
@@ -85,7 +75,7 @@ Report make_report(const Study& study, const Limits& limits) {
     report.complete = study.complete;
     report.keep = keep_of(study);
     report.limits = limits;
-    report.pairs = planned_against_partners(study);
+    report.pairs = planned_against_baselines(study);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         const WithTotals with_totals(results);
@@ -98,7 +88,6 @@ Report make_report(const Study& study, const Limits& limits) {
 Report make_record_report(Record record, const std::string& path, const Limits& limits) {
     ScenarioResults& results = record.results;
     ArmResults& arm = results.arms.front();
-    std::fill(arm.columns[column_unseen].begin(), arm.columns[column_unseen].end(), nan);  // not in a record
     Report report;
     report.source = "record " + printable(path, path.size());
     report.limits = limits;

@@ -1,6 +1,7 @@
 #include <credence/sweep.hpp>
 
 #include <credence/error.hpp>
+#include <credence/scenario.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>
@@ -18,9 +19,9 @@ InputError invalid_sweep(const std::string& text, const std::string& why, const 
 
 /// Names, units and what is shown beside the series make no other study; another world has other keys.
 bool can_be_swept(const std::string& key) {
-    for (const char* name : {"scenario.name", "scenario.title", "scenario.length_unit", "scenario.world"})
+    for (const char* name : {"scenario.name", "scenario.length_unit", "scenario.world"})
         if (key == name) return false;
-    return !key.starts_with("published.") && !key.starts_with("sweep.");
+    return !is_description(key) && !key.starts_with("sweep.");
 }
 
 /// A value with every number in it as `to_text` writes it: 1e-2 is 0.01, so that the same values have the same text.

@@ -70,14 +70,11 @@ std::vector<const ArmResults*> arms_meant(const ScenarioResults& results, const 
     return meant;
 }
 
-const ArmResults* partner_of(const ScenarioResults& results, const ArmResults& arm) {
-    const std::string controller = controller_of(arm.name), rest = arm.name.substr(controller.size());
-    std::vector<std::string> simpler;
-    if (controller == "horizon") simpler = {"greedy", "fixed"};
-    if (controller == "greedy") simpler = {"fixed"};
-    for (const std::string& other : simpler)
-        for (const ArmResults& candidate : results.arms)
-            if (candidate.name == other + rest) return &candidate;
+const ArmResults* baseline_of(const ScenarioResults& results, const ArmResults& arm) {
+    const std::vector<std::string>& baselines = results.scenario.baselines;
+    const auto place = static_cast<std::size_t>(&arm - results.arms.data());
+    for (const ArmResults& candidate : results.arms)
+        if (place < baselines.size() && candidate.name == baselines[place]) return &candidate;
     return nullptr;
 }
 

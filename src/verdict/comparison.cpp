@@ -70,13 +70,13 @@ void correct_together(std::vector<Comparison>& comparisons) {
         for (ComparedColumn& column : comparison.columns) column.holm_p = *next++;
 }
 
-std::vector<Comparison> planned_against_partners(const Study& study) {
+std::vector<Comparison> planned_against_baselines(const Study& study) {
     std::vector<Comparison> comparisons;
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms)
-            if (const ArmResults* partner = partner_of(results, arm))
+            if (const ArmResults* baseline = baseline_of(results, arm))
                 comparisons.push_back(
-                    compare_arms({results, arm, arm.name}, {results, *partner, partner->name}, study.root_seed));
+                    compare_arms({results, arm, arm.name}, {results, *baseline, baseline->name}, study.root_seed));
     correct_together(comparisons);
     return comparisons;
 }

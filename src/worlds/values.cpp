@@ -152,22 +152,6 @@ std::string turns_text(const std::optional<std::vector<double>>& turns) {
     return joined(parts);
 }
 
-std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value) {
-    std::vector<PublishedNumber> numbers;
-    for (const std::string& part : split_list(value)) {
-        const std::size_t space = part.find_first_of(" \t");
-        const std::string number = space == std::string::npos ? "" : trimmed(part.substr(space));
-        numbers.push_back({part.substr(0, space), parse_real(name, number, between(-largest_value, largest_value))});
-    }
-    return numbers;
-}
-
-std::string published_text(const std::vector<PublishedNumber>& numbers) {
-    std::vector<std::string> parts;
-    for (const PublishedNumber& number : numbers) parts.push_back(number.arm + " " + to_text(number.value));
-    return joined(parts);
-}
-
 const std::vector<std::string>& controller_names() {
     static const std::vector<std::string> names{"fixed", "greedy", "horizon"};
     return names;

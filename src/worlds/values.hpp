@@ -37,8 +37,6 @@ std::string graph_text(const EdgeSettings& edges);
 std::optional<double> parse_truncate(const std::string& value);
 std::optional<std::vector<double>> parse_turns(const std::string& value);
 std::string turns_text(const std::optional<std::vector<double>>& turns);
-std::vector<PublishedNumber> parse_published(const std::string& name, const std::string& value);
-std::string published_text(const std::vector<PublishedNumber>& numbers);
 
 const std::vector<std::string>& controller_names();
 const std::vector<std::string>& estimator_names();

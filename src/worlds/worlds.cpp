@@ -5,6 +5,8 @@
 #include "worlds/landmarks/landmarks.hpp"
 #include <credence/text.hpp>
 
+#include <algorithm>
+
 namespace credence {
 
 namespace {
@@ -20,6 +22,22 @@ std::vector<std::unique_ptr<const World>>& registry() {
 }
 
 }  // namespace
+
+std::vector<std::string> baselines_among(const std::vector<std::string>& arms) {
+    std::vector<std::string> baselines;
+    for (const std::string& arm : arms) {
+        const std::string controller = controller_of(arm), rest = arm.substr(controller.size());
+        std::vector<std::string> simpler;
+        if (controller == "horizon") simpler = {"greedy", "fixed"};
+        if (controller == "greedy") simpler = {"fixed"};
+        const auto runs = [&](const std::string& other) {
+            return std::find(arms.begin(), arms.end(), other + rest) != arms.end();
+        };
+        const auto found = std::find_if(simpler.begin(), simpler.end(), runs);
+        baselines.push_back(found == simpler.end() ? "" : *found + rest);
+    }
+    return baselines;
+}
 
 void add_world(std::unique_ptr<const World> world) {
     if (find_world(world->name()))

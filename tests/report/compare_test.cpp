@@ -57,7 +57,7 @@ TEST_CASE("compare: every number is computed from the columns") {
         }
     }
     // The same to the last bit as in a report beside the arms.
-    const std::vector<Comparison> reported = planned_against_partners(study);
+    const std::vector<Comparison> reported = planned_against_baselines(study);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < 6; ++c) {
             CHECK(reported[s].columns[c].paired.bootstrap95.low ==

@@ -49,10 +49,11 @@ public:
     /// Throws InputError where they contradict each other.
     Scenario scenario_of(const Settings& settings) const {
         const Settings resolved = world_.resolved(settings);
-        Scenario scenario{name(), resolved.name, resolved.title, resolved.length_unit, resolved.poses, {}, {}, {}, {}};
+        Scenario scenario{name(), resolved.name, resolved.title, resolved.length_unit, resolved.poses, {}, {}, {}, {}, {}};
         if (name() != first_world) scenario.settings.push_back({world_key, name()});
         for (const KeyOf<Settings>& key : world_.keys()) scenario.settings.push_back({key.name, key.get(resolved)});
         world_.describe(resolved, scenario);
+        scenario.baselines = baselines_among(scenario.arms);
         scenario.own_settings = std::make_shared<const Settings>(resolved);
         return scenario;
     }

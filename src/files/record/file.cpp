@@ -1,6 +1,5 @@
 #include "files/record/file.hpp"
 
-#include <credence/deformable_settings.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>
@@ -16,7 +15,7 @@ using hdf5::extents_text;
 using hdf5::Handle;
 using hdf5::RealDataset;
 
-constexpr hsize_t largest_state = 1000, largest_rows = 2000, largest_steps = largest_pose_count - 1;
+constexpr hsize_t largest_state = 1000, largest_rows = 2000, largest_steps = 99999;
 
 /// Whether `matrices` are square ones of the `vectors`.
 bool are_squares(const Extents& matrices, Extents vectors) {

@@ -1,6 +1,5 @@
 // The empty results of a record: the same declarations as a run has.
 
-#include <credence/slam_columns.hpp>
 #include <credence/text.hpp>
 
 #include "files/record/results.hpp"
@@ -22,19 +21,17 @@ std::string scenario_name(const std::string& path) {
     return name.empty() ? "record" : name;
 }
 
+/// In the order of RecordColumn.
 std::vector<Column> record_columns(const RecordShape& shape) {
-    std::vector<Column> columns = trial_columns(DeformableSettings());
-    const auto describe = [&](ColumnIndex column, const std::string& long_name, const std::string& unit) {
-        columns[column].long_name = long_name;
-        columns[column].unit = unit;
-    };
-    const std::string unit = "unit of error squared";
-    const bool has_pose = pose_block(shape) != 0;
-    describe(column_trace_P, "trace of the covariance at the last step of the trial", unit);
-    describe(column_unseen, "not known of a record", "1");
-    describe(column_pose_error, std::string("squared error of ") + (has_pose ? "the block pose" : "the whole state") +
-                                    ", summed over the steps", unit);
-    describe(column_mean_trace_P, "mean over the steps of the trace of the covariance", unit);
+    const std::string unit = "unit of error squared", of = pose_block(shape) != 0 ? "the group pose" : "the whole state";
+    std::vector<Column> columns{
+        {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
+        {"unseen", "not known of a record", "1", ColumnType::integer, nan},
+        {"pose_error", "squared error of " + of + ", summed over the steps", unit, ColumnType::real, nan},
+        {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
+        {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
+        {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan}};
+    for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }
 

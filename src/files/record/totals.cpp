@@ -2,7 +2,6 @@
 
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
-#include <credence/slam_columns.hpp>
 
 #include "files/record/results.hpp"
 #include "base/nan.hpp"
@@ -116,7 +115,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {
-    double row[column_count];
+    double row[record_column_count];
     std::fill(std::begin(row), std::end(row), nan);
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;
@@ -124,17 +123,16 @@ void RecordTotals::add_columns(std::int64_t trial) {
         return sum;
     };
     const double count = static_cast<double>(present_.size());
-    row[column_status] = static_cast<double>(status_);
-    row[column_status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
-    row[column_unseen] = -1;
+    row[RecordColumn::status] = static_cast<double>(status_);
+    row[RecordColumn::status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     if (!fill_failed(record_.results.columns, row)) {
-        row[column_trace_P] = series(all_series_.variance, present_.back());
-        row[column_mean_trace_P] = over_steps(all_series_.variance) / count;
-        row[column_pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
-        row[column_nees_ratio] = over_steps(0) / count / shape_.n;
-        row[column_nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
+        row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
+        row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count;
+        row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
+        row[RecordColumn::nees_ratio] = over_steps(0) / count / shape_.n;
+        row[RecordColumn::nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
-    for (std::size_t c = 0; c < column_count; ++c) arm().columns[c][size(trial)] = row[c];
+    for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
 }
 
 void RecordTotals::add_totals() {

@@ -101,6 +101,7 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
     if (scenario.arms.empty() || !names_something(scenario.name) ||
         !std::all_of(scenario.arms.begin(), scenario.arms.end(), names_arm))
         throw Error(hdf5::place_of(group), "is no scenario with arms");
+    scenario.baselines = baselines_among(scenario.arms);
     const Handle arm = hdf5::open_group(group, scenario.arms.front());
     const hdf5::Dataset steps(arm, "step");
     if (steps.extents().size() != 1 || steps.extents()[0] < 1 || steps.extents()[0] >= hsize_t{1} << 24)

@@ -53,11 +53,11 @@ public:
 
     std::vector<ChosenPair> take() { return std::move(pairs_); }
 
-    void planned_against_partners() {
+    void planned_against_baselines() {
         for (const ScenarioResults& results : files_[0].study.scenarios) {
             const std::size_t before = pairs_.size();
             for (const ArmResults& arm : results.arms)
-                if (const ArmResults* partner = partner_of(results, arm)) add(0, results, arm, 0, results, *partner);
+                if (const ArmResults* baseline = baseline_of(results, arm)) add(0, results, arm, 0, results, *baseline);
             if (pairs_.size() == before) leave_out(results, "no planned arm has one to compare with");
         }
         if (pairs_.empty())
@@ -158,7 +158,7 @@ std::vector<ChosenPair> chosen_pairs(const std::vector<StudyFile>& files, const 
     if (choice)
         chooser.chosen(*choice);
     else if (files.size() == 1)
-        chooser.planned_against_partners();
+        chooser.planned_against_baselines();
     else
         for (std::size_t later = 1; later < files.size(); ++later) chooser.same_arms(later);
     return chooser.take();

@@ -6,20 +6,6 @@
 
 namespace credence {
 
-namespace {
-
-/// Whether scenarios of different files may differ in a key and still have the same truth and the same draws. Every
-/// other key changes the world.
-bool may_differ(const std::string& key) {
-    if (key == "scenario.name" || key == "scenario.title") return true;
-    const std::string section = key.substr(0, key.find('.'));
-    for (const char* free : {"filter", "control", "planner", "arms", "published"})
-        if (section == free) return true;
-    return false;
-}
-
-}  // namespace
-
 void check_same_draws(const std::vector<StudyFile>& files) {
     const StudyFile& first = files.front();
     for (const StudyFile& file : files)
@@ -37,7 +23,7 @@ void check_same_world(const ChosenPair& pair) {
                              "with --keep trials, or compare arms of one file.");
     const Scenario &a = pair.a.results.scenario, &b = pair.b.results.scenario;
     for (const KeyDifference& difference : key_differences(a, b))
-        if (!may_differ(difference.key))
+        if (!keeps_the_draws(difference.key))
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
                              a.name + " is another world: " + difference.key + " is " + printable(difference.a) +
                              " in " + pair.file_a.path + " and " + printable(difference.b) + " in " + pair.file_b.path +
@@ -46,9 +32,7 @@ void check_same_world(const ChosenPair& pair) {
 
 std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b) {
     std::vector<KeyDifference> differences = key_differences(a, b);
-    std::erase_if(differences, [](const KeyDifference& difference) {
-        return difference.key == "scenario.title" || difference.key.starts_with("published.");
-    });
+    std::erase_if(differences, [](const KeyDifference& difference) { return is_description(difference.key); });
     return differences;
 }
 

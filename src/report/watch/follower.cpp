@@ -23,7 +23,7 @@ std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const Watch
         const ArmSums& of_arm = a < sums.arms.size() ? sums.arms[a] : nothing;
         WatchedArm arm{results.arms[a].name, of_arm.failed, of_arm.diverged, {}, {}, of_arm.difference.moments()};
         for (const RunningMoments& column : of_arm.columns) arm.columns.push_back(column.moments());
-        if (const ArmResults* fixed = partner_of(results, results.arms[a])) arm.other = fixed->name;
+        if (const ArmResults* fixed = baseline_of(results, results.arms[a])) arm.other = fixed->name;
         arms.push_back(std::move(arm));
     }
     return arms;

@@ -77,9 +77,9 @@ WatchedSums sums_of(const ScenarioResults& results, std::int64_t trials, const C
         }
     }
     for (std::size_t a = 0; a < results.arms.size(); ++a)
-        if (const ArmResults* fixed = partner_of(results, results.arms[a])) {
-            const auto partner = static_cast<std::size_t>(fixed - results.arms.data());
-            sums.arms[a].difference = RunningMoments::of(paired_differences(trace[a], trace[partner]));
+        if (const ArmResults* fixed = baseline_of(results, results.arms[a])) {
+            const auto baseline = static_cast<std::size_t>(fixed - results.arms.data());
+            sums.arms[a].difference = RunningMoments::of(paired_differences(trace[a], trace[baseline]));
         }
     return sums;
 }
@@ -92,7 +92,7 @@ WatchedSums sums_of_aggregates(const ScenarioResults& results) {
         sums.arms[a].diverged = arm.aggregates.statuses[static_cast<std::size_t>(Status::diverged)];
         for (const std::size_t index : watched_columns(results.columns))
             sums.arms[a].columns.push_back(running(arm.aggregates.columns[index]));
-        if (const ArmResults* fixed = partner_of(results, arm))
+        if (const ArmResults* fixed = baseline_of(results, arm))
             sums.arms[a].difference = running(aggregate_differences(results, arm, *fixed, 0).difference);
     }
     return sums;

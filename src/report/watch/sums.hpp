@@ -13,7 +13,7 @@ namespace credence {
 
 struct ArmSums {
     std::vector<RunningMoments> columns;  ///< of the watched columns
-    RunningMoments difference;            ///< trace_P - that of the fixed partner, where there is one
+    RunningMoments difference;            ///< trace_P - that of its baseline, where there is one
     std::int64_t failed = 0, diverged = 0;
 };
 

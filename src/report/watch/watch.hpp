@@ -22,7 +22,7 @@ struct WatchedArm {
     std::string name;
     std::int64_t failed = 0, diverged = 0;  ///< trials
     std::vector<Moments> columns;           ///< of the watched columns
-    std::string other;                      ///< the arm's partner, such as `fixed.X` beside `greedy.X`; empty: none
+    std::string other;                      ///< the arm's baseline, such as `fixed.X` beside `greedy.X`; empty: none
     Moments difference;                     ///< of trace_P of this arm - that of `other`, by trial, where there is one
 };
 

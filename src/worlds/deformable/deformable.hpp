@@ -41,10 +41,6 @@ Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t ro
 /// Throws InputError where the noise record is too short, too narrow or lacks draws of the scenario. `file` names it.
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);
 
-/// Every arm of the scenario on recorded noise. Throws InputError like check_covers, and where the scenario is of another
-/// world.
-std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file);
-
 /// A block of a problem's trials, on a target [block.hpp].
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials,
                 const Target& target = best_target());

@@ -127,12 +127,12 @@ void check_arms(const DeformableSettings& s) {
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);
-    for (const auto& [key, all_series] :
+    for (const auto& [key, numbers] :
          {std::pair{"published.trace_P", &s.published.trace_P}, std::pair{"published.unseen", &s.published.unseen},
           std::pair{"published.pose_error", &s.published.pose_error}})
-        for (const PublishedNumber& series : *all_series)
-            if (std::find(names.begin(), names.end(), series.arm) == names.end())
-                throw invalid_value(key, published_text(*all_series), "'" + series.arm + "' is not an arm",
+        for (const PublishedNumber& number : *numbers)
+            if (std::find(names.begin(), names.end(), number.arm) == names.end())
+                throw invalid_value(key, published_text(*numbers), "'" + number.arm + "' is not an arm",
                                     "Name arms such as " + joined(names));
 }
 
