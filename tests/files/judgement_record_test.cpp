@@ -135,7 +135,7 @@ TEST_CASE("record: Gaussian errors and innovations with groups, as h5py writes t
           "trace_P_step variance_pose variance_feature_1 standardised_error_x0 standardised_error_x1 "
           "standardised_error_x2 standardised_error_x3 standardised_error_x4 ");
     CHECK(record.results.columns[column_pose_error].long_name ==
-          "squared error of the block pose, summed over the steps");
+          "squared error of the group pose, summed over the steps");
     CHECK(record.results.arms.front().errors.size() == 60 * 6 * 5);
 }
 
