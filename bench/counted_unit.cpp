@@ -3,7 +3,7 @@
 
 #include "counted_unit.hpp"
 
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 
 #include "counted.hpp"
 

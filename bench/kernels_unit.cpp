@@ -1,6 +1,6 @@
 // One instruction set's kernels. As in the engine's targets, no symbol may be emitted outside the namespace.
 
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 #include "slam/trial/trial.hpp"
 
 #include "kernels.hpp"

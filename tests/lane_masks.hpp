@@ -2,7 +2,7 @@
 // Masks of packs beside the same comparisons of plain doubles. Included by a test and, compiled for AVX-512, by
 // lane_masks_v4.cpp.
 
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 
 namespace credence {
 inline namespace CREDENCE_TARGET {

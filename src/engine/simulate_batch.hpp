@@ -4,7 +4,7 @@
 
 #include <credence/detail/batch.hpp>
 #include "engine/detail.hpp"
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 
 namespace credence {
 inline namespace CREDENCE_TARGET {

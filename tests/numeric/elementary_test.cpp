@@ -2,6 +2,7 @@
 // (ulp) of the correctly rounded double.
 
 #include "catch.hpp"
+#include "ulps.hpp"
 
 #include <credence/detail/elementary.hpp>
 
@@ -18,15 +19,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr long double exact_pi = 3.14159265358979323846264338327950288L;
 constexpr long double rest_of_pi = -5.0165576126683320235573270803307570314e-20L;  // pi - exact_pi
 
-/// |value - exact| in ulp of a double of that size; in units of 2^-1074 below the normal numbers.
-double ulps(double value, long double exact) {
-    int exponent = 0;
-    std::frexp(exact, &exponent);
-    const long double ulp = std::ldexp(1.0L, std::max(exponent - 53, -1074));
-    return static_cast<double>(std::abs(static_cast<long double>(value) - exact) / ulp);
-}
-
-double log_error(double x) { return ulps(credence::log(x), std::log(static_cast<long double>(x))); }
+double log_error(double x) { return ulps(log_of_normal(x), std::log(static_cast<long double>(x))); }
 
 /// The larger of the errors of cosine and sine.
 double rotation_error(double angle) {
@@ -68,17 +61,17 @@ TEST_CASE("elementary: log is within 1.5 ulp where its pieces meet") {
             REQUIRE(log_error(x) < 1.5);
         }
     }
-    CHECK(credence::log(1.0) == 0.0);
+    CHECK(log_of_normal(1.0) == 0.0);
     CHECK(log_error(std::numeric_limits<double>::min()) < 1.5);
     CHECK(log_error(std::numeric_limits<double>::max()) < 1.5);
 }
 
 TEST_CASE("elementary: log never rises above its neighbour by more than its error") {
     // Monotone to within the 1.5 ulp on either side.
-    double x = 0.7, before = credence::log(x);
+    double x = 0.7, before = log_of_normal(x);
     for (int i = 0; i < 10000; ++i) {
         x = std::nextafter(x, 1.0);
-        const double now = credence::log(x);
+        const double now = log_of_normal(x);
         REQUIRE(now >= before - 3 * 0x1p-54);
         before = now;
     }

@@ -3,7 +3,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 #include "slam/trial/trial.hpp"
 
 #include <bit>

@@ -90,7 +90,7 @@ template <class Real>
 Vector2<Real> box_muller(const PhiloxBlock<Bits<Real>>& random) {
     const Real u1 = Real(2) - in_one_to_two<Real>(random.word[1], random.word[0]);
     const Real u2 = in_one_to_two<Real>(random.word[3], random.word[2]) - Real(1);
-    const Real radius = sqrt(Real(-2) * log(u1));
+    const Real radius = sqrt(Real(-2) * log_of_normal(u1));
     const Rotation<Real> angle = rotation_of_turns(u2);
     return {radius * angle.cosine, radius * angle.sine};
 }

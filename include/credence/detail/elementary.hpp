@@ -15,7 +15,7 @@ inline constexpr double pi = 3.14159265358979323846;
 /// x = m 2^e with sqrt(1/2) <= m < sqrt(2); log m = 2 atanh(f), f = (m - 1)/(m + 1), by its series in s = f^2 <= 0.0295
 /// (11 terms leave 1e-18 of it); e log 2 is added in two parts.
 template <class Real>
-Real log(Real x) {
+Real log_of_normal(Real x) {
     constexpr double ln2_high = 6.93147180369123816490e-01;  // 32 bits, so that e ln2_high is exact
     constexpr double ln2_low = 1.90821492927058770002e-10;
     constexpr std::uint64_t half_root = 0x3fe6a09e667f3bcd;  // bits of sqrt(1/2)

@@ -50,6 +50,7 @@ inline std::uint64_t widening_product(std::uint64_t a, std::uint32_t b) {
 inline std::uint64_t exclusive_or(std::uint64_t a, std::uint64_t b, std::uint64_t c) { return a ^ b ^ c; }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
 inline bool any(bool mask) { return mask; }
+inline bool all(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }
 inline bool either(bool a, bool b) { return a || b; }
 inline bool negated(bool mask) { return !mask; }

@@ -9,7 +9,7 @@
 // below, for some twenty operations each. Candidates whose bound lies above an exact cost that is already known are
 // discarded.
 
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 #include "slam/planning/turned_trace.hpp"
 
 namespace credence {

@@ -3,7 +3,7 @@
 // the world; so trace(T A T') is a polynomial in a whose coefficients are the same for all candidates.
 
 #include "slam/planning/controller.hpp"
-#include "numeric/lane.hpp"
+#include <credence/detail/lane.hpp>
 
 namespace credence {
 inline namespace CREDENCE_TARGET {

@@ -1,8 +1,12 @@
 #pragma once
-// W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane giving the same
-// bits as a plain double. Only this file uses intrinsics; other code uses the compiler's vector extension.
+// Module numeric: W trials at once. Lane<W> is a Real: a pack of W doubles with the operations of real.hpp, each lane
+// giving the same bits as a plain double. Only this file uses intrinsics; other code uses the compiler's vector
+// extension.
 
 #include <credence/detail/real.hpp>
+
+#include <concepts>
+#include <type_traits>
 
 #if defined(__AVX512F__) || defined(__AVX2__)
 #include <immintrin.h>
@@ -18,17 +22,30 @@ struct LaneTypes {
     typedef std::uint64_t Unsigned __attribute__((vector_size(8 * W)));
 };
 
+/// What a branch on a mask or a Real gives: a sentence from the compiler.
+template <std::same_as<bool> Bool>
+Bool branch() {
+    static_assert(!std::same_as<Bool, bool>,
+                  "a Real has several trials, which cannot take different branches: write select(mask, yes, no); both, "
+                  "either and negated for &&, || and !; any(mask) or all(mask) where one answer for all lanes is meant");
+    return {};
+}
+
 /// One bool per lane: all bits set, or none; with AVX-512 a bit each.
 template <int W>
 struct LaneMask {
     using M = typename LaneTypes<W>::Integers;
     M m;
+    template <std::same_as<bool> Bool>
+    explicit operator Bool() const { return branch<Bool>(); }
 };
 #if defined(__AVX512F__)
 template <>
 struct LaneMask<8> {
     using M = __mmask8;
     M m;
+    template <std::same_as<bool> Bool>
+    explicit operator Bool() const { return branch<Bool>(); }
 };
 #endif
 
@@ -64,14 +81,22 @@ struct Lane {
     V v;
     Lane() = default;
     Lane(V raw) : v(raw) {}
-    explicit Lane(double one) : v(one - V{}) {}  // unlike one + V{}, exact for -0: the compiler removes the subtraction
-    explicit Lane(int one) : Lane(static_cast<double>(one)) {}
+    /// The same number in all lanes. (Unlike one + V{}, the difference is exact for -0; the compiler removes it.)
+    template <class Number>
+        requires std::is_arithmetic_v<Number>
+    Lane(Number one) : v(static_cast<double>(one) - V{}) {}
+    template <std::same_as<bool> Bool>
+    explicit operator Bool() const { return branch<Bool>(); }
 
     friend Lane operator+(Lane a, Lane b) { return a.v + b.v; }
     friend Lane operator-(Lane a, Lane b) { return a.v - b.v; }
     friend Lane operator*(Lane a, Lane b) { return a.v * b.v; }
     friend Lane operator/(Lane a, Lane b) { return a.v / b.v; }
     friend Lane operator-(Lane a) { return -a.v; }
+    Lane& operator+=(Lane b) { return *this = *this + b; }
+    Lane& operator-=(Lane b) { return *this = *this - b; }
+    Lane& operator*=(Lane b) { return *this = *this * b; }
+    Lane& operator/=(Lane b) { return *this = *this / b; }
     friend LaneMask<W> operator<(Lane a, Lane b) { return b > a; }
     friend LaneMask<W> operator<=(Lane a, Lane b) { return b >= a; }
     friend LaneMask<W> operator>(Lane a, Lane b) {
@@ -95,6 +120,7 @@ struct Lane {
 #endif
         return {a.v == b.v};
     }
+    friend LaneMask<W> operator!=(Lane a, Lane b) { return negated(a == b); }
 };
 
 /// Number of trials in a Real.
@@ -203,6 +229,8 @@ int lane_count(LaneMask<W> mask) {
 
 template <int W>
 bool any(LaneMask<W> mask) { return lane_bits(mask) != 0; }
+template <int W>
+bool all(LaneMask<W> mask) { return lane_bits(mask) == (1u << W) - 1; }
 
 template <int W>
 Lane<W> select(LaneMask<W> mask, Lane<W> yes, Lane<W> no) {
