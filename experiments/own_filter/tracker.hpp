@@ -41,34 +41,35 @@ struct Tracker {
         return {{"measurements", "steps with a measurement", "1", credence::ColumnType::integer, -1}};
     }
 
-    static void run(const Settings& s, credence::OwnTrial& trial) {
+    template <class Real>
+    static void run(const Settings& s, credence::OwnTrialOf<Real>& trial) {
         // Sources of draws: any numbers from 0 to 15, each used for one purpose only.
         enum Source { initial_position, initial_velocity, acceleration, measurement, detection };
+        using Position = Eigen::Matrix<Real, 2, 1>;
+        using State = Eigen::Matrix<Real, 4, 1>;
         const Model model(s);
         const double believed = trial.arm() == 0 ? 1 : 0.2;
 
-        Eigen::Vector4d x;
+        State x;
         x << 50 * trial.normal(initial_position, 0), 5 * trial.normal(initial_velocity, 0);
-        Eigen::Vector4d estimate = Eigen::Vector4d::Zero();
-        Eigen::Matrix4d P = Eigen::Vector4d(2500, 2500, 25, 25).asDiagonal();
-        int measurements = 0;
+        State estimate = State::Zero();
+        Eigen::Matrix<Real, 4, 4> P = State(2500, 2500, 25, 25).asDiagonal();
+        Real measurements = 0;
         for (int k = 1; k < trial.poses(); ++k) {
             x = model.F * x + model.G * (s.acceleration * trial.normal(acceleration, k));
 
             estimate = model.F * estimate;
             P = model.F * P * model.F.transpose() + believed * model.Q;
-            if (trial.uniform(detection, k) >= s.detection) {
-                trial.step(estimate - x, P);
-                continue;
-            }
-            const Eigen::Vector2d z = x.head<2>() + s.sigma * trial.normal(measurement, k);
-            const Eigen::Vector2d innovation = z - estimate.head<2>();
-            const Eigen::Matrix2d S = P.topLeftCorner<2, 2>() + model.R;
-            const Eigen::Matrix<double, 4, 2> K = P.leftCols<2>() * S.inverse();
+            const Position z = x.template head<2>() + s.sigma * trial.normal(measurement, k);
+            const Position innovation = z - estimate.template head<2>();
+            const Eigen::Matrix<Real, 2, 2> S = P.template topLeftCorner<2, 2>() + model.R;
+            // Where there is no measurement, a gain of 0 leaves the belief as it is.
+            const auto seen = trial.uniform(detection, k) < s.detection;
+            const Eigen::Matrix<Real, 4, 2> K = credence::select(seen, P.template leftCols<2>() * S.inverse(), 0);
             estimate += K * innovation;
             P -= K * S * K.transpose();
-            trial.step(estimate - x, P, innovation, S);
-            ++measurements;
+            trial.step(estimate - x, P, innovation, S, seen);
+            measurements += credence::select(seen, Real(1), Real(0));
         }
         trial.set(0, measurements);
     }
@@ -88,3 +89,5 @@ private:
         }
     };
 };
+
+CREDENCE_WORLD(Tracker);

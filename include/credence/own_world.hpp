@@ -23,6 +23,8 @@
 //   static void W::run(const Settings&, OwnTrial& trial)
 //       one trial under trial.arm(): the truth, the measurements, the filter; trial.step(...) after each step. All
 //       randomness comes from trial.normal and trial.uniform; the same key is the same draw under every arm.
+//   or template <class Real> static void W::run(const Settings&, OwnTrialOf<Real>& trial)
+//       the same for several trials at once, see own_lanes.hpp.
 // and, if it has use for them,
 //   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
@@ -32,6 +34,7 @@
 // series are the same bits on one machine for any number of threads; over machines they are so where its own
 // arithmetic is.
 
+#include <credence/detail/lanes_of.hpp>
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
 #include <credence/own_keys.hpp>
@@ -41,6 +44,12 @@
 #include <utility>
 
 namespace credence {
+
+/// Whether W's trials can run in lanes: its run is a template on the scalar.
+template <class W>
+concept RunsInLanes = requires(const typename W::Settings settings, OwnTrialOf<double>& trial) {
+    W::template run<double>(settings, trial);
+};
 
 /// Whether W provides what is written above; where not, the compiler says what is missing.
 template <class W>
@@ -60,8 +69,9 @@ constexpr bool meets_the_world_contract() {
                   "a world has static arms(const Settings&), a vector of names");
     static_assert(requires(const Settings s) { { W::innovation_rows(s) } -> std::convertible_to<int>; },
                   "a world has static innovation_rows(const Settings&), a number");
-    static_assert(requires(const Settings s, OwnTrial& trial) { W::run(s, trial); },
-                  "a world has static run(const Settings&, OwnTrial&)");
+    static_assert(RunsInLanes<W> || requires(const Settings s, OwnTrial& trial) { W::run(s, trial); },
+                  "a world has static run(const Settings&, OwnTrial&), or as a template run(const Settings&, "
+                  "OwnTrialOf<Real>&)");
     return true;
 }
 
@@ -96,11 +106,27 @@ public:
         return own_series(scenario, report_of(settings.own));
     }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario& scenario) const {
-        return own_simulation(scenario, report_of(settings.own),
-                              [own = settings.own](OwnTrial& trial) { W::run(own, trial); });
+        const OwnReport report = report_of(settings.own);
+        if constexpr (RunsInLanes<W>) {
+#ifndef CREDENCE_TARGET_OBJECT
+            if (auto in_lanes = lane_simulation(scenario, report, linked_lanes<W>(),
+                                                std::make_shared<const typename W::Settings>(settings.own)))
+                return in_lanes;
+#endif
+        }
+        return own_simulation(scenario, report, [own = settings.own](OwnTrial& trial) { run_one(own, trial); });
     }
 
 private:
+    static void run_one(const typename W::Settings& settings, OwnTrial& trial) {
+        if constexpr (RunsInLanes<W>) {
+            OwnTrialOf<double> one(trial);
+            W::run(settings, one);
+        } else {
+            W::run(settings, trial);
+        }
+    }
+
     static std::vector<ComponentGroup> groups_of(const typename W::Settings& settings) {
         if constexpr (requires { W::groups(settings); })
             return W::groups(settings);

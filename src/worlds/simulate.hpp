@@ -4,6 +4,7 @@
 #include <credence/detail/batch.hpp>
 #include "worlds/landmarks/problem.hpp"
 #include "slam/trial/problem.hpp"
+#include "worlds/own/lanes/view.hpp"
 
 #include <cstddef>
 #include <string>
@@ -21,19 +22,23 @@ struct Target {
     std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
     void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
+    void (*simulate_own)(const OwnView&, const Batch&) = nullptr;
+    std::size_t (*own_workspace_size)(const OwnView&) = nullptr;
 };
 
-/// What a target compiled from src/worlds/deformable/target.cpp and src/worlds/landmarks/target.cpp offers under its name, and its
-/// entry in a list of targets.
+/// What a target compiled from the sources target.cpp of src/worlds offers under its name, and its entry in a list of targets.
 #define CREDENCE_DECLARE_TARGET(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
     std::size_t workspace_size(const ProblemView&, Estimator); \
     void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
     std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
+    void simulate_own(const OwnView&, const Batch&); \
+    std::size_t own_workspace_size(const OwnView&); \
     }
 #define CREDENCE_LIST_TARGET(name, lanes) \
-    Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, name::landmarks_workspace_size}
+    Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, \
+           name::landmarks_workspace_size, name::simulate_own, name::own_workspace_size}
 
 /// Environment variable that names the target to run, for tests.
 inline constexpr const char* force_target_variable = "CREDENCE_FORCE_UNIT";

@@ -1,5 +1,7 @@
 #include "worlds/own/recorder.hpp"
 
+#include <algorithm>
+
 namespace credence {
 
 namespace {
@@ -64,6 +66,18 @@ void RecordingTrial::step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P
         write(whole, rows_, trajectory_.at(innovation_covariance_, pose_));
     }
     trial_.step(error, P, innovation, S);
+}
+
+void add_evaluations(Trajectory& trajectory, const StateSeries& all_series, Innovations innovations,
+                     const std::function<std::vector<double>(std::size_t)>& series) {
+    const auto add = [&](TrajectoryVariable variable, std::size_t place) {
+        const std::vector<double> steps = series(place);
+        std::copy(steps.begin(), steps.end(), trajectory.at(trajectory.add(std::move(variable)), 1));
+    };
+    add({"nees", "normalised estimation error squared of the whole state", "1", {"pose"}}, 0);
+    if (innovations == Innovations::none) return;
+    add({"nis", "normalised innovation squared over all rows", "1", {"pose"}}, all_series.nis);
+    add({"rows", "measurement rows of the update", "1", {"pose"}, TrajectoryNumbers::integer}, all_series.rows);
 }
 
 }  // namespace credence

@@ -3,6 +3,10 @@
 
 #include <credence/own_trial.hpp>
 #include <credence/trajectory.hpp>
+#include "scenario/state_series.hpp"
+
+#include <functional>
+#include <vector>
 
 namespace credence {
 
@@ -31,5 +35,10 @@ private:
     Eigen::Index rows_;  ///< of the innovations that are recorded; 0: none are
     std::size_t error_ = 0, trace_P_ = 0, covariance_ = 0, innovation_ = 0, innovation_covariance_ = 0;
 };
+
+/// Adds NEES, and NIS with its rows where trials have innovations. `series` gives the values of the steps that the trial
+/// took, by place among all series.
+void add_evaluations(Trajectory& trajectory, const StateSeries& all_series, Innovations innovations,
+                     const std::function<std::vector<double>(std::size_t)>& series);
 
 }  // namespace credence

@@ -2,11 +2,13 @@
 
 #include "numeric/chi_square.hpp"
 #include <credence/detail/draws.hpp>
+#include <credence/detail/lane_pack.hpp>
 #include <credence/own_trial.hpp>
 #include "scenario/state_series.hpp"
 
 #include "worlds/own/recorder.hpp"
 #include "worlds/own/step.hpp"
+#include "worlds/own/trial_ends.hpp"
 #include "worlds/own/lag_products.hpp"
 #include "base/nan.hpp"
 
@@ -56,9 +58,6 @@ struct Case {
     }
     std::size_t steps() const { return size(scenario.poses - 1); }
 };
-
-/// A failed trial's way out of the user's function.
-struct TrialEnds {};
 
 /// One trial after the other, judged step by step.
 class EvaluatedTrial : public OwnTrial {
@@ -152,23 +151,10 @@ public:
     }
 
 private:
-    /// The index as a key has it. Two keys that the counter could not tell apart would be one draw, and are refused.
     int key_index(int source, int pose, int index) const {
         const bool usual = ((source & ~(source_count - 1)) | (index & ~0xffff)) == 0 && pose >= 0;
-        return usual ? index : rare_index(source, pose, index);
+        return usual ? index : rare_index(case_.scenario.world, source, pose, index);
     }
-    [[gnu::cold, gnu::noinline]] int rare_index(int source, int pose, int index) const {
-        const auto check = [&](const char* what, int value, int largest) {
-            if (value < 0 || value > largest)
-                throw std::logic_error("world " + case_.scenario.world + ": invalid " + what + " of a draw " +
-                                       std::to_string(value) + " (must be 0 to " + std::to_string(largest) + ").");
-        };
-        check("source", source, source_count - 1);
-        check("pose", pose, std::numeric_limits<int>::max());
-        check("index", index, largest_wide_index);
-        return wide_index(index);
-    }
-
     void require(bool good, const char* otherwise) const {
         if (!good) throw std::logic_error("world " + case_.scenario.world + ": " + otherwise + ".");
     }
@@ -299,23 +285,15 @@ public:
         evaluated.run(root_seed, static_cast<std::uint64_t>(trial));
         evaluated.columns(trajectory.column_values);
         fill_failed(trajectory.columns, trajectory.column_values.data());
-        const StateSeries& at = case_.all_series;
-        add_series(trajectory, evaluated, {"nees", "normalised estimation error squared of the whole state", "1", {"pose"}}, 0);
-        if (!case_.shape.has_innovations()) return trajectory;
-        add_series(trajectory, evaluated, {"nis", "normalised innovation squared over all rows", "1", {"pose"}}, at.nis);
-        add_series(trajectory, evaluated, {"rows", "measurement rows of the update", "1", {"pose"}, TrajectoryNumbers::integer}, at.rows);
+        const Innovations innovations = case_.shape.has_innovations() ? Innovations::given : Innovations::none;
+        add_evaluations(trajectory, case_.all_series, innovations, [&](std::size_t place) {
+            const auto first = evaluated.all_series().begin() + static_cast<std::ptrdiff_t>(place * case_.steps());
+            return std::vector<double>(first, first + static_cast<std::ptrdiff_t>(evaluated.steps_taken()));
+        });
         return trajectory;
     }
 
 private:
-    /// The steps that the trial took.
-    void add_series(Trajectory& trajectory, const EvaluatedTrial& evaluated, TrajectoryVariable variable,
-                    std::size_t series) const {
-        const std::size_t place = trajectory.add(std::move(variable));
-        const double* first = evaluated.all_series().data() + series * case_.steps();
-        std::copy_n(first, evaluated.steps_taken(), trajectory.variables[place].values.begin() + 1);
-    }
-
     Case case_;
     SimulationShape shape_;
 };

@@ -38,6 +38,11 @@ std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, E
 
 }  // namespace
 
+bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
+    Eigen::LLT<Eigen::MatrixXd> any;
+    return factor(matrix, epsilon, any).empty();
+}
+
 StateSeries record_series(const RecordShape& shape) {
     std::vector<Component> components;
     for (int j = 0; j < shape.n; ++j) components.push_back({"x" + std::to_string(j), "1"});

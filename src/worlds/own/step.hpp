@@ -75,6 +75,9 @@ StateSeries record_series(const RecordShape& shape);
 /// Whether every series of a step is a number whose square, over all steps, still adds up.
 bool figures_add_up(const double* all_series, std::size_t count);
 
+/// Whether a symmetric matrix, of values with the relative spacing `epsilon`, is positive definite beyond rounding.
+bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon);
+
 /// Turns checked steps into series. Keeps its matrices from step to step.
 class StepEvaluator {
 public:

@@ -1,0 +1,233 @@
+#pragma once
+// A pack of trials of a user's own world: its draws, and the evaluation of its steps [docs/statistics.md]. The same as
+// EvaluatedTrial does for one trial, with a status in each lane.
+//
+//   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]
+
+#include <credence/detail/draws.hpp>
+#include "slam/trial/step_evaluation.hpp"
+#include "worlds/own/lanes/factor.hpp"
+#include "worlds/own/lanes/products.hpp"
+#include "worlds/own/lanes/view.hpp"
+
+namespace credence {
+inline namespace CREDENCE_TARGET {
+
+/// An innovation of which the rows that a lane did not observe are left out there: S has 1 on their diagonal and 0
+/// beside it, nu has 0, which leaves factor and norm of the others as they are.
+template <class Real>
+struct ObservedRows {
+    StoredMatrix<Real> S;
+    const Real* observed;  ///< [m] 1 or 0
+
+    Real at(int i, int j) const {
+        if (i == j) return select(observed[i] == Real(1), S.at(i, i), Real(1));
+        return select(both(observed[i] == Real(1), observed[j] == Real(1)), S.at(i, j), Real(0));
+    }
+    /// Whether a lane has row i.
+    bool has(int i, int lane) const { return lane_of(observed[i], lane) == 1; }
+};
+
+template <class Real>
+class PackOfTrials : public LanePack {
+public:
+    /// Reals that a pack needs beside itself, for a state of n and innovations of m rows.
+    static std::size_t room(const OwnView& view) {
+        const auto n = static_cast<std::size_t>(view.state_size), m = static_cast<std::size_t>(view.largest_innovation);
+        const std::size_t most = n > m ? n : m;
+        return (most + 2) * most + LaneProducts<Real>::room(view.largest_innovation) +
+               static_cast<std::size_t>(view.own_column_count);
+    }
+
+    Outcome<Real> outcome;
+    LaneProducts<Real> products;
+
+    /// `all_series` [series_count, K - 1] and `errors` [n, K - 1] are filled; errors may be null.
+    PackOfTrials(const PackOfTrials&) = delete;
+    PackOfTrials& operator=(const PackOfTrials&) = delete;
+    PackOfTrials(const OwnView& view, const KeyedDraws<Real>& draws, Mask<Real> there, Real* room, Real* all_series,
+                 Real* errors)
+        : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors) {
+        world = view.world;
+        arm = view.arm;
+        poses = view.poses;
+        state_size = view.state_size;
+        largest_innovation = view.largest_innovation;
+        own_column_count = static_cast<std::size_t>(view.own_column_count);
+        const int most = state_size > largest_innovation ? state_size : largest_innovation;
+        L_ = room;
+        e_ = L_ + most * most;
+        observed_ = e_ + most;
+        products.start(largest_innovation, observed_ + most);
+        Real* own = observed_ + most + LaneProducts<Real>::room(largest_innovation);
+        for (int c = 0; c < view.own_column_count; ++c) own[c] = Real(0);
+        own_columns = reinterpret_cast<double*>(own);
+        LanePack::all_series = reinterpret_cast<const double*>(all_series_);
+        normal = draw_normal;
+        uniform = draw_uniform;
+        step = take_step;
+    }
+
+    /// The trials of the pack that have not failed.
+    Mask<Real> counts() const {
+        return both(there_, outcome.status < Real(static_cast<int>(Status::covariance_not_positive_definite)));
+    }
+
+    /// Writes the columns [column_count], in the order of own_columns().
+    void columns(Real* to) const {
+        const int steps_of_trial = poses - 1;
+        const auto total = [&](int f) {
+            Real sum = Real(0);
+            for (int k = 0; k < steps_of_trial; ++k) sum = sum + all_series_[f * steps_of_trial + k];
+            return sum;
+        };
+        const auto write = [&](Real value) { *to++ = value; };
+        write(all_series_[(view_.variance + 1) * steps_of_trial - 1]);
+        for (int c = 0; c < view_.own_column_count; ++c) write(load<Real>(own_columns + c * lanes<Real>));
+        write(total(view_.squared_error));
+        write(total(0) / Real(steps_of_trial) / Real(state_size));
+        write(largest_innovation > 0 ? total(view_.nis) / total(view_.nis + 1) : Real(__builtin_nan("")));
+        write(total(view_.variance) / Real(steps_of_trial));
+        write(outcome.status);
+        write(outcome.pose);
+    }
+
+private:
+    CREDENCE_FLAT static void draw_normal(const LanePack& pack, int source, int pose, int index, double* draw) {
+        const Vector2<Real> pair =
+            static_cast<const PackOfTrials&>(pack).draws_.normal(static_cast<Source>(source), pose, index);
+        store(pair.x, draw);
+        store(pair.y, draw + lanes<Real>);
+    }
+    CREDENCE_FLAT static void draw_uniform(const LanePack& pack, int source, int pose, int index, double* draw) {
+        store(static_cast<const PackOfTrials&>(pack).draws_.uniform(static_cast<Source>(source), pose, index), draw);
+    }
+    static bool take_step(LanePack& pack, const LaneStep& step) { return static_cast<PackOfTrials&>(pack).take(step); }
+
+    bool take(const LaneStep& step) {
+        const StoredMatrix<Real> P{step.P, state_size};
+        note_what_is_not_finite(step, P);
+        evaluate_groups(step, P);
+        if (view_.largest_innovation > 0) evaluate_innovation(step);
+        note_figures(step);
+        ++steps;
+        return any(counts());
+    }
+
+    Real* series(int f) { return all_series_ + f * (poses - 1) + steps; }
+    void note(Mask<Real> happened, Status what) { outcome.note(happened, what, steps + 1); }
+
+    static Real observed(Real nu) { return select(nu == nu, Real(1), Real(0)); }
+
+    void note_what_is_not_finite(const LaneStep& step, const StoredMatrix<Real>& P) {
+        Real zero_if_finite = Real(0);
+        for (int j = 0; j < state_size; ++j) {
+            zero_if_finite = fma(load<Real>(step.error + j * lanes<Real>), Real(0), zero_if_finite);
+            for (int i = j; i < state_size; ++i) zero_if_finite = fma(P.at(i, j), Real(0), zero_if_finite);
+        }
+        note_observed(step);
+        const ObservedRows<Real> S{{step.S, step.rows}, observed_};
+        for (int j = 0; j < step.rows; ++j) {
+            const Real nu = load<Real>(step.innovation + j * lanes<Real>);
+            zero_if_finite = fma(select(nu == nu, nu, Real(0)), Real(0), zero_if_finite);
+            for (int i = j; i < step.rows; ++i) zero_if_finite = fma(S.at(i, j), Real(0), zero_if_finite);
+        }
+        note(negated(zero_if_finite == Real(0)), Status::non_finite);
+    }
+
+    void note_observed(const LaneStep& step) {
+        for (int i = 0; i < step.rows; ++i) observed_[i] = observed(load<Real>(step.innovation + i * lanes<Real>));
+    }
+
+    void evaluate_groups(const LaneStep& step, const StoredMatrix<Real>& P) {
+        for (int b = 0; b < view_.group_count; ++b) {
+            const GroupRange group = view_.groups[b];
+            Real squared_error = Real(0), variance = Real(0);
+            for (int i = 0; i < group.count; ++i) {
+                const Real e = load<Real>(step.error + (group.first + i) * lanes<Real>);
+                e_[i] = e;
+                squared_error = fma(e, e, squared_error);
+                variance = variance + P.at(group.first + i, group.first + i);
+            }
+            const StoredMatrix<Real> of_group{step.P, state_size, group.first};
+            *series(b) = norm(of_group, group.count);
+            *series(view_.squared_error + b) = squared_error;
+            *series(view_.variance + b) = variance;
+        }
+        for (int j = 0; j < state_size; ++j) {
+            const Real e = load<Real>(step.error + j * lanes<Real>);
+            *series(view_.standardised_error + j) = e / sqrt(P.at(j, j));
+            if (errors_ != nullptr) errors_[j * (poses - 1) + steps] = e;
+        }
+    }
+
+    void evaluate_innovation(const LaneStep& step) {
+        Real rows = Real(0);
+        for (int i = 0; i < step.rows; ++i) {
+            const Real nu = load<Real>(step.innovation + i * lanes<Real>);
+            e_[i] = select(nu == nu, nu, Real(0));
+            rows = rows + observed_[i];
+        }
+        *series(view_.nis + 1) = rows;
+        *series(view_.nis) = step.rows > 0 ? norm(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows) : Real(0);
+        if (errors_ == nullptr) return;
+        for (int i = 0; i < largest_innovation; ++i) {
+            const bool is_row = i < step.rows;
+            products.keep(steps, i, is_row ? e_[i] : Real(0), is_row ? observed_[i] : Real(0));
+        }
+        products.correlate(steps);
+    }
+
+    /// e' M^-1 e of e_ [n], which becomes L^-1 e; notes where M is not positive definite.
+    template <class Matrix>
+    Real norm(const Matrix& M, int n) {
+        const Whitened<Real> whitened = whiten_any<Real>(M, n, L_, e_);
+        const Mask<Real> open = both(counts(), negated(whitened.sound));
+        if (any(open)) note(look_closer(M, n, open), Status::covariance_not_positive_definite);
+        return whitened.squared_norm;
+    }
+
+    /// The lanes of `open` in which M is not positive definite.
+    template <class Matrix>
+    [[gnu::cold, gnu::noinline]] Mask<Real> look_closer(const Matrix& M, int n, Mask<Real> open) {
+        unsigned indefinite = 0;
+        double* entries = reinterpret_cast<double*>(L_);
+        for (int lane = 0; lane < lanes<Real>; ++lane) {
+            if (!(lane_bits(open) >> lane & 1)) continue;
+            int size = 0;
+            for (int j = 0; j < n; ++j) {
+                if (!M.has(j, lane)) continue;
+                for (int i = 0; i < n; ++i)
+                    if (M.has(i, lane)) *entries++ = lane_of(M.at(i > j ? i : j, i > j ? j : i), lane);
+                ++size;
+            }
+            entries -= size * size;
+            if (!view_.positive_definite(entries, size)) indefinite |= 1u << lane;
+        }
+        return mask_of_bits<Real>(indefinite);
+    }
+
+    /// Whether every series is a number whose square, over all steps, still adds up, as figures_add_up says.
+    void note_figures(const LaneStep& step) {
+        constexpr double largest_figure = 1e140;
+        Mask<Real> good = all_lanes<Real>();
+        for (int f = 0; f < view_.series_count; ++f) good = both(good, absolute(*series(f)) <= Real(largest_figure));
+        note(negated(good), Status::non_finite);
+        Real largest = Real(0);
+        for (int j = 0; j < state_size; ++j) {
+            const Real size = absolute(load<Real>(step.error + j * lanes<Real>));
+            largest = select(size > largest, size, largest);
+        }
+        note(largest > Real(divergence_bound), Status::diverged);
+    }
+
+    const OwnView& view_;
+    const KeyedDraws<Real>& draws_;
+    Mask<Real> there_;  ///< lanes that have a trial
+    Real* all_series_;
+    Real* errors_;
+    Real *L_, *e_, *observed_;
+};
+
+}  // namespace CREDENCE_TARGET
+}  // namespace credence
