@@ -23,7 +23,7 @@ done
 # Nothing of the machine that built it.
 package=$(dirname "$(find usr -name credence-config.cmake)")
 if grep -rnF -e "$build" -e "$source" -e "$work" "$package"; then echo "names a path of this machine"; exit 1; fi
-if grep -nE -- '-Werror|-Wall|-fsanitize|-march' "$package"/*.cmake; then echo "forces flags on others"; exit 1; fi
+if grep -nE -- '-Werror|-Wall|-fsanitize|-march' "$package"/credence-*.cmake; then echo "forces flags on others"; exit 1; fi
 
 cmake -S "$source/tests/consumer" -B consumer -DCMAKE_PREFIX_PATH="$work/usr" >"$work/log" 2>&1 &&
   cmake --build consumer >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
@@ -56,6 +56,24 @@ if grep -q 'Release is taken' log; then echo "the user's build type is not kept"
 wait $example || { cat example/said; exit 1; }
 grep -q 'exit code 1, as it should be' example/said || { cat example/said; exit 1; }
 [ -s example/results/tracker.h5 ] || { echo "the example leaves no results"; exit 1; }
+
+# Its world runs in lanes: every target of the engine gives the same file, from objects that share no symbol with others.
+(cd own_filter
+  targets=$(ls build/tracker_*.o | sed 's|build/tracker_\(.*\)\.o|\1|')
+  for target in $targets; do
+    others=$(nm --defined-only --extern-only "build/tracker_$target.o" | grep -v "8lanes_ofI7TrackerE" || true)
+    [ -z "$others" ] || { printf 'tracker_%s.o shows others\n%s\n' "$target" "$others"; exit 1; }
+    CREDENCE_FORCE_UNIT=$target build/tracker run tracker.ini --trials 1000 --quiet -o "$target.h5" 2>refused ||
+      { grep -q 'cannot run it' refused || { cat refused; exit 1; }; continue; }
+    build/tracker report "$target.h5" >"$target.said"
+    cmp portable.said "$target.said"
+  done)
+cp -r own_filter nameless
+sed -i '/^CREDENCE_WORLD/d' nameless/tracker.hpp
+if cmake -S nameless -B nameless/other -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build nameless/other >>log 2>&1; then
+  echo "a header that names no world is built"; exit 1
+fi
+tr -s ' \n' ' ' <log | grep -q 'no header names its world. End it with CREDENCE_WORLD(World);' || { cat log; exit 1; }
 
 mv own_filter/tracker.h5 own_filter/build/tracker .
 # The program without that world says the same of the file, word for word.
