@@ -1,0 +1,70 @@
+#pragma once
+// Directions: the linear combinations of the state whose squared error is largest and smallest against what P predicts
+// [docs/statistics.md, Verdict]. NEES alone sees only the trace of P^-1 E[e e'].
+//
+// A direction is a generalised eigenvector, sum S v = lambda sum C v. For a finding, the one for the trials of a part
+// (index mod 3) is found on the other parts: it has no bias of selection, whatever the distribution. For an acceptance
+// it is that of all trials: selection then errs on the safe side.
+
+#include <limits>
+
+#include "statistics/mean_bounds.hpp"
+#include "statistics/trial_moments.hpp"
+
+namespace credence {
+
+/// Least number of trials for a claim about directions.
+inline constexpr double direction_trials = 200;
+
+struct DirectionLimits {
+    double margin = 0.05;                                     ///< findings lie outside 1 -+ margin
+    double accepted = 0.10;                                   ///< acceptances lie inside 1 -+ accepted
+    double epsilon = std::numeric_limits<double>::epsilon();  ///< of the data's type; 2^-23 for 32 bits
+};
+
+/// One component's share in a direction, in units of its sigma.
+struct DirectionEntry {
+    int component = 0;  ///< of the state
+    double weight = 0;
+};
+
+/// A direction with the ratio of its squared error to what P predicts, 1 for a consistent filter.
+struct Direction {
+    std::vector<DirectionEntry> entries;  ///< by component; of unit length, the largest positive, small ones left out
+    bool approximate =
+        false;             ///< the direction of some part of the trials is far from it: say "in about the direction"
+    double ratio = 0;      ///< over all trials, each in the direction that the other parts give
+    Interval bounds;       ///< of the ratio, each end at the corrected one-sided level
+    bool finding = false;  ///< the bounds lie outside the margin
+};
+
+/// The directions of one group. Not known, with the reason, where they cannot be computed.
+struct GroupDirections {
+    enum class State { known, few_trials, singular };
+    State state = State::few_trials;
+    double trials = 0;
+    int left_out = 0;             ///< dimensions in which P cannot be told from 0: `consistent` is withheld
+    Direction largest, smallest;  ///< findings above and below
+};
+
+/// Directions of a group of at least two components. `sums` may be over more trials than `group`, whose numbers give
+/// spread and largest value. `level`: one-sided, corrected for groups and for both directions.
+GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums, double level,
+                                const DirectionLimits& limits = {});
+
+/// Whether all directions of the whole state, and so of all its groups, are shown to lie within 1 -+ accepted.
+struct DirectionsAccepted {
+    GroupDirections::State state = GroupDirections::State::few_trials;
+    Acceptance acceptance = Acceptance::more_trials;
+    int left_out = 0;
+    double smallest = 0, largest = 0;  ///< eigenvalues of all trials: their range is too wide on average
+    Interval bounds;                   ///< lower bound of the smallest to upper bound of the largest, 95 %
+};
+DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& sums,
+                                     const DirectionLimits& limits = {});
+
+/// The coordinates in which P can be told from 0 to 1 % of the margin: an orthonormal basis [d, d - left_out] of the
+/// eigenvectors of the mean standardised P whose eigenvalue is at least d epsilon / (0.01 margin).
+Eigen::MatrixXd resolved_basis(const Eigen::MatrixXd& sum_of_C, const DirectionLimits& limits);
+
+}  // namespace credence

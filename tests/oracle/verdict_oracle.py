@@ -1,0 +1,433 @@
+"""The statistics of the verdict in their slow, obvious version: the oracle of src/statistics/{mean_bounds, directions,
+bias, advice}.cpp. docs/statistics.md says what the rules are and why.
+
+numbers(e, P, groups)          what a study keeps of each trial: a few numbers per trial, and sums by step
+judge(numbers, limits, advise) the verdict, without failed trials: word, findings, what is missing, advice
+
+Every level is one-sided. N trials, K steps, n components; S and C are sums over the steps of a trial of e e' and P,
+both standardised by the standard deviations in P.
+"""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from scipy import stats
+
+LEVEL_RUN, LEVEL_STEP, LEVEL_DIRECTION, LEVEL_BIAS = 0.03, 0.0025, 0.015, 0.0025  # false findings: together about 5 %
+LEVEL_ACCEPT = 0.025      # each side of an acceptance: a two-sided 95 % interval
+UNSEEN_SIZE = 9.0         # squared error of a trial that was not seen, over the mean: three sigma
+DIRECTION_TRIALS = 200    # least number of trials for a claim about directions
+FOLDS = 3                 # parts of the trials; a direction is found on the others
+ROUNDING_ERROR = 2.0**-48  # errors of at most this size are rounding: the component is known exactly
+ADVICE_TRIALS = 30        # least number of trials for an advice
+ADVICE_DRAWS = 400
+ADVICE_SHARE = 0.85       # more than the 80 % that are promised, for the noise of the advice itself
+LAG_PRODUCTS = 30         # least number of products of a lag
+
+
+@dataclass
+class Limits:
+    margin: float = 0.05
+    direction: float = 0.10
+    bias: float = 0.1
+    epsilon: float = 2.0**-52
+
+
+@dataclass
+class Numbers:
+    trials: int
+    steps: int
+    groups: list             # [(name, [components])], the whole state first
+    run: np.ndarray          # [trial, group] mean over the steps of NEES/dim
+    squares: np.ndarray      # [trial, n, n] S
+    predicted: np.ndarray    # [trial, n, n] C
+    bias: np.ndarray         # [trial, n] mean over the steps of e/sigma
+    step_mean: np.ndarray = None   # [group, step] mean over the trials of NEES/dim
+    step_sd: np.ndarray = None     # [group, step]
+    step_top: np.ndarray = None    # [group, step] the largest
+    index: np.ndarray = None       # [trial] in the study, where trials that failed are counted
+    error_size: np.ndarray = None  # [n] largest |e| of all trials and steps
+
+    def __post_init__(self):
+        if self.index is None:
+            self.index = np.arange(self.trials)
+
+
+def numbers(e, P, groups):
+    """e [trial, step, n]; P [trial, step, n, n], or [step, n, n] for the same in all trials, or None for identity."""
+    trials, steps, n = e.shape
+    if P is None:
+        z, predicted = e, np.broadcast_to(np.eye(n) * steps, (trials, n, n))
+        nees = np.stack([(e[..., c] ** 2).sum(-1) / len(c) for _, c in groups])
+    else:
+        sigma = np.sqrt(np.einsum("...ii->...i", P))
+        z = e / sigma
+        R = P / (sigma[..., :, None] * sigma[..., None, :])
+        predicted = R.sum(1) if R.ndim == 4 else np.broadcast_to(R.sum(0), (trials, n, n))
+        nees = np.stack([nees_of(z, R, c) for _, c in groups])
+    return Numbers(trials, steps, groups, nees.mean(2).T, np.matmul(z.transpose(0, 2, 1), z), predicted, z.mean(1),
+                   nees.mean(1), nees.std(1, ddof=1), nees.max(1), error_size=np.abs(e).max((0, 1)))
+
+
+def nees_of(z, R, c):
+    """NEES/dim [trial, step] of the components c."""
+    L = np.linalg.cholesky(R[..., c, :][..., c])
+    if R.ndim == 3:
+        whitened = np.stack([np.linalg.solve(L[k], z[:, k][:, c].T).T for k in range(z.shape[1])], 1)
+    else:
+        whitened = np.linalg.solve(L, z[..., c][..., None])[..., 0]
+    return (whitened**2).sum(-1) / len(c)
+
+
+# Bounds on the mean of a positive number
+
+
+def unseen_share(level, trials):
+    """Share of trials that may exist without one of them being seen (exact binomial; about ln(1/level)/trials)."""
+    return 1 - level ** (1 / trials)
+
+
+@lru_cache(None)
+def t_quantile(level, degrees):
+    """Upper quantile. SciPy's t.isf is good to 1e-8 only; Newton's steps on its t.sf make it better."""
+    q = stats.t.isf(level, degrees)
+    for _ in range(4):
+        q += (stats.t.sf(q, degrees) - level) / stats.t.pdf(q, degrees)
+    return q
+
+
+def share_of(level, g, groups):
+    """The level of group g: half for the whole state, the other half shared by the groups."""
+    return level if groups == 1 else level / 2 if g == 0 else level / (2 * (groups - 1))
+
+
+def lower(mean, sd, trials, level):
+    return mean - t_quantile(level, trials - 1) * sd / np.sqrt(trials)
+
+
+def upper(mean, sd, top, trials, level, size):
+    """Student's bound, and what the unseen share adds if each of these trials is as large as the largest seen, or as
+    `size` times the mean."""
+    excess = np.maximum(np.maximum(top, size * mean) - mean, 0)
+    return mean + t_quantile(level, trials - 1) * sd / np.sqrt(trials) + unseen_share(level, trials) * excess
+
+
+def ratio_numbers(a, b):
+    """One number per trial whose mean is sum a / sum b, to first order."""
+    r = a.sum() / b.sum()
+    return r + (a - r * b) / b.mean()
+
+
+# Directions
+
+
+def resolved_basis(predicted, limits):
+    """Orthonormal basis of the directions in which P can be told from 0 to 1 % of the margin."""
+    d = len(predicted)
+    values, vectors = np.linalg.eigh(predicted * d / np.trace(predicted))
+    kept = values >= d * limits.epsilon / (0.01 * limits.margin)
+    return np.eye(d) if kept.all() else vectors[:, kept]
+
+
+def generalised(squares, predicted, basis):
+    """Eigenvalues, ascending, and eigenvectors v, v'predicted v = 1, in the span of the basis."""
+    L = np.linalg.cholesky(basis.T @ predicted @ basis)
+    A = np.linalg.solve(L, np.linalg.solve(L, basis.T @ squares @ basis).T)
+    values, w = np.linalg.eigh((A + A.T) / 2)
+    return values, basis @ np.linalg.solve(L.T, w)
+
+
+def form(v, matrices):
+    return np.einsum("i,tij,j->t", v, matrices, v, optimize=True)
+
+
+def part_of(matrices, components):
+    return matrices[:, components][:, :, components]
+
+
+def crossed(x, components, which, limits):
+    """One number per trial, its direction found on the other parts (trial i is in part i mod FOLDS), and the
+    directions."""
+    S, C = part_of(x.squares, components), part_of(x.predicted, components)
+    basis = resolved_basis(C.sum(0), limits)
+    a, b = np.empty(x.trials), np.empty(x.trials)
+    directions = []
+    part = x.index % FOLDS
+    for fold in range(FOLDS):
+        train, test = part != fold, part == fold
+        v = generalised(S[train].mean(0), C[train].mean(0), basis)[1][:, which]
+        a[test], b[test] = form(v, S[test]), form(v, C[test])
+        directions.append(v)
+    return ratio_numbers(a, b), directions
+
+
+def extreme(x, components, which, limits):
+    """The same in the direction of all trials: biased outwards, therefore safe for an acceptance."""
+    S, C = part_of(x.squares, components), part_of(x.predicted, components)
+    v = generalised(S.mean(0), C.mean(0), resolved_basis(C.sum(0), limits))[1][:, which]
+    return ratio_numbers(form(v, S), form(v, C)), v
+
+
+def named(v, components):
+    """{component: weight}: of unit length, the largest entry positive, those below a tenth of it left out."""
+    most = np.argmax(np.abs(v))
+    v = v * np.sign(v[most]) / np.linalg.norm(v)
+    return {components[j]: v[j] for j in range(len(v)) if abs(v[j]) >= 0.1 * v[most]}
+
+
+def is_approximate(directions, v, predicted):
+    """Whether the direction of some part is far from v, in the metric of P."""
+    C = predicted.mean(0)
+    return any(abs(u @ C @ v) < 0.7 * np.sqrt((u @ C @ u) * (v @ C @ v)) for u in directions)
+
+
+# The verdict
+
+
+@dataclass
+class Verdict:
+    word: str = "undecided"
+    findings: list = field(default_factory=list)  # (kind, where, side, value, bound)
+    missing: list = field(default_factory=list)   # why it is not consistent
+    tails: list = field(default_factory=list)     # claims that tails forbid
+    advice: tuple = None                          # (low, number, high, the need that binds)
+
+
+def judge(x, limits=Limits(), advise=False):
+    v = Verdict()
+    find_nees(x, limits, v)
+    if x.trials >= DIRECTION_TRIALS:
+        find_directions(x, limits, v)
+    find_bias(x, limits, v)
+    accept(x, limits, v)
+    above = any(f[2] == "above" for f in v.findings)
+    below = any(f[2] == "below" for f in v.findings)
+    v.word = ("mixed" if above and below else "optimistic" if above else "pessimistic" if below
+              else "undecided" if v.missing else "consistent")
+    if advise and v.word == "undecided" and x.trials >= ADVICE_TRIALS:
+        v.advice = advice(x, limits)
+    return v
+
+
+def beyond_chi_square(mean, degrees, side, level, margin):
+    """Student's interval is too narrow for few trials, because chi-square is skewed: a claim must also be beyond the
+    exact bound for NEES distributed as (1 -+ margin) chi-square."""
+    if side == "above":
+        return mean / (1 + margin) * degrees > stats.chi2.isf(level, degrees)
+    return mean / (1 - margin) * degrees < stats.chi2.ppf(level, degrees)
+
+
+def compare(v, kind, where, mean, sd, top, trials, degrees, level, margin):
+    """Both sides of one figure."""
+    low, high = lower(mean, sd, trials, level), upper(mean, sd, top, trials, level, UNSEEN_SIZE)
+    plain = upper(mean, sd, -np.inf, trials, level, 0)
+    if low > 1 + margin and beyond_chi_square(mean, degrees, "above", level, margin):
+        v.findings.append((kind, where, "above", mean, low))
+    if high < 1 - margin and beyond_chi_square(mean, degrees, "below", level, margin):
+        v.findings.append((kind, where, "below", mean, high))
+    elif high >= 1 - margin and plain < 1 - margin:
+        v.tails.append((kind, where, "below", mean, high))
+
+
+def degrees_over_steps(X, dimension, steps):
+    """Of the NEES over all steps, from its spread: at least one step's, at most all steps'."""
+    fewest = len(X) * dimension
+    return np.clip(2 * len(X) * (X.mean() / X.std(ddof=1)) ** 2, fewest, fewest * steps)
+
+
+def find_nees(x, limits, v):
+    N, G = x.trials, len(x.groups)
+    for g, (name, c) in enumerate(x.groups):
+        X = x.run[:, g]
+        compare(v, "run", name, X.mean(), X.std(ddof=1), X.max(), N, degrees_over_steps(X, len(c), x.steps),
+                share_of(LEVEL_RUN, g, G) / 2, limits.margin)
+        for k in range(x.steps if x.step_mean is not None else 0):
+            compare(v, "step", (name, k), x.step_mean[g, k], x.step_sd[g, k], x.step_top[g, k], N, N * len(c),
+                    LEVEL_STEP / (2 * G * x.steps), limits.margin)
+
+
+def find_directions(x, limits, v):
+    groups = [(name, c) for name, c in x.groups if len(c) >= 2]
+    for g, (name, c) in enumerate(groups):
+        level = share_of(LEVEL_DIRECTION, g, len(groups)) / 2
+        y, _ = crossed(x, c, -1, limits)
+        low = lower(y.mean(), y.std(ddof=1), x.trials, level)
+        if low > 1 + limits.margin:
+            v.findings.append(("direction", name, "above", y.mean(), low))
+        y, _ = crossed(x, c, 0, limits)
+        high = upper(y.mean(), y.std(ddof=1), y.max(), x.trials, level, UNSEEN_SIZE)
+        if high < 1 - limits.margin:
+            v.findings.append(("direction", name, "below", y.mean(), high))
+
+
+def known_exactly(x, j, limits):
+    z = x.bias[:, j]
+    return x.error_size[j] <= ROUNDING_ERROR or (z.std(ddof=1) == 0 and abs(z.mean()) <= limits.bias)
+
+
+def bias_half(x, j, level):
+    return t_quantile(level, x.trials - 1) * x.bias[:, j].std(ddof=1) / np.sqrt(x.trials)
+
+
+def find_bias(x, limits, v):
+    n = x.bias.shape[1]
+    for j in range(n):
+        mean, half = x.bias[:, j].mean(), bias_half(x, j, LEVEL_BIAS / (2 * n))
+        if not known_exactly(x, j, limits) and abs(mean) - half > limits.bias:
+            v.findings.append(("bias", j, "above", mean, abs(mean) - half))
+
+
+def accepts(low, high, trials, margin):
+    """Of the numbers per trial whose mean must not be too small, and those whose mean must not be too large."""
+    return (lower(low.mean(), low.std(ddof=1), trials, LEVEL_ACCEPT) >= 1 - margin
+            and upper(high.mean(), high.std(ddof=1), high.max(), trials, LEVEL_ACCEPT, 0) <= 1 + margin)
+
+
+def accepts_directions(x, limits):
+    c = x.groups[0][1]
+    return x.trials >= DIRECTION_TRIALS and accepts(extreme(x, c, 0, limits)[0], extreme(x, c, -1, limits)[0],
+                                                    x.trials, limits.direction)
+
+
+def accepts_bias(x, j, limits):
+    return known_exactly(x, j, limits) or abs(x.bias[:, j].mean()) + bias_half(x, j, LEVEL_ACCEPT) <= limits.bias
+
+
+def accept(x, limits, v):
+    v.missing += [("run", name) for g, (name, _) in enumerate(x.groups)
+                  if not accepts(x.run[:, g], x.run[:, g], x.trials, limits.margin)]
+    if len(x.groups[0][1]) > 1 and not accepts_directions(x, limits):
+        v.missing.append(("direction", x.groups[0][0]))
+    v.missing += [("bias", j) for j in range(x.bias.shape[1]) if not accepts_bias(x, j, limits)]
+
+
+# Advice
+
+
+def trials_for(scaled, top, margin):
+    """Least N with scaled/sqrt(N) + ln(1/level) top/N <= margin."""
+    c = np.log(1 / LEVEL_ACCEPT) * max(top, 0)
+    root = (scaled + np.sqrt(np.maximum(scaled, 0) ** 2 + 4 * margin * c)) / (2 * margin)
+    return np.where(scaled > 0, root, np.sqrt(c / margin)) ** 2
+
+
+def advice(x, limits, weights=None):
+    """The number of trials at which an exactly consistent filter with this spread is shown consistent in 80 % of
+    studies: the trials' numbers are centred on what is exactly consistent, and N trials are drawn from them with
+    multipliers, the normal approximation of a resampled mean. Repeated, because the largest of N trials grows with N.
+    weights [draw, trial]: standard normal draws."""
+    if weights is None:
+        weights = np.random.default_rng(0).standard_normal((ADVICE_DRAWS, x.trials))
+    weights = (weights - weights.mean(1, keepdims=True)) / np.sqrt(x.trials)
+    needs = needs_of(x, limits, weights)
+    number = x.trials
+    least = DIRECTION_TRIALS if len(x.groups[0][1]) > 1 else 2
+    for _ in range(3):
+        each = np.stack([trials_for(scaled, top + growth * max(0, np.log(number / x.trials)), margin)
+                         for scaled, top, growth, margin, _, _ in needs])  # [need, draw]
+        number = max(least, np.quantile(each.max(0), ADVICE_SHARE))
+    binding = needs[np.argmax(np.quantile(each, ADVICE_SHARE, axis=1))]
+    values = binding[4]
+    kurtosis = ((values - values.mean()) ** 4).mean() / values.var() ** 2
+    width = np.exp(1.645 * np.sqrt((kurtosis - 1) / x.trials + 0.01))
+    return number / width, number, number * width, binding[5]
+
+
+def tail_growth(values):
+    """By how much the largest grows per factor e in the number: the mean excess over the 90 % quantile."""
+    bound = np.quantile(values, 0.9)
+    return (values[values >= bound] - bound).mean()
+
+
+def needs_of(x, limits, weights):
+    """What must hold for `consistent`: (scaled deviation by draw, largest, its growth, margin, values, name) each."""
+    q, needs = stats.norm.isf(LEVEL_ACCEPT), []
+    for g in range(x.run.shape[1]):
+        X = x.run[:, g] / x.run[:, g].mean()
+        Z, sd = weights @ X, X.std(ddof=1)
+        needs.append((Z + q * sd * (1 + limits.margin), X.max() - 1, tail_growth(X), limits.margin, X,
+                      ("run", g, "above")))
+        needs.append((-Z + q * sd, 0, 0, limits.margin, X, ("run", g, "below")))
+    for j in range(x.bias.shape[1]):
+        if not known_exactly(x, j, limits):
+            z = x.bias[:, j]
+            needs.append((np.abs(weights @ z) + q * z.std(ddof=1), 0, 0, limits.bias, z, ("bias", j, "above")))
+    return needs + direction_needs(x, limits, weights, q)
+
+
+def direction_needs(x, limits, weights, q):
+    if len(x.groups[0][1]) < 2:
+        return []
+    needs, R = [], whitened(x)
+    values, vectors = np.linalg.eigh(np.tensordot(weights, R, 1))
+    for which in (-1, 0):
+        w = vectors[:, :, which]
+        forms = R.reshape(x.trials, -1) @ (w[:, :, None] * w[:, None, :]).reshape(len(w), -1).T  # [trial, draw]
+        sd, first = forms.std(0, ddof=1), forms[:, 0]
+        if which == -1:  # the spread grows with the ratio
+            needs.append((values[:, -1] + q * sd * (1 + limits.direction), np.median(forms.max(0)), tail_growth(first),
+                          limits.direction, first, ("direction", 0, "above")))
+        else:
+            needs.append((-values[:, 0] + q * sd, 0, 0, limits.direction, first, ("direction", 0, "below")))
+    return needs
+
+
+def whitened(x):
+    """Residuals of every trial, centred on an exactly consistent filter, in coordinates where mean P is I."""
+    S, C = part_of(x.squares, x.groups[0][1]), part_of(x.predicted, x.groups[0][1])
+    A, D = (np.linalg.inv(np.linalg.cholesky(m.mean(0))) for m in (S, C))
+    return np.matmul(np.matmul(A, S), A.T) - np.matmul(np.matmul(D, C), D.T)
+
+
+def trials_to_show(mean, sd, top, level, margin, trials):
+    """Trials at which a finding would be made if mean, sd and largest value stay; inf where the mean is inside."""
+    a = t_quantile(level, trials - 1) * sd
+    if mean > 1 + margin:
+        return (a / (mean - 1 - margin)) ** 2
+    room = 1 - margin - mean
+    if room <= 0:
+        return np.inf
+    c = np.log(1 / level) * (max(top, UNSEEN_SIZE * mean) - mean)
+    return ((a + np.sqrt(a * a + 4 * room * c)) / (2 * room)) ** 2
+
+
+# What the tails are like: words only
+
+
+def tails(X):
+    """Share of the sum that the 1 % largest carry; degrees of freedom of a Student's t with such tails [Hill 1975], or
+    None."""
+    s = np.sort(X)[::-1]
+    worst = s[: int(np.ceil(0.01 * len(s)))].sum() / s.sum()
+    k = max(10, int(np.ceil(0.05 * len(s))))
+    degrees = 2 * k / np.log(s[:k] / s[k]).sum() if len(s) >= 200 else np.inf
+    return worst, degrees if degrees < 10 else None
+
+
+# Whiteness
+
+
+def whiteness(innovations, level=0.05, most=10):
+    """innovations [trial, step, row], whitened, NaN where a row is not observed. Lags count measurements, whatever the
+    steps between. Returns [(lag, r, half-width, products)]; empty where no test can be made."""
+    trials = [v[~np.isnan(v).all(1)] for v in innovations]
+    sums = {}
+    for lag in range(1, min(most, max(len(v) for v in trials) - 1) + 1):
+        products = [v[:-lag] * v[lag:] for v in trials if len(v) > lag]
+        p = np.array([np.nansum(q) for q in products])
+        c = np.array([(~np.isnan(q)).sum() for q in products])
+        if c.sum() >= LAG_PRODUCTS:
+            sums[lag] = p[c > 0], c[c > 0], sum(np.nansum(q * q) for q in products)
+    return [(lag, *correlation(*sums[lag], level / len(sums) / 2), sums[lag][1].sum()) for lag in sums]
+
+
+def correlation(p, c, single_squares, level):
+    """Correlation from the sums p over c products of every trial, and the half-width of its interval."""
+    r = p.sum() / c.sum()
+    normal = stats.norm.isf(level) * np.sqrt(single_squares) / c.sum()
+    if len(p) < 2:
+        return r, normal
+    y = r + (p - r * c) / c.mean()
+    half = t_quantile(level, len(p) - 1) * y.std(ddof=1) / np.sqrt(len(p))
+    return r, half if len(p) >= 8 else max(half, normal)
