@@ -133,7 +133,7 @@ GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums,
         Direction& direction = largest ? found.largest : found.smallest;
         direction.entries = entries_of(v, group.components);
         direction.approximate = is_approximate(folds, v, mean_C);
-        direction.ratio = sample.mean;
+        direction.ratio = sample;
         direction.bounds = claim.bounds;
         direction.finding = largest ? claim.above : claim.below;
     }

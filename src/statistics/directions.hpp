@@ -33,7 +33,7 @@ struct Direction {
     std::vector<DirectionEntry> entries;  ///< by component; of unit length, the largest positive, small ones left out
     bool approximate =
         false;             ///< the direction of some part of the trials is far from it: say "in about the direction"
-    double ratio = 0;      ///< over all trials, each in the direction that the other parts give
+    PositiveSample ratio;  ///< over all trials, each in the direction that the other parts give
     Interval bounds;       ///< of the ratio, each end at the corrected one-sided level
     bool finding = false;  ///< the bounds lie outside the margin
 };

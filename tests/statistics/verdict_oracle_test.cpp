@@ -1,9 +1,12 @@
-// Bounds, directions and bias against the slow version in tests/oracle/verdict_oracle.py, whose values are stored:
+// Bounds, directions, bias and advice against their slow version, tests/oracle/verdict_oracle.py. Its values are stored:
 // python3 tests/reference/make_verdict.py > tests/reference/verdict.json
 
+#include "statistics/advice.hpp"
 #include "statistics/bias.hpp"
 #include "statistics/directions.hpp"
 #include "statistics/verdict_cases.hpp"
+
+#include <map>
 
 using namespace credence;
 using namespace credence::test;
@@ -29,7 +32,7 @@ PositiveSample nees_sample(const TrialMoments& trials, int g) {
 }
 
 void check_direction(const Direction& found, const Json& expected) {
-    check_close(found.ratio, expected["ratio"]);
+    check_close(found.ratio.mean, expected["ratio"]);
     check_close(found.bounds, expected["bounds"]);
     CHECK(found.finding == expected["finding"]);
     CHECK(found.approximate == expected["approximate"]);
@@ -63,6 +66,11 @@ TEST_CASE("verdict: the bounds on mean NEES, its claims and its acceptance agree
             CHECK(claim.below == (expected["finding"] == "below"));
             CHECK(claim.tails == expected["tails"]);
             CHECK((accept_mean(sample, 0.05) == Acceptance::shown) == expected["accepted"]);
+            const double show = trials_to_show(sample, level, 0.05);
+            if (expected["show"].is_null())
+                CHECK(std::isinf(show));
+            else
+                check_close(show, expected["show"]);
         }
     }
 }
@@ -116,5 +124,26 @@ TEST_CASE("verdict: bias agrees with the oracle's, and a component that is known
             CHECK(claim.finding == expected["finding"]);
             CHECK(claim.accepted == expected["accepted"]);
         }
+    }
+}
+
+TEST_CASE("verdict: the advised number, its range and what binds agree with the oracle's") {
+    for (const Json& one : verdict_cases()) {
+        const VerdictCase drawn(one);
+        const std::optional<Advice> advice =
+            trials_for_consistent(drawn.moments(), drawn.groups()[0], one["seed"].get<std::uint64_t>());
+        const Json& expected = one["advice"];
+        REQUIRE(advice.has_value() == !expected.is_null());
+        if (!advice) continue;
+        check_close(advice->trials, expected["number"]);
+        check_close(advice->range, expected["range"]);
+        CHECK(advice->where == expected["where"]);
+        static const std::map<Need, std::string> names{{Need::run_above, "run above"},
+                                                       {Need::run_below, "run below"},
+                                                       {Need::bias, "bias above"},
+                                                       {Need::direction_above, "direction above"},
+                                                       {Need::direction_below, "direction below"}};
+        CHECK(names.at(advice->binding) ==
+              expected["kind"].get<std::string>() + " " + expected["side"].get<std::string>());
     }
 }
