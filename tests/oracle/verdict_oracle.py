@@ -399,8 +399,8 @@ def tails(X):
     """Share of the sum that the 1 % largest carry; degrees of freedom of a Student's t with such tails [Hill 1975], or
     None."""
     s = np.sort(X)[::-1]
-    worst = s[: int(np.ceil(0.01 * len(s)))].sum() / s.sum()
-    k = max(10, int(np.ceil(0.05 * len(s))))
+    worst = s[: -(-len(s) // 100)].sum() / s.sum()  # rounded up
+    k = max(10, -(-len(s) // 20))
     degrees = 2 * k / np.log(s[:k] / s[k]).sum() if len(s) >= 200 else np.inf
     return worst, degrees if degrees < 10 else None
 

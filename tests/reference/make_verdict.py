@@ -1,5 +1,5 @@
-"""Prints verdict.json: random studies, and what tests/oracle/verdict_oracle.py says of their bounds, directions, bias
-and advice, for tests/statistics/verdict_oracle_test.cpp. The trials are not stored: they are functions of the project's
+"""Prints verdict.json: random studies, and what tests/oracle/verdict_oracle.py says of their bounds, directions, bias,
+advice and lags, for tests/statistics/verdict_oracle_test.cpp. The trials are not stored: they are functions of the project's
 keyed draws (include/credence/detail/draws.hpp), which this file and tests/statistics/verdict_cases.hpp both compute.
 
     python3 tests/reference/make_verdict.py > tests/reference/verdict.json
@@ -105,7 +105,7 @@ def verdict_on_nees(x, g, limits):
             "bounds": [lower(m, s, N, level), upper(m, s, top, N, level, UNSEEN_SIZE)],
             "finding": v.findings[0][2] if v.findings else "", "tails": bool(v.tails),
             "accepted": accepts(X, X, N, limits.margin),
-            "show": trials_to_show(m, s, top, level, limits.margin, N)}
+            "show": trials_to_show(m, s, top, level, limits.margin, N), "tail": tails(X)}
 
 
 def one_direction(x, c, which, level, limits):
@@ -159,6 +159,17 @@ def advised(x, case, limits):
     return {"range": [low, high], "number": number, "kind": kind, "where": where, "side": side}
 
 
+def verdict_on_lags(x):
+    """The mean errors over the steps of a trial as its sums of products; their number differs from trial to trial."""
+    lags = []
+    for trials in (1, 3, 7, 8, x.trials):
+        p, c = x.bias[:trials, 0] * 40, 40 + x.index[:trials] % 3
+        level = 0.05 / 3 / 2
+        r, half = correlation(p, c, (p**2).sum(), level)
+        lags.append({"trials": trials, "r": r, "interval": [r - half, r + half]})
+    return lags
+
+
 def plain(value):
     if isinstance(value, dict):
         return {key: plain(part) for key, part in value.items()}
@@ -202,7 +213,8 @@ def expected(case):
     else:
         directions, accepted = verdict_on_directions(x, limits), verdict_on_all_directions(x, limits)
     return {**case, "nees": [verdict_on_nees(x, g, limits) for g in range(len(x.groups))], "directions": directions,
-            "all_directions": accepted, "biases": verdict_on_bias(x, limits), "advice": advised(x, case, limits)}
+            "all_directions": accepted, "biases": verdict_on_bias(x, limits), "advice": advised(x, case, limits),
+            "lags": verdict_on_lags(x)}
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
-// Bounds, directions, bias and advice against their slow version, tests/oracle/verdict_oracle.py. Its values are stored:
-// python3 tests/reference/make_verdict.py > tests/reference/verdict.json
+// Bounds, directions, bias, advice, tails and lags against their slow version, tests/oracle/verdict_oracle.py. Its values
+// are stored: python3 tests/reference/make_verdict.py > tests/reference/verdict.json
+
+#include <map>
 
 #include "statistics/advice.hpp"
 #include "statistics/bias.hpp"
 #include "statistics/directions.hpp"
+#include "statistics/tails.hpp"
 #include "statistics/verdict_cases.hpp"
-
-#include <map>
+#include "statistics/whiteness.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -146,4 +148,41 @@ TEST_CASE("verdict: the advised number, its range and what binds agree with the 
         CHECK(names.at(advice->binding) ==
               expected["kind"].get<std::string>() + " " + expected["side"].get<std::string>());
     }
+}
+
+TEST_CASE("verdict: what the tails are like agrees with the oracle's") {
+    int heavy = 0;
+    for (const Json& one : verdict_cases()) {
+        const TrialMoments trials = VerdictCase(one).moments();
+        for (int g = 0; g < trials.groups; ++g) {
+            const Json& expected = one["nees"][static_cast<std::size_t>(g)]["tail"];
+            std::vector<double> X;
+            for (std::size_t i = 0; i < trials.trials(); ++i) X.push_back(trials.X(i, g));
+            const Tail tail = tail_of(X);
+            check_close(tail.worst_share, expected[0]);
+            REQUIRE(tail.degrees.has_value() == !expected[1].is_null());
+            if (tail.degrees) check_close(*tail.degrees, expected[1]), ++heavy;
+        }
+    }
+    CHECK(heavy > 0);
+}
+
+TEST_CASE("verdict: the correlation at a lag agrees with the oracle's, for few trials too") {
+    for (const Json& one : verdict_cases()) {
+        const TrialMoments trials = VerdictCase(one).moments();
+        for (const Json& expected : one["lags"]) {
+            LagSums sums;
+            for (std::size_t i = 0; i < expected["trials"]; ++i) {
+                const double p = 40 * trials.z(i, 0);
+                sums.add(p, static_cast<double>(40 + trials.trial[i] % 3), p * p);
+            }
+            const auto correlation = correlation_of(sums, 0.05 / 3);
+            REQUIRE(correlation.has_value());
+            check_close(correlation->r, expected["r"]);
+            check_close(correlation->interval, expected["interval"]);
+        }
+    }
+    LagSums few;
+    few.add(1, 29, 1);
+    CHECK_FALSE(correlation_of(few, 0.05).has_value());
 }
