@@ -72,10 +72,15 @@ int detailed_trials(int steps, int state_size);
 /// Lags at which innovations are correlated, 1 ... lag_count.
 inline int lag_count(int poses) { return poses - 2 < 10 ? (poses > 2 ? poses - 2 : 0) : 10; }
 
-/// A group of contiguous components of the state that is evaluated by itself.
+/// A group of components of the state that is evaluated by itself: `count` of them from `first` on, or those of a list.
 struct ComponentGroup {
     std::string name;
     int first = 0, count = 0;
+    std::vector<int> components{};         ///< [count] where they are not contiguous and in order; else empty
+
+    bool contiguous() const { return components.empty(); }
+    /// The i-th component of the group, by its index in the state.
+    int component(int i) const { return contiguous() ? first + i : components[static_cast<std::size_t>(i)]; }
 };
 using StateBlock = ComponentGroup;  ///< its name in earlier releases
 

@@ -112,6 +112,7 @@ struct Evidence {
     std::vector<BiasEvidence> bias;
     DistributionEvidence shape;
     CredibilityEvidence credibility;
+    bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
     std::int64_t failed_trials() const { return left_out + diverged; }
 };

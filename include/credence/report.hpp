@@ -55,6 +55,7 @@ struct Report {
     std::vector<Scenario> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that failed, the first ones
+    std::vector<std::string> not_judged;    ///< of a record: what cannot be judged by what it holds, in sentences
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 

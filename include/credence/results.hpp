@@ -30,6 +30,14 @@ struct SeriesTotals {
     ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
     std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`
     std::vector<std::int64_t> covered; ///< [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty
+
+    // Of a record of version 2 only, in which a component group may be missing at some steps of a trial.
+    std::vector<std::int64_t> present{};  ///< [K - 1] trials with a value at the step; empty: as the arm says
+    std::int64_t runs = 0;                ///< trials with a value at some step; means only something beside `present`
+    /// [K - 1] of the NEES of a state that grows or shrinks: the dimensions that it has at the step, added up over the
+    /// trials; empty: each has the declared one. `sum` and `square_sum` are then of NEES / (dimension at the step) times
+    /// the declared dimension.
+    std::vector<std::int64_t> dimensions{};
 };
 
 /// Totals over the detailed trials of products of whitened innovations, by lag from 1 up.
@@ -79,6 +87,11 @@ struct ArmResults {
     std::vector<double> distribution_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
 
     std::int64_t counted_at(std::size_t step) const { return present.empty() ? counted : present[step]; }
+    /// Trials with a value of the series at a step, and at some step.
+    std::int64_t counted_at(const SeriesTotals& series, std::size_t step) const {
+        return series.present.empty() ? counted_at(step) : series.present[step];
+    }
+    std::int64_t counted_in(const SeriesTotals& series) const { return series.present.empty() ? counted : series.runs; }
 };
 
 struct ScenarioResults {
@@ -94,6 +107,10 @@ struct ScenarioResults {
     /// The source of the arms' totals (but `aggregates`, which are always in memory) and details where has_totals() is
     /// false [load_totals]; nullptr: no trial has been computed.
     std::shared_ptr<const KeptTotals> kept_totals{};
+    /// False of a record without a covariance of the whole state: then nothing shows that all of it is consistent.
+    bool has_joint_covariance = true;
+    /// Of a record: what cannot be judged by what it holds, in full sentences.
+    std::vector<std::string> not_judged{};
 
     int steps() const { return scenario.poses - 1; }
     /// Number of trials whose errors are kept: the rows of the details.

@@ -92,6 +92,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     report.source = "record " + printable(path, path.size());
     report.limits = limits;
     report.troubles = record.troubles;
+    report.not_judged = results.not_judged;
     results.scenario.title.clear();  // the source names it
     report.scenarios.push_back(results.scenario);
     constexpr std::uint64_t bootstrap_seed = 1;

@@ -166,6 +166,7 @@ std::vector<std::string> warnings_of(const Report& report) {
                              {"are left out of its figures", "are in the figures"}), std::back_inserter(lines));
     }
     add_troubles(report, lines);
+    for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
     if (!report.complete) {
         const auto not_run = std::count_if(report.arms.begin(), report.arms.end(),
                                            [](const ArmReport& arm) { return arm.not_run(); });

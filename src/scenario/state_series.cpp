@@ -6,8 +6,8 @@ namespace credence {
 
 std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& group) {
     std::vector<std::string> units;
-    for (int i = group.first; i < group.first + group.count; ++i) {
-        const std::string& unit = components[static_cast<std::size_t>(i)].unit;
+    for (int i = 0; i < group.count; ++i) {
+        const std::string& unit = components[static_cast<std::size_t>(group.component(i))].unit;
         if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
     }
     std::string text;
@@ -33,6 +33,12 @@ void add_nis(std::vector<Series>& list) {
     list.push_back({"nis_rows", "measurement rows", "1", SeriesRole::rows, 0, true, "all", "", 0});
 }
 
+void add_nis_of_rows(std::vector<Series>& list, const std::string& name) {
+    list.push_back({"nis_" + name, "normalised innovation squared of " + name, "1", SeriesRole::nis, 0, false, name,
+                    "nis_rows_" + name, 0});
+    list.push_back({"nis_rows_" + name, "measurement rows of " + name, "1", SeriesRole::rows, 0, true, name, "", 0});
+}
+
 void add_squared_errors(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of) {
     for (const ComponentGroup& group : groups)
         list.push_back({of_group("squared_error", group), "squared error of " + described(group), unit_of(group),
@@ -54,16 +60,22 @@ void add_standardised_errors(std::vector<Series>& list, const std::vector<Compon
                         SeriesRole::standardised_error, 1, false, component.name, "", 0});
 }
 
-StateSeries::StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& groups,
-                         Innovations innovations) {
-    const UnitOf unit_of = [&](const ComponentGroup& group) { return squared_unit(components, group); };
+StateSeries::StateSeries(const std::vector<ComponentGroup>& groups, Innovations innovations,
+                         const std::vector<std::string>& row_groups) {
     add_nees(list, groups);
     if (innovations == Innovations::given) {
         nis = list.size();
         rows = nis + 1;
         add_nis(list);
+        for (const std::string& name : row_groups) add_nis_of_rows(list, name);
     }
-    squared_error = list.size();
+    squared_error = variance = standardised_error = list.size();
+}
+
+StateSeries::StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& groups,
+                         Innovations innovations, const std::vector<std::string>& row_groups)
+    : StateSeries(groups, innovations, row_groups) {
+    const UnitOf unit_of = [&](const ComponentGroup& group) { return squared_unit(components, group); };
     add_squared_errors(list, groups, unit_of);
     variance = list.size();
     add_variances(list, groups, unit_of, "");

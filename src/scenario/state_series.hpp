@@ -13,11 +13,14 @@ namespace credence {
 
 enum class Innovations { none, given };
 
-/// Figures by kind: NEES of each block; NIS and its rows where there are innovations; squared error and variance of each
-/// block; standardised error of each component.
+/// Series by kind: NEES of each group; NIS and its rows where there are innovations, of all rows and of each group of
+/// rows; squared error and variance of each group; standardised error of each component.
 struct StateSeries {
-    StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& blocks,
-                 Innovations innovations);
+    StateSeries(const std::vector<Component>& components, const std::vector<ComponentGroup>& groups,
+                Innovations innovations, const std::vector<std::string>& row_groups = {});
+    /// NEES and NIS alone, where the errors are not known.
+    StateSeries(const std::vector<ComponentGroup>& groups, Innovations innovations,
+                const std::vector<std::string>& row_groups);
 
     std::vector<Series> list;
     std::size_t nis = 0, rows = 0, squared_error = 0, variance = 0, standardised_error = 0;  ///< where each kind begins
@@ -37,6 +40,8 @@ std::string of_group(const std::string& name, const ComponentGroup& group);
 void add_nees(std::vector<Series>& list, const std::vector<ComponentGroup>& groups);
 /// `nis` of all rows, and `nis_rows`, which counts them.
 void add_nis(std::vector<Series>& list);
+/// `nis_NAME` of a group of rows, and `nis_rows_NAME`.
+void add_nis_of_rows(std::vector<Series>& list, const std::string& name);
 void add_squared_errors(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of);
 /// `when` ends the long names, such as ` after the update`.
 void add_variances(std::vector<Series>& list, const std::vector<ComponentGroup>& groups, const UnitOf& unit_of,

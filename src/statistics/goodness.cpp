@@ -35,18 +35,37 @@ double chi_square_p(double statistic, double degrees) {
     return boost::math::cdf(boost::math::complement(boost::math::chi_squared(degrees), statistic));
 }
 
-double chi_square_distance(std::vector<double> values, double degrees) {
+namespace {
+
+/// Without NaN, in order.
+void put_in_order(std::vector<double>& values) {
     std::erase_if(values, [](double value) { return std::isnan(value); });
-    if (values.empty()) return nan;
     std::sort(values.begin(), values.end());
-    const double n = static_cast<double>(values.size());
+}
+
+/// Of probabilities in order.
+double distance_of_sorted(const std::vector<double>& probabilities) {
+    if (probabilities.empty()) return nan;
+    const double n = static_cast<double>(probabilities.size());
     double greatest = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double p = 1 - chi_square_p(values[i], degrees);
-        const double below = static_cast<double>(i);
+    for (std::size_t i = 0; i < probabilities.size(); ++i) {
+        const double p = probabilities[i], below = static_cast<double>(i);
         greatest = std::max({greatest, (below + 1) / n - p, p - below / n});
     }
     return greatest;
+}
+
+}  // namespace
+
+double chi_square_distance(std::vector<double> values, double degrees) {
+    put_in_order(values);
+    for (double& value : values) value = 1 - chi_square_p(value, degrees);
+    return distance_of_sorted(values);
+}
+
+double uniform_distance(std::vector<double> probabilities) {
+    put_in_order(probabilities);
+    return distance_of_sorted(probabilities);
 }
 
 double cell_distance(const std::int64_t* counts, int cells) {

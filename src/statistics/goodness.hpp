@@ -25,6 +25,9 @@ double chi_square_p(double statistic, double degrees);
 /// Smirnov]. NaN values are left out; NaN where none is left.
 double chi_square_distance(std::vector<double> values, double degrees);
 
+/// The same of probabilities F(x), whose distribution is uniform, so that F may be another one for each value.
+double uniform_distance(std::vector<double> probabilities);
+
 /// The same from counts in `cells` cells of equal probability, from the lowest values to the highest: max over i |share
 /// in the first i cells - i/cells|. At most the exact distance, and below it by at most 1/cells. NaN where there are no
 /// counts.

@@ -126,10 +126,10 @@ private:
         if (optimistic_ && pessimistic_) verdict_.verdict = Verdict::mixed;
         else if (optimistic_) verdict_.verdict = Verdict::optimistic;
         else if (pessimistic_) verdict_.verdict = Verdict::pessimistic;
-        else if (all_inside_ && !evidence_.blocks.empty() && verdict_.findings.empty())
+        else if (all_inside_ && evidence_.joint && !evidence_.blocks.empty() && verdict_.findings.empty())
             verdict_.verdict = Verdict::consistent;
         constexpr std::int64_t enough_to_tell = 30;
-        if (verdict_.verdict == Verdict::undecided && !all_inside_ && evidence_.trials >= enough_to_tell)
+        if (verdict_.verdict == Verdict::undecided && !all_inside_ && evidence_.joint && evidence_.trials >= enough_to_tell)
             verdict_.trials_to_decide = std::isfinite(needed_outside_) ? needed_outside_ : needed_inside_;
     }
 

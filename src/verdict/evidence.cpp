@@ -78,7 +78,7 @@ DistributionEvidence shape_evidence(const ScenarioResults& results, const ArmRes
         evidence.distance.push_back(evidence.exact       ? arm.distribution_distance[k]
                                     : arm.cells.empty() ? nan
                                                         : cell_distance(arm.cells.data() + k * distribution_cells, distribution_cells));
-        const double count = static_cast<double>(arm.counted_at(k));
+        const double count = static_cast<double>(arm.counted_at(arm.totals.front(), k));
         evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back()) ? nan : kolmogorov_smirnov_p(evidence.distance.back(), count));
     }
     return evidence;
@@ -125,6 +125,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
     count_trials(results, arm, evidence);
     evidence.steps = results.steps();
+    evidence.joint = results.has_joint_covariance;
     for (std::size_t f = 0; f < results.all_series.size(); ++f) {
         const Series& series = results.all_series[f];
         if (series.role == SeriesRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));

@@ -28,7 +28,7 @@ double run_total(const SeriesTotals& totals) {
 
 /// Of each trial's mean over its steps.
 Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
-    return scaled(moments_from_sums(arm.counted, run_total(totals), totals.run_square_sum.rounded()), scale / steps);
+    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()), scale / steps);
 }
 
 std::vector<Coverage> coverage_of(const ArmResults& arm, const SeriesTotals& totals) {
@@ -37,7 +37,7 @@ std::vector<Coverage> coverage_of(const ArmResults& arm, const SeriesTotals& tot
         Coverage one{coverage_levels[level], {}, {}, 0};
         double known = 0;
         for (std::size_t k = 0; k < totals.sum.size(); ++k) {
-            const double trials = static_cast<double>(arm.counted_at(k)),
+            const double trials = static_cast<double>(arm.counted_at(totals, k)),
                          covered = static_cast<double>(totals.covered[k * coverage_level_count + level]);
             one.share.push_back(trials > 0 ? covered / trials : nan);
             one.interval.push_back(wilson_interval(covered, trials));
@@ -81,6 +81,12 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
     return accuracy;
 }
 
+/// Degrees of freedom of the NEES of all trials at a step.
+double degrees_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, int dimension) {
+    return totals.dimensions.empty() ? static_cast<double>(arm.counted_at(totals, k)) * dimension
+                                     : static_cast<double>(totals.dimensions[k]);
+}
+
 /// Ratios of a NEES to its dimension, over the run and step by step: the same for every chart of the error.
 template <class Ratios>
 void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
@@ -92,8 +98,10 @@ void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::siz
     std::vector<double> sums;
     for (std::size_t k = 0; k < totals.sum.size(); ++k) {
         evidence.step.push_back(moments_at(arm, totals, k, 1.0 / series.dimension));
-        evidence.anees.degrees.push_back(static_cast<double>(arm.counted_at(k)) * series.dimension);
+        evidence.anees.degrees.push_back(degrees_at(arm, totals, k, series.dimension));
         sums.push_back(totals.sum[k].rounded());
+        if (!totals.dimensions.empty() && evidence.anees.degrees.back() > 0)  // of NEES/dim times the whole dimension
+            sums.back() *= evidence.anees.degrees.back() / (static_cast<double>(arm.counted_at(totals, k)) * series.dimension);
     }
     fill_bands(sums, evidence.anees);
 }
@@ -104,7 +112,7 @@ bool within(double value, const Interval& interval) { return value >= interval.l
 
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale) {
     const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
-    return scaled(moments_from_sums(arm.counted_at(k), totals.sum[k].rounded(), square), scale);
+    return scaled(moments_from_sums(arm.counted_at(totals, k), totals.sum[k].rounded(), square), scale);
 }
 
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
@@ -129,9 +137,12 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
 GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     GroupEvidence evidence;
     fill_ratios(results, arm, f, evidence);
-    for (const Moments& step : evidence.step) {
-        const double deviation = step.standard_deviation * evidence.dimension;
-        evidence.variance_ratio.push_back(deviation * deviation / (2 * evidence.dimension));
+    for (std::size_t k = 0; k < evidence.step.size(); ++k) {
+        const Moments& step = evidence.step[k];
+        const double whole = evidence.dimension,
+                     dimension = arm.totals[f].dimensions.empty() ? whole : evidence.anees.degrees[k] / step.count,
+                     deviation = step.standard_deviation * dimension;
+        evidence.variance_ratio.push_back(deviation * deviation / (2 * dimension));
     }
     evidence.coverage = coverage_of(arm, arm.totals[f]);
     evidence.accuracy = accuracy_of(results, arm, evidence.block);

@@ -1,10 +1,11 @@
 // Checks the values of a step of a record. A covariance that is not symmetric is refused, with its dataset, trial and
 // step; a value that is not finite makes the trial fail at this step, as a failure of the filter and not of the record.
 
+#include "files/record/check.hpp"
+
 #include <credence/text.hpp>
 
 #include "files/hdf5/handle.hpp"
-#include "worlds/own/step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +18,11 @@ using hdf5::Error;
 
 constexpr double largest_asymmetry = 1e-9;
 
-bool any_number(const double* values, std::ptrdiff_t count) {
-    return !std::all_of(values, values + count, [](double value) { return std::isnan(value); });
-}
-
 bool all_finite(const double* values, std::ptrdiff_t count) {
     return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
 }
 
-void refuse_asymmetry(const char* dataset, const RecordStep& step, int i, int j, double above, double below) {
+void refuse_asymmetry(const std::string& dataset, const RecordStep& step, int i, int j, double above, double below) {
     throw Error(dataset,
                 "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
                     " (both counted from 0) is not symmetric: [" + std::to_string(i) + ", " + std::to_string(j) +
@@ -34,10 +31,34 @@ void refuse_asymmetry(const char* dataset, const RecordStep& step, int i, int j,
                 "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
 }
 
-/// Copies the submatrix of a matrix [size, size] with these rows and columns, made symmetric; false where some value is
-/// not finite.
-bool read_symmetric(const char* dataset, const RecordStep& step, const double* values, std::ptrdiff_t size,
-                    const std::vector<int>& rows, Eigen::MatrixXd& symmetric) {
+/// Copies the error and its covariance, of which some value is a number. Returns what is wrong with them.
+std::string read_state(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
+    const std::ptrdiff_t n = shape.n;
+    if (!any_number(step.error, n)) return "the error is NaN, and the covariance is not";
+    if (!any_number(step.covariance, n * n)) return "the covariance is NaN, and the error is not";
+    if (!all_finite(step.error, shape.n)) return "the error is not finite";
+    checked.e = Eigen::Map<const Eigen::VectorXd>(step.error, shape.n);
+    return read_symmetric("/covariance", step, step.covariance, shape.n, counted_up(shape.n),
+                          shape.covariance_epsilon, checked.P)
+               ? ""
+               : "the covariance is not finite";
+}
+
+}  // namespace
+
+std::vector<int> counted_up(int count) {
+    std::vector<int> all(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) all[static_cast<std::size_t>(i)] = i;
+    return all;
+}
+
+bool any_number(const double* values, std::ptrdiff_t count) {
+    return !std::all_of(values, values + count, [](double value) { return std::isnan(value); });
+}
+
+bool read_symmetric(const std::string& dataset, const RecordStep& step, const double* values, std::ptrdiff_t size,
+                    const std::vector<int>& rows, double epsilon, Eigen::MatrixXd& symmetric) {
+    const double most = std::max(largest_asymmetry, 16 * epsilon);
     const auto at = [&](int i, int j) { return values[i * size + j]; };
     for (const int i : rows)
         for (const int j : rows)
@@ -49,8 +70,8 @@ bool read_symmetric(const char* dataset, const RecordStep& step, const double* v
             const int i = rows[static_cast<std::size_t>(b)], j = rows[static_cast<std::size_t>(a)];
             const double above = at(i, j), below = at(j, i), difference = std::abs(above - below);
             // The cheap bound comes first; the other one allows for the rounding of entries that should be 0.
-            if (difference > largest_asymmetry * std::max(std::abs(above), std::abs(below)) &&
-                !(difference <= largest_asymmetry * std::sqrt(std::abs(at(i, i))) * std::sqrt(std::abs(at(j, j)))))
+            if (difference > most * std::max(std::abs(above), std::abs(below)) &&
+                !(difference <= most * std::sqrt(std::abs(at(i, i))) * std::sqrt(std::abs(at(j, j)))))
                 refuse_asymmetry(dataset, step, i, j, above, below);
             symmetric(a, b) = symmetric(b, a) = above / 2 + below / 2;
         }
@@ -58,14 +79,6 @@ bool read_symmetric(const char* dataset, const RecordStep& step, const double* v
     return true;
 }
 
-std::vector<int> counted_up(int count) {
-    std::vector<int> all(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) all[static_cast<std::size_t>(i)] = i;
-    return all;
-}
-
-/// Copies the observed rows of the innovation, and their covariance. Returns what is wrong with them; empty where
-/// nothing is.
 std::string read_innovation(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
     checked.rows.clear();
     for (int row = 0; row < shape.m; ++row)
@@ -74,24 +87,11 @@ std::string read_innovation(const RecordStep& step, const RecordShape& shape, Ch
     for (std::size_t i = 0; i < checked.rows.size(); ++i)
         checked.nu(static_cast<Eigen::Index>(i)) = step.innovation[checked.rows[i]];
     if (!checked.nu.allFinite()) return "the innovation is not finite";
-    return read_symmetric("/innovation_covariance", step, step.innovation_covariance, shape.m, checked.rows, checked.S)
+    return read_symmetric("/innovation_covariance", step, step.innovation_covariance, shape.m, checked.rows,
+                          shape.innovation_epsilon, checked.S)
                ? ""
                : "the innovation covariance is not finite";
 }
-
-/// Does the same for the error and its covariance, of which some value is a number.
-std::string read_state(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
-    const std::ptrdiff_t n = shape.n;
-    if (!any_number(step.error, n)) return "the error is NaN, and the covariance is not";
-    if (!any_number(step.covariance, n * n)) return "the covariance is NaN, and the error is not";
-    if (!all_finite(step.error, shape.n)) return "the error is not finite";
-    checked.e = Eigen::Map<const Eigen::VectorXd>(step.error, shape.n);
-    return read_symmetric("/covariance", step, step.covariance, shape.n, counted_up(shape.n), checked.P)
-               ? ""
-               : "the covariance is not finite";
-}
-
-}  // namespace
 
 Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
     if (!any_number(step.error, shape.n) && !any_number(step.covariance, std::ptrdiff_t{shape.n} * shape.n))
@@ -101,9 +101,19 @@ Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedSte
     return checked.broken.empty() ? Presence::there : Presence::broken;
 }
 
+namespace {
+
+template <class Values>
+bool diverged(const Values& values) {
+    return values.size() > 0 && values.cwiseAbs().maxCoeff() > divergence_bound;
+}
+
+}  // namespace
+
 std::string divergence_of(const CheckedStep& step) {
-    if (step.e.cwiseAbs().maxCoeff() > divergence_bound) return "the error is beyond 1e12: diverged";
-    return step.P.cwiseAbs().maxCoeff() > divergence_bound ? "the covariance is beyond 1e12: diverged" : "";
+    if (diverged(step.e)) return "the error is beyond 1e12: diverged";
+    const bool of_group = std::any_of(step.own.begin(), step.own.end(), diverged<Eigen::MatrixXd>);
+    return diverged(step.P) || diverged(step.variances) || of_group ? "the covariance is beyond 1e12: diverged" : "";
 }
 
 }  // namespace credence

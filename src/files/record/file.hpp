@@ -1,7 +1,7 @@
 #pragma once
 // The datasets of a record for `judge`: their extents checked against each other, and read part by part.
 
-#include "files/hdf5/slab.hpp"
+#include "files/record/layout.hpp"
 #include "worlds/own/step.hpp"
 
 #include <cstdint>
@@ -17,12 +17,14 @@ struct RecordPart {
     int first_step = 0, steps = 0;
 };
 
-/// Values of a part, row-major; innovations are empty where there are none.
+/// Values of a part, row-major; empty where the record has none.
 struct RecordValues {
     std::vector<double> error;                  ///< [trials, steps, n]
-    std::vector<double> covariance;             ///< [trials, steps, n, n]
+    std::vector<double> covariance;             ///< [trials, steps, n, n], or [trials, steps, n] of variances
     std::vector<double> innovation;             ///< [trials, steps, m]
     std::vector<double> innovation_covariance;  ///< [trials, steps, m, m]
+    std::vector<std::vector<double>> own;       ///< [groups] [trials, steps, d, d] covariances, or [trials, steps] NEES
+    std::vector<double> truth, estimate;        ///< [trials, steps, q]
 };
 
 /// All functions throw hdf5::Error.
@@ -31,7 +33,7 @@ public:
     /// `part_numbers`: how many numbers are read at once, 64 MiB of doubles by default.
     explicit RecordFile(const hdf5::Handle& root, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
-    const RecordShape& shape() const { return shape_; }
+    const RecordShape& shape() const { return layout_.shape; }
 
     /// The part that starts at a trial and step, as large as allowed, but at least one step.
     RecordPart part_at(std::int64_t trial, int step) const;
@@ -39,19 +41,17 @@ public:
 
 private:
     void read(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
-    void add_innovations();
+    void read_manifold(const RecordPart& part, RecordValues& values) const;
+    void require_quaternions(const hdf5::RealDataset& dataset, std::int64_t trial, int step,
+                             const double* coordinates) const;
+    void add_size(const std::optional<hdf5::RealDataset>& dataset);
+    std::vector<const hdf5::RealDataset*> leading() const;
     int longest_trial() const;
-    int last_step(const RecordPart& part, std::vector<double>& errors) const;
+    int last_step(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
 
-    hdf5::RealDataset error_, covariance_;
-    std::optional<hdf5::RealDataset> innovation_, innovation_covariance_;
+    RecordLayout layout_;
     std::int64_t part_numbers_;
-    bool single_ = false;            ///< one trial, without a dimension for trials
-    RecordShape shape_;
+    std::int64_t step_numbers_ = 0;  ///< numbers of one step of a trial
 };
-
-/// The whole state as `all`, then the component groups that a text names, such as `pose 0:3, feature_1 3:5`, of a state
-/// of n components. Throws hdf5::Error at `place`.
-std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
 
 }  // namespace credence

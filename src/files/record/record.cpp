@@ -9,16 +9,21 @@ namespace credence {
 
 namespace {
 
-void add_part(const RecordPart& part, const RecordShape& shape, const RecordValues& values, RecordTotals& totals) {
-    const auto n = static_cast<std::size_t>(shape.n), m = static_cast<std::size_t>(shape.m);
+void add_part(const RecordPart& part, const RecordValues& values, RecordTotals& totals) {
+    const std::size_t steps = static_cast<std::size_t>(part.trials) * static_cast<std::size_t>(part.steps);
     std::size_t i = 0;
-    for (std::int64_t trial = part.first_trial; trial < part.first_trial + part.trials; ++trial)
-        for (int k = part.first_step; k < part.first_step + part.steps; ++k, ++i) {
-            RecordStep step{trial, k, &values.error[i * n], &values.covariance[i * n * n]};
-            if (shape.has_innovations()) {
-                step.innovation = &values.innovation[i * m];
-                step.innovation_covariance = &values.innovation_covariance[i * m * m];
-            }
+    const auto at = [&](const std::vector<double>& all) -> const double* {
+        return all.empty() ? nullptr : &all[i * (all.size() / steps)];
+    };
+    RecordStep step;
+    step.own.resize(values.own.size());
+    for (step.trial = part.first_trial; step.trial < part.first_trial + part.trials; ++step.trial)
+        for (step.step = part.first_step; step.step < part.first_step + part.steps; ++step.step, ++i) {
+            step.error = at(values.error);
+            step.covariance = at(values.covariance);
+            step.innovation = at(values.innovation);
+            step.innovation_covariance = at(values.innovation_covariance);
+            for (std::size_t b = 0; b < step.own.size(); ++b) step.own[b] = at(values.own[b]);
             totals.add(step);
         }
 }
@@ -36,7 +41,7 @@ Record read_record(const RecordFile& file, const std::string& path,
         for (int step = 0; step < shape.steps;) {
             const RecordPart part = file.part_at(trial, step);
             file.read(part, values);
-            add_part(part, shape, values, totals);
+            add_part(part, values, totals);
             step += part.steps;
             trials = part.trials;
         }

@@ -55,6 +55,34 @@ ArmResults empty_arm(const ScenarioResults& results) {
     return arm;
 }
 
+/// The groups of a source, such as `pose, feature_1`.
+std::string groups_of(const RecordShape& shape, GroupSource source) {
+    std::vector<std::string> names;
+    for (std::size_t b = 1; b < shape.groups.size(); ++b)
+        if (shape.source(b) == source && (source != GroupSource::variances || shape.groups[b].count > 1))
+            names.push_back(shape.groups[b].name);
+    return joined(names);
+}
+
+/// What a record cannot show, in sentences.
+std::vector<std::string> not_judged(const RecordShape& shape) {
+    std::vector<std::string> sentences;
+    if (shape.has_variances)
+        sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
+                            "between components is.");
+    else if (!shape.has_joint())
+        sentences.push_back("The record has no covariance of the whole state: correlations between its groups are not judged.");
+    if (const std::string names = groups_of(shape, GroupSource::variances); !names.empty())
+        sentences.push_back("Without a covariance there is no NEES of " + names + ".");
+    if (shape.source(0) == GroupSource::nees && shape.has_errors)
+        sentences.push_back("Of the whole state there is the NEES and nothing else.");
+    if (!shape.has_errors)
+        sentences.push_back("The record has NEES and no errors: bias, directions and the size of the errors are not judged.");
+    else if (const std::string names = groups_of(shape, GroupSource::nees); !names.empty())
+        sentences.push_back("Of " + names + " there is the NEES and nothing else: bias and directions are not judged by it.");
+    return sentences;
+}
+
 }  // namespace
 
 std::size_t pose_block(const RecordShape& shape) {
@@ -72,6 +100,8 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.columns = record_columns(shape);
     results.all_series = all_series;
     results.trials = shape.trials;
+    results.has_joint_covariance = shape.has_joint();
+    results.not_judged = not_judged(shape);
     results.arms.push_back(empty_arm(results));
     return results;
 }

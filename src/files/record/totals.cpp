@@ -24,16 +24,23 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     : shape_(shape),
       all_series_(record_series(shape_)),
       judge_(shape_, all_series_),
+      presence_(shape_),
       products_(size(lag_count(shape_.steps + 1)), size(shape_.m)) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
     keeps_nees_ = shape.trials <= most_values / shape.steps;
-    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values;
+    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
     for (const ComponentGroup& block : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
+    if (shape.version == 1) return;
+    for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
+    if (!shape.has_joint()) return;
+    dimensions_.resize(size(shape.steps));
+    arm().totals.front().dimensions.resize(size(shape.steps));
+    bounds_by_dimension_.resize(size(shape.n + 1) * coverage_level_count);
 }
 
 void RecordTotals::add(const RecordStep& step) {
@@ -46,7 +53,7 @@ void RecordTotals::add(const RecordStep& step) {
 
 void RecordTotals::add_covered(const RecordStep& step) {
     const bool covered = shape_.covers(step.trial, step.step);
-    switch (covered ? check_step(step, shape_, checked_) : Presence::absent) {
+    switch (covered ? check(step) : Presence::absent) {
         case Presence::there: return add_figures(step, checked_);
         case Presence::broken: return note(step, Status::non_finite, checked_.broken);
         case Presence::absent: break;
@@ -66,8 +73,13 @@ void RecordTotals::check_end(std::int64_t trial) {
              (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
 }
 
+Presence RecordTotals::check(const RecordStep& step) {
+    return shape_.version == 1 ? check_step(step, shape_, checked_) : presence_.check(step, checked_);
+}
+
 void RecordTotals::start_trial() {
     status_ = Status::completed;
+    presence_.start_trial();
     present_.clear();
     products_.start_trial();
 }
@@ -81,9 +93,24 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
     if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
         note(step, Status::diverged, beyond);
+    judge_.forget_unknown(values);
+    set_dimension(k);
     present_.push_back(k);
     keep_details(step.trial, k, checked);
     products_.correlate(k);
+}
+
+/// Notes the dimension that the state has at this step, and scales its NEES to that of the whole state.
+void RecordTotals::set_dimension(std::size_t k) {
+    if (dimensions_.empty()) return;
+    dimensions_[k] = static_cast<int>(std::ranges::count(checked_.here, 1));
+    if (dimensions_[k] < shape_.n) series(0, k) *= static_cast<double>(shape_.n) / dimensions_[k];
+}
+
+/// The NEES of the state as it is at this step.
+double RecordTotals::nees_at(std::size_t k) {
+    const bool partial = !dimensions_.empty() && dimensions_[k] < shape_.n;
+    return partial ? series(0, k) * dimensions_[k] / shape_.n : series(0, k);
 }
 
 void RecordTotals::note(const RecordStep& step, Status status, const std::string& what) {
@@ -94,8 +121,10 @@ void RecordTotals::note(const RecordStep& step, Status status, const std::string
 void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
     if (trial >= record_.results.detailed()) return;
     const std::size_t at = size(trial) * size(shape_.steps) + k;
-    arm().nees[at] = series(0, k);
-    std::copy(checked.e.begin(), checked.e.end(), arm().errors.begin() + static_cast<std::ptrdiff_t>(at) * shape_.n);
+    arm().nees[at] = !dimensions_.empty() && dimensions_[k] < shape_.n ? nan : series(0, k);
+    for (Eigen::Index j = 0; j < checked.e.size(); ++j)
+        arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
+            checked.here.empty() || checked.here[static_cast<std::size_t>(j)] ? checked.e(j) : nan;
 }
 
 void RecordTotals::end_trial(std::int64_t trial) {
@@ -117,19 +146,25 @@ void RecordTotals::end_trial(std::int64_t trial) {
 void RecordTotals::add_columns(std::int64_t trial) {
     double row[record_column_count];
     std::fill(std::begin(row), std::end(row), nan);
+    // Sums and means are over the steps at which the series has a value; NaN where it has none.
+    const auto count = [&](std::size_t f) {
+        return static_cast<double>(std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(series(f, k)); }));
+    };
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;
-        for (const std::size_t k : present_) sum += series(f, k);
-        return sum;
+        for (const std::size_t k : present_)
+            if (const double value = series(f, k); !std::isnan(value)) sum += value;
+        return count(f) > 0 ? sum : nan;
     };
-    const double count = static_cast<double>(present_.size());
     row[RecordColumn::status] = static_cast<double>(status_);
     row[RecordColumn::status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     if (!fill_failed(record_.results.columns, row)) {
-        row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
-        row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count;
-        row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
-        row[RecordColumn::nees_ratio] = over_steps(0) / count / shape_.n;
+        if (shape_.has_errors) {
+            row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
+            row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
+            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
+        }
+        row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
         row[RecordColumn::nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
     for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
@@ -137,23 +172,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
 
 void RecordTotals::add_totals() {
     ++arm().counted;
-    const double count = static_cast<double>(present_.size()), steps = shape_.steps;
-    for (std::size_t f = 0; f < all_series_.list.size(); ++f) {
-        SeriesTotals& totals = arm().totals[f];
-        const bool innovations = record_.has_innovations && (f == all_series_.nis || f == all_series_.rows);
-        double run = 0;
-        for (const std::size_t k : present_) {
-            const double value = series(f, k);
-            run += value;
-            totals.sum[k].add(value);
-            if (!all_series_.list[f].integer) totals.square_sum[k].add(value * value);
-            for (std::size_t l = 0; f < shape_.groups.size() && l < coverage_level_count; ++l)
-                totals.covered[k * coverage_level_count + l] += value < bounds_[f * coverage_level_count + l];
-        }
-        if (!innovations) run *= steps / count;
-        totals.run_sum->add(run);
-        totals.run_square_sum.add(run * run);
-    }
+    for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
     add_distribution();
     for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
         arm().products.sum[lag].add(products_.sum[lag]);
@@ -162,19 +181,62 @@ void RecordTotals::add_totals() {
     }
 }
 
+void RecordTotals::add_series(std::size_t f) {
+    SeriesTotals& totals = arm().totals[f];
+    const Series& declared = all_series_.list[f];
+    const bool of_innovations = declared.role == SeriesRole::nis || declared.role == SeriesRole::rows;
+    double run = 0, count = 0;
+    for (const std::size_t k : present_) {
+        const double value = series(f, k);
+        if (std::isnan(value)) continue;
+        run += value;
+        ++count;
+        totals.sum[k].add(value);
+        if (!declared.integer) totals.square_sum[k].add(value * value);
+        if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value);
+        if (!totals.present.empty()) ++totals.present[k];
+        if (f == 0 && !dimensions_.empty()) totals.dimensions[k] += dimensions_[k];
+    }
+    if (count == 0) return;
+    if (!of_innovations) run *= shape_.steps / count;
+    totals.run_sum->add(run);
+    totals.run_square_sum.add(run * run);
+    ++totals.runs;
+}
+
+void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
+    const double* bound = bounds(f, k);
+    for (std::size_t l = 0; l < coverage_level_count; ++l)
+        arm().totals[f].covered[k * coverage_level_count + l] += value < bound[l];
+}
+
+/// The bounds [levels] of a group's NEES at a step.
+const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
+    if (f != 0 || dimensions_.empty() || dimensions_[k] == shape_.n) return &bounds_[f * coverage_level_count];
+    double* all = &bounds_by_dimension_[size(dimensions_[k]) * coverage_level_count];
+    for (std::size_t l = 0; all[0] == 0 && l < coverage_level_count; ++l)
+        all[coverage_level_count - 1 - l] = stable_chi_square_quantile(coverage_levels[coverage_level_count - 1 - l], dimensions_[k]);
+    return all;
+}
+
+/// Of version 2 the values of `nees_` are their probabilities, so that those of states of any dimension are together.
 void RecordTotals::add_distribution() {
-    const auto cells = equiprobable_cells(shape_.n);
     for (const std::size_t k : present_) {
         ++arm().present[k];
-        if (keeps_cells_) ++arm().cells[k * distribution_cells + size(cells->cell(series(0, k)))];
-        if (keeps_nees_) nees_[k].push_back(series(0, k));
+        const double nees = nees_at(k);
+        if (std::isnan(nees)) continue;
+        const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
+        if (keeps_cells_)
+            ++arm().cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
+        if (keeps_nees_) nees_[k].push_back(shape_.version == 1 ? nees : 1 - chi_square_p(nees, dimension));
     }
 }
 
 Record RecordTotals::finish() {
     if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
-        arm().distribution_distance[k] = chi_square_distance(std::move(nees_[k]), shape_.n);
+        arm().distribution_distance[k] = shape_.version == 1 ? chi_square_distance(std::move(nees_[k]), shape_.n)
+                                                             : uniform_distance(std::move(nees_[k]));
     return std::move(record_);
 }
 

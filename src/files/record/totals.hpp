@@ -4,6 +4,7 @@
 #include <credence/record.hpp>
 
 #include "files/record/file.hpp"
+#include "files/record/presence.hpp"
 #include "worlds/own/step.hpp"
 #include "worlds/own/lag_products.hpp"
 
@@ -41,15 +42,23 @@ private:
     void end_trial(std::int64_t trial);
     void add_columns(std::int64_t trial);
     void add_totals();
+    void add_series(std::size_t f);
+    void add_coverage(std::size_t f, std::size_t k, double value);
     void add_distribution();
+    Presence check(const RecordStep& step);
+    void set_dimension(std::size_t k);
+    double nees_at(std::size_t k);
+    const double* bounds(std::size_t f, std::size_t k);
 
     RecordShape shape_;
     StateSeries all_series_;
     StepEvaluator judge_;
+    PresenceChecker presence_;                   ///< of version 2
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
+    std::vector<double> bounds_by_dimension_;    ///< [n + 1, levels] the same of a state of that dimension; 0: not known yet
 
     // State of the current trial.
     CheckedStep checked_;
@@ -57,6 +66,7 @@ private:
     RecordTrouble trouble_;                      ///< why the trial failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
+    std::vector<int> dimensions_;                ///< [steps] of the state, of version 2 with a joint covariance; else empty
     LagProducts products_;
 };
 

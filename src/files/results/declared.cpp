@@ -5,7 +5,7 @@
 #include "scenario/state_series.hpp"
 #include <credence/text.hpp>
 
-#include "files/record/file.hpp"
+#include "files/record/groups.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -108,7 +108,7 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
         throw Error(steps.place(), "is no list of steps");
     scenario.poses = static_cast<int>(steps.extents()[0]) + 1;
     scenario.components = read_components(arm);
-    scenario.groups = parse_blocks(hdf5::read_text(group, "blocks"), static_cast<int>(scenario.components.size()),
+    scenario.groups = parse_groups(hdf5::read_text(group, "blocks"), static_cast<int>(scenario.components.size()),
                                    hdf5::attribute_place(group, "blocks"));
     results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
     results.all_series = StateSeries(scenario.components, scenario.groups,

@@ -38,14 +38,21 @@ inline void write_header(const hdf5::Handle& root, const std::string& format, co
     hdf5::write_text(root, "title", title);
 }
 
+/// `0:3`, or `0 2 5` where they are not contiguous.
+inline std::string components_text(const ComponentGroup& group) {
+    if (group.contiguous()) return std::to_string(group.first) + ":" + std::to_string(group.first + group.count);
+    std::string text;
+    for (const int component : group.components) text += (text.empty() ? "" : " ") + std::to_string(component);
+    return text;
+}
+
 /// The component groups of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the
 /// whole state.
 inline std::string blocks_text(const std::vector<ComponentGroup>& blocks) {
     std::vector<std::string> texts;
     for (const ComponentGroup& block : blocks)
         if (block.name != "all")
-            texts.push_back(block.name + " " + std::to_string(block.first) + ":" +
-                            std::to_string(block.first + block.count));
+            texts.push_back(block.name + " " + components_text(block));
     return joined(texts);
 }
 

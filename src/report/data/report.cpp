@@ -62,6 +62,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
         if (pair.scenario == arm.scenario && pair.a == arm.arm) json["paired_difference"] = comparison_json(pair);
     for (const RecordTrouble& trouble : report.troubles)
         json["troubles"].push_back({{"trial", trouble.trial}, {"step", trouble.step}, {"what", trouble.what}});
+    if (!report.not_judged.empty()) json["not_judged"] = report.not_judged;
     json["source"] = report.source;
     json["root_seed"] = report.root_seed ? Json(*report.root_seed) : Json();
     json["complete"] = report.complete;

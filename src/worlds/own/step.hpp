@@ -13,17 +13,43 @@
 
 namespace credence {
 
+/// By what a component group of a record is judged.
+enum class GroupSource {
+    joint,      ///< its part of the covariance of the whole state
+    variances,  ///< the variances of its components alone: no NEES, unless it is one component
+    own,        ///< a covariance of its own
+    nees,       ///< its NEES and nothing else
+    nothing,
+};
+
+/// Rows of an innovation that are judged by themselves.
+struct RowGroup {
+    std::string name;
+    std::vector<int> rows;
+};
+
 /// What a record holds.
 struct RecordShape {
     std::int64_t trials = 0;
     int steps = 0;
     int n = 0;                       ///< components of the state
     int m = 0;                       ///< rows of an innovation; 0 without innovations
-    std::vector<ComponentGroup> groups;  ///< all, and those of the attribute `blocks`
+    std::vector<ComponentGroup> groups;  ///< all, and those that the record names
     double covariance_epsilon = 0, innovation_epsilon = 0;  ///< of the types in the file
     std::vector<int> declared;       ///< [trials] steps of each trial by the dataset `steps`; empty without it
     int longest = 0;                 ///< steps of the longest trial, by its errors
 
+    // Of a record of version 2.
+    int version = 1;
+    std::vector<Component> components;   ///< [n] names and units; empty: x0, x1 ... without a unit
+    std::vector<GroupSource> sources;    ///< [groups]; empty: all `joint`
+    std::vector<double> group_epsilons;  ///< [groups] of the types in the file, where a group has a covariance of its own
+    std::vector<RowGroup> row_groups;
+    bool has_errors = true;              ///< false: NEES alone
+    bool has_variances = false;          ///< the covariance is [trial, step, n]
+
+    GroupSource source(std::size_t group) const { return sources.empty() ? GroupSource::joint : sources[group]; }
+    bool has_joint() const { return source(0) == GroupSource::joint; }
     bool has_innovations() const { return m > 0; }
     /// Steps that a trial must have.
     int steps_of(std::int64_t trial) const {
@@ -33,6 +59,9 @@ struct RecordShape {
     bool covers(std::int64_t trial, int step) const { return declared.empty() || step < steps_of(trial); }
 };
 
+/// The name of a component: x0, x1 ... where the record has none.
+std::string component_name(const RecordShape& shape, int j);
+
 /// A step of a record as it stands in the file.
 struct RecordStep {
     std::int64_t trial = 0;
@@ -41,6 +70,7 @@ struct RecordStep {
     const double* covariance = nullptr;             ///< [n, n]
     const double* innovation = nullptr;             ///< [m]; null without innovations, and so is the next
     const double* innovation_covariance = nullptr;  ///< [m, m]
+    std::vector<const double*> own{};               ///< [groups] covariance [d, d] or NEES of a group; else null
 };
 
 /// What a record says of a step.
@@ -53,11 +83,20 @@ enum class Presence {
 /// A step that is there; of a broken one only what is wrong.
 struct CheckedStep {
     Eigen::VectorXd e;
-    Eigen::MatrixXd P;       ///< symmetric
+    Eigen::MatrixXd P;       ///< symmetric; empty where the record has no joint covariance
+    Eigen::VectorXd variances;  ///< [n] where the record has these alone
     std::vector<int> rows;   ///< observed rows of the innovation
     Eigen::VectorXd nu;      ///< [rows]
     Eigen::MatrixXd S;       ///< [rows, rows], symmetric
     std::string broken;      ///< such as `the covariance is not finite`
+
+    // Of a record of version 2. Components that are not in the state are 0 in e and P.
+    std::vector<char> here;             ///< [n] whether the component is in the state; empty: all are
+    std::vector<Eigen::MatrixXd> own;   ///< [groups] a group's own covariance
+    std::vector<double> nees;           ///< [groups] a group's NEES as given; NaN where it has none at this step
+
+    /// Whether all components of the group are in the state.
+    bool whole(const ComponentGroup& group) const;
 };
 
 /// Reads a step. It is broken where its error is NaN and its covariance is not, or where some of its error, of its
@@ -69,7 +108,7 @@ Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedSte
 /// Empty where nothing is.
 std::string divergence_of(const CheckedStep& step);
 
-/// The series of a record, whose components are called x0, x1 ...
+/// The series of a record.
 StateSeries record_series(const RecordShape& shape);
 
 /// Whether every series of a step is a number whose square, over all steps, still adds up.
@@ -84,16 +123,41 @@ public:
     StepEvaluator(const RecordShape& shape, const StateSeries& all_series);
 
     /// Writes the step's series [series_count], and L^-1 nu [m], S = LL', NaN in rows not observed; without
-    /// innovations that is left alone. Returns what is wrong with a covariance; empty where nothing is.
+    /// innovations that is left alone. A series that has no value at this step is 0. Returns what is wrong with a
+    /// covariance; empty where nothing is.
     std::string judge(const CheckedStep& step, double* all_series, double* whitened);
+
+    /// After `judge`: replaces the series that have no value at this step by NaN.
+    void forget_unknown(double* all_series) const;
 
 private:
     using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
+    std::string judge_group(std::size_t b, const CheckedStep& step, double* all_series);
+    template <class Matrix, class Vector>
+    std::string judge_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon, double* all_series);
+    std::string judge_variances(std::size_t b, const CheckedStep& step, double* all_series);
+    void gather(const ComponentGroup& group, const CheckedStep& step);
+    void standardise(const CheckedStep& step, double* all_series);
+    std::string judge_innovation(const CheckedStep& step, double* all_series, double* whitened);
+    std::string judge_row_group(std::size_t g, const CheckedStep& step, double* all_series);
+    void set_unknown(std::size_t series, double* all_series);
+    void set_size_unknown(std::size_t b, double* all_series);
+
+    /// Where the variance of a component is found: in the group's own covariance, or, with a group below 0, in P.
+    struct VariancePlace {
+        int group = -1, index = 0;
+    };
+
     const RecordShape& shape_;
     const StateSeries& places_;
-    std::vector<Factor> factors_;  ///< by block
+    std::vector<Factor> factors_;  ///< by group
     std::vector<Eigen::VectorXd> solved_;
+    std::vector<VariancePlace> variance_places_;  ///< by component, of a record with covariances of groups; else empty
+    std::vector<std::size_t> unknown_;            ///< series without a value at the last step
+    Eigen::MatrixXd part_P_;
+    Eigen::VectorXd part_e_;
+    std::vector<int> members_;
     Factor innovation_factor_;
     Eigen::VectorXd white_;
 };

@@ -33,6 +33,14 @@ void check_names(const std::string& world, const std::string& what, const std::v
                                     " need names that differ, of letters, digits, _ and -.");
 }
 
+bool is_part_of(const ComponentGroup& group, int n) {
+    if (group.count < 1 || (!group.contiguous() && group.components.size() != static_cast<std::size_t>(group.count)))
+        return false;
+    for (int i = 0; i < group.count; ++i)
+        if (group.component(i) < 0 || group.component(i) >= n) return false;
+    return true;
+}
+
 }  // namespace
 
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report) {
@@ -70,7 +78,7 @@ void check_declared(const Scenario& scenario) {
         if (!is_word(component.unit))
             throw std::invalid_argument("world " + scenario.world + ": a component's unit is one word, such as m/s.");
     for (const ComponentGroup& block : scenario.groups)
-        if (block.first < 0 || block.count < 1 || block.first + block.count > n)
+        if (!is_part_of(block, n))
             throw std::invalid_argument("world " + scenario.world + ": block " + block.name + " is not in the state.");
 }
 

@@ -1,0 +1,203 @@
+#include "files/record/groups.hpp"
+
+#include <credence/scenario.hpp>
+#include <credence/text.hpp>
+
+#include "files/hdf5/slab.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+namespace {
+
+using hdf5::Error;
+
+constexpr std::size_t most_blocks = 1000;
+const std::string example = "Write the blocks as NAME FIRST:END, counted from 0 and END not included, such as "
+                            "`pose 0:3, feature_1 3:5` for components 0, 1, 2 and 3, 4";
+
+std::string quoted(const std::string& text) { return "`" + printable(text) + "`"; }
+
+/// One `NAME FIRST:END`.
+ComponentGroup parse_block(const std::string& entry, int n, const std::string& place) {
+    const std::size_t space = entry.find_first_of(" \t\r\n"), colon = entry.find(':');
+    if (space == std::string::npos || colon == std::string::npos || colon < space)
+        throw Error(place, "broken entry " + quoted(entry), example);
+    const std::string name = entry.substr(0, space);
+    const auto first = to_integer(trimmed(entry.substr(space, colon - space)));
+    const auto end = to_integer(trimmed(entry.substr(colon + 1)));
+    if (!first || !end) throw Error(place, "broken entry " + quoted(entry), example);
+    if (!names_something(name))
+        throw Error(place, quoted(name) + " is no name for a block", "Use letters, digits, _ and -");
+    if (name == "all")
+        throw Error(place, "`all` cannot name a block, because it stands for the whole state",
+                    "Leave that block out: the whole state is judged anyway");
+    if (*first < 0 || *end <= *first) throw Error(place, quoted(entry) + " has no components", example);
+    if (*end > n)
+        throw Error(place, quoted(entry) + " ends beyond the " + std::to_string(n) + " components of the state",
+                    example);
+    return {name, static_cast<int>(*first), static_cast<int>(*end - *first)};
+}
+
+/// What a list is of, for messages.
+struct Listed {
+    std::string one, whole;  ///< `component`, `the state`
+    int size;                ///< how many there are
+    std::string example;
+};
+
+struct NamedList {
+    std::string name;
+    std::vector<int> members;
+};
+
+const std::string group_example = "Write the groups as NAME and its components, counted from 0, such as "
+                                  "`position 0 2, velocity 1 3, heading 4`, or as a range with its end not included, "
+                                  "such as `pose 0:3`";
+const std::string row_example = "Write the groups as NAME and its rows, counted from 0, such as `gps 0:3, baro 3`, the "
+                                "end of a range not included";
+
+std::vector<std::string> words_of(const std::string& text) {
+    std::vector<std::string> words;
+    for (const std::string& word : split_list(text, ' '))
+        if (!word.empty()) words.push_back(word);
+    return words;
+}
+
+/// Adds `4`, or `0:3`.
+void add_members(const std::string& word, const std::string& entry, const Listed& of, const std::string& place,
+                 std::vector<int>& members) {
+    const std::size_t colon = word.find(':');
+    const auto first = to_integer(word.substr(0, colon));
+    const auto end = colon == std::string::npos ? first : to_integer(word.substr(colon + 1));
+    if (!first || !end) throw Error(place, "broken entry " + quoted(entry), of.example);
+    const std::int64_t last = colon == std::string::npos ? *first : *end - 1;
+    if (*first < 0 || last < *first) throw Error(place, quoted(entry) + " has no " + of.one + " " + quoted(word), of.example);
+    if (last >= of.size)
+        throw Error(place, quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
+                    of.example);
+    for (std::int64_t member = *first; member <= last; ++member) {
+        if (std::ranges::find(members, static_cast<int>(member)) != members.end())
+            throw Error(place, quoted(entry) + " names " + of.one + " " + std::to_string(member) + " twice",
+                        "Name each one once in a group");
+        members.push_back(static_cast<int>(member));
+    }
+}
+
+std::vector<NamedList> parse_lists(const std::string& text, const Listed& of, const std::string& place) {
+    std::vector<NamedList> lists;
+    for (const std::string& entry : split_list(text)) {
+        const std::vector<std::string> words = words_of(entry);
+        if (words.size() < 2) throw Error(place, "broken entry " + quoted(entry), of.example);
+        require_group_name(words.front(), "group", place);
+        NamedList list{words.front(), {}};
+        for (std::size_t i = 1; i < words.size(); ++i) add_members(words[i], entry, of, place, list.members);
+        if (std::ranges::any_of(lists, [&](const NamedList& other) { return other.name == list.name; }))
+            throw Error(place, "names two groups " + quoted(list.name), "Give each group a name of its own");
+        if (lists.size() == most_blocks)
+            throw Error(place, "has more than " + std::to_string(most_blocks) + " groups", "Leave some out");
+        lists.push_back(std::move(list));
+    }
+    return lists;
+}
+
+ComponentGroup as_group(NamedList list) {
+    ComponentGroup group{list.name, list.members.front(), static_cast<int>(list.members.size())};
+    for (int i = 0; i < group.count; ++i)
+        if (list.members[static_cast<std::size_t>(i)] != group.first + i) {
+            group.components = std::move(list.members);
+            break;
+        }
+    return group;
+}
+
+/// The texts of a list, of which there must be one for each component.
+std::vector<std::string> read_list(const hdf5::Handle& root, const std::string& name, int n) {
+    if (!hdf5::has_attribute(root, name)) return {};
+    std::vector<std::string> texts = split_list(hdf5::read_any_text(root, name));
+    if (texts.size() != static_cast<std::size_t>(n))
+        throw Error(hdf5::attribute_place(root, name),
+                    "has " + std::to_string(texts.size()) + " entries, and the state has " + std::to_string(n) +
+                        " components",
+                    "Write one for each component, with commas between them");
+    return texts;
+}
+
+}  // namespace
+
+std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place) {
+    std::vector<ComponentGroup> blocks{{"all", 0, n}};
+    for (const std::string& entry : split_list(text)) {
+        const ComponentGroup block = parse_block(entry, n, place);
+        if (std::any_of(blocks.begin(), blocks.end(), [&](const ComponentGroup& b) { return b.name == block.name; }))
+            throw Error(place, "names two blocks " + quoted(block.name), "Give each block a name of its own");
+        if (blocks.size() > most_blocks)
+            throw Error(place, "has more than " + std::to_string(most_blocks) + " blocks", "Leave some out");
+        blocks.push_back(block);
+    }
+    return blocks;
+}
+
+void require_group_name(const std::string& name, const std::string& what, const std::string& place) {
+    if (!names_something(name))
+        throw Error(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
+    if (name == "all")
+        throw Error(place, "`all` cannot name a " + what + ", because it stands for the whole",
+                    "Leave that " + what + " out: the whole is judged anyway");
+}
+
+std::vector<ComponentGroup> parse_groups(const std::string& text, int n, const std::string& place) {
+    std::vector<ComponentGroup> groups{{"all", 0, n}};
+    for (NamedList& list : parse_lists(text, {"component", "the state", n, group_example}, place))
+        groups.push_back(as_group(std::move(list)));
+    return groups;
+}
+
+std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std::string& place) {
+    std::vector<RowGroup> groups;
+    for (NamedList& list : parse_lists(text, {"row", "the innovation", m, row_example}, place)) {
+        if (list.name == "rows" || list.name.starts_with("rows_"))
+            throw Error(place, quoted(list.name) + " cannot name a group of rows, because series begin so",
+                        "Use another name");
+        groups.push_back({list.name, std::move(list.members)});
+    }
+    return groups;
+}
+
+std::vector<ComponentGroup> read_blocks(const hdf5::Handle& root, int n) {
+    const std::string name = "blocks", place = hdf5::attribute_place(root, name);
+    if (hdf5::has_attribute(root, name)) return parse_blocks(hdf5::read_any_text(root, name), n, place);
+    if (hdf5::has_link(root, name) || H5Aexists_by_name(root.id(), "error", name.c_str(), H5P_DEFAULT) > 0)
+        throw Error(place, "is missing, but there is a `blocks` elsewhere", "Make it an attribute of the root, `/`");
+    return parse_blocks("", n, place);
+}
+
+std::vector<ComponentGroup> read_groups(const hdf5::Handle& root, int n) {
+    const bool groups = hdf5::has_attribute(root, "groups"), blocks = hdf5::has_attribute(root, "blocks");
+    const std::string place = hdf5::attribute_place(root, groups || !blocks ? "groups" : "blocks");
+    if (groups && blocks) throw Error(place, "is there, and `blocks` too", "Write one of them");
+    if (hdf5::has_link(root, "groups") && !groups)
+        throw Error(place, "is missing, but there is a `groups` elsewhere", "Make it an attribute of the root, `/`");
+    return parse_groups(groups || blocks ? hdf5::read_any_text(root, groups ? "groups" : "blocks") : "", n, place);
+}
+
+std::vector<Component> read_components(const hdf5::Handle& root, int n) {
+    const std::vector<std::string> names = read_list(root, "component_names", n), units = read_list(root, "component_units", n);
+    std::vector<Component> components;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n) && (!names.empty() || !units.empty()); ++j) {
+        Component component{names.empty() ? "x" + std::to_string(j) : names[j], units.empty() ? "" : units[j]};
+        if (!names.empty()) require_group_name(component.name, "component", hdf5::attribute_place(root, "component_names"));
+        if (!units.empty() && (component.unit.empty() || component.unit.find_first_of(" \t\r\n") != std::string::npos))
+            throw Error(hdf5::attribute_place(root, "component_units"), quoted(component.unit) + " is no unit",
+                        "Write one word for each component, such as m/s, and 1 where it has no unit");
+        for (const Component& other : components)
+            if (other.name == component.name)
+                throw Error(hdf5::attribute_place(root, "component_names"), "names two components " + quoted(component.name),
+                            "Give each component a name of its own");
+        components.push_back(std::move(component));
+    }
+    return components;
+}
+
+}  // namespace credence

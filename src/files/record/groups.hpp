@@ -1,0 +1,34 @@
+#pragma once
+// The attributes of a record that name component groups, groups of innovation rows, and components.
+
+#include "files/hdf5/handle.hpp"
+#include "worlds/own/step.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// The whole state as `all`, then the component groups of version 1, such as `pose 0:3, feature_1 3:5`, of a state of n
+/// components. Throws hdf5::Error at `place`, as all functions here.
+std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
+
+/// The same for version 2: `position 0 2, velocity 1 3, heading 4`, with ranges such as `0:3` between them.
+std::vector<ComponentGroup> parse_groups(const std::string& text, int n, const std::string& place);
+
+/// Groups of the m rows of an innovation, such as `gps 0:3, baro 3`.
+std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std::string& place);
+
+/// The component groups of a record: of the attribute `groups`, or of `blocks` as earlier records call it.
+std::vector<ComponentGroup> read_groups(const hdf5::Handle& root, int n);
+/// Those of version 1, of the attribute `blocks`.
+std::vector<ComponentGroup> read_blocks(const hdf5::Handle& root, int n);
+
+/// Names and units of the n components by the attributes `component_names` and `component_units`; empty without both. A
+/// component without a name is x0, x1 ..., one without a unit has an empty one.
+std::vector<Component> read_components(const hdf5::Handle& root, int n);
+
+/// Throws where a name cannot be that of a group of components (`what`: `group`).
+void require_group_name(const std::string& name, const std::string& what, const std::string& place);
+
+}  // namespace credence

@@ -1,0 +1,46 @@
+#pragma once
+// States on a manifold: the error in the tangent space, from a truth and an estimate [Sola, Deray, Atchuthan 2018].
+
+#include "files/hdf5/handle.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// local: error = Log(truth^-1 estimate); global: error = Log(estimate truth^-1).
+enum class ErrorChart { local, global };
+
+/// A product of SO2, SE2, SO3, SE3 and R1, R2 ...
+class Manifold {
+public:
+    /// `text` such as `SE3 x R6`; `quaternion` wxyz or xyzw, needed for SO3 and SE3; `chart` local or global. Throws
+    /// hdf5::Error at the attribute of `root` that is wrong.
+    static Manifold read(const hdf5::Handle& root);
+
+    int coordinates() const { return coordinates_; }  ///< q, of a truth and of an estimate
+    int dimension() const { return dimension_; }      ///< n, of the error
+
+    /// Writes the error [n]. In a factor of the product where a coordinate is not finite, all of it is so: NaN, or
+    /// infinite.
+    void error(const double* truth, const double* estimate, double* error) const;
+
+    /// The first coordinate of a quaternion that is not of length 1, by a thousandth or more; -1 where there is none.
+    int wrong_quaternion(const double* coordinates) const;
+
+private:
+    enum class Kind { SO2, SE2, SO3, SE3, R };
+    struct Factor {
+        Kind kind;
+        int coordinates, dimension;
+    };
+    static Factor parse_factor(const std::string& text, const std::string& place);
+    void factor_error(const Factor& factor, const double* truth, const double* estimate, double* error) const;
+
+    std::vector<Factor> factors_;
+    int coordinates_ = 0, dimension_ = 0;
+    bool scalar_first_ = true;  ///< quaternions are w x y z
+    ErrorChart chart_ = ErrorChart::local;
+};
+
+}  // namespace credence

@@ -1,0 +1,211 @@
+// Records of version 2: groups as lists of components, names and units of components, groups of innovation rows, times,
+// and singles.
+
+#include "record_support.hpp"
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+void text(const Handle& root, const std::string& name, const std::string& value) { hdf5::write_text(root, name, value); }
+
+/// The same bits, NaN like NaN.
+void check_same(const std::vector<double>& a, const std::vector<double>& b) {
+    REQUIRE(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) CHECK((a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i]))));
+}
+
+void check_same(const SeriesTotals& a, const SeriesTotals& b) {
+    for (std::size_t k = 0; k < a.sum.size(); ++k) CHECK(a.sum[k].rounded() == b.sum[k].rounded());
+    for (std::size_t k = 0; k < a.square_sum.size(); ++k) CHECK(a.square_sum[k].rounded() == b.square_sum[k].rounded());
+    CHECK(a.run_sum->rounded() == b.run_sum->rounded());
+    CHECK(a.run_square_sum.rounded() == b.run_square_sum.rounded());
+    CHECK(a.covered == b.covered);
+}
+
+void check_sums(const DrawnRecord& drawn, const SeriesTotals& totals, const std::function<double(std::size_t)>& value) {
+    for (int k = 0; k < drawn.steps; ++k) {
+        double sum = 0;
+        for (int trial = 0; trial < drawn.trials; ++trial) sum += value(drawn.at(trial, k));
+        // Sums of 30 values, from matrices of condition below 1e3.
+        CHECK(relative(totals.sum[static_cast<std::size_t>(k)].rounded(), sum) < 1e-11);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("record 2: without anything new it says the numbers of version 1 to the last bit") {
+    const DrawnRecord drawn(40, 6, 5, 3);
+    const auto write = [&](const Handle& root) {
+        write_drawn(root, drawn);
+        text(root, "blocks", "pose 0:3, feature_1 3:5");
+    };
+    const Record old = read_written(write, 1), record = read_written(write);
+    const ArmResults &a = old.results.arms.front(), &b = record.results.arms.front();
+    REQUIRE(a.totals.size() == b.totals.size());
+    for (std::size_t f = 0; f < a.totals.size(); ++f) check_same(a.totals[f], b.totals[f]);
+    for (std::size_t c = 0; c < a.columns.size(); ++c) check_same(a.columns[c], b.columns[c]);
+    check_same(a.nees, b.nees);
+    check_same(a.errors, b.errors);
+    check_same(a.distribution_distance, b.distribution_distance);
+    CHECK(a.products.count == b.products.count);
+    const Evidence of_a = evidence_of(old.results, a), of_b = evidence_of(record.results, b);
+    for (std::size_t g = 0; g < of_a.blocks.size(); ++g) {
+        CHECK(of_a.blocks[g].run.mean == of_b.blocks[g].run.mean);
+        CHECK(of_a.blocks[g].run.standard_error == of_b.blocks[g].run.standard_error);
+        check_same(of_a.blocks[g].anees.ratio, of_b.blocks[g].anees.ratio);
+        check_same(of_a.blocks[g].variance_ratio, of_b.blocks[g].variance_ratio);
+    }
+    CHECK(record.results.not_judged.empty());
+    CHECK(record.results.has_joint_covariance);
+}
+
+TEST_CASE("record 2: groups are lists of components in any order, and ranges") {
+    const DrawnRecord drawn(30, 4, 5);
+    const Record record = read_written([&](const Handle& root) {
+        write_drawn(root, drawn);
+        text(root, "groups", "position 0 2, velocity 1 3 ,heading 4, mixed 4 0:2");
+    });
+    const std::vector<std::pair<std::string, std::vector<int>>> groups{
+        {"position", {0, 2}}, {"velocity", {1, 3}}, {"heading", {4}}, {"mixed", {4, 0, 1}}};
+    for (const auto& [name, components] : groups) {
+        CAPTURE(name);
+        const auto over = [&, &members = components](const std::function<double(std::size_t, int)>& value) {
+            return [&, value](std::size_t i) {
+                double sum = 0;
+                for (const int j : members) sum += value(i, j);
+                return sum;
+            };
+        };
+        check_sums(drawn, totals_named(record, "nees_" + name),
+                   [&, &members = components](std::size_t i) { return plain_nees(drawn.error[i], drawn.covariance[i], members); });
+        check_sums(drawn, totals_named(record, "squared_error_" + name),
+                   over([&](std::size_t i, int j) { return drawn.error[i](j) * drawn.error[i](j); }));
+        check_sums(drawn, totals_named(record, "variance_" + name),
+                   over([&](std::size_t i, int j) { return drawn.covariance[i](j, j); }));
+        CHECK(record.results.all_series[series_named(record, "nees_" + name)].dimension == static_cast<int>(components.size()));
+    }
+}
+
+TEST_CASE("record 2: a list of successive components has the bits of a range") {
+    const DrawnRecord drawn(20, 3, 5);
+    const auto with = [&](const std::string& groups) {
+        return read_written([&](const Handle& root) {
+            write_drawn(root, drawn);
+            text(root, "groups", groups);
+        });
+    };
+    const Record list = with("pose 1 2 3"), range = with("pose 1:4");
+    for (const char* name : {"nees_pose", "squared_error_pose", "variance_pose"})
+        check_same(totals_named(list, name), totals_named(range, name));
+}
+
+TEST_CASE("record 2: components have names and units") {
+    const DrawnRecord drawn(5, 2, 3);
+    const Record record = read_written([&](const Handle& root) {
+        write_drawn(root, drawn);
+        text(root, "component_names", "px, py, heading");
+        text(root, "component_units", "m, m, rad");
+        text(root, "groups", "pose 0 2");
+    });
+    CHECK(record.results.all_series[series_named(record, "standardised_error_heading")].part == "heading");
+    CHECK(record.results.all_series[series_named(record, "squared_error_pose")].unit == "m^2 + rad^2");
+    CHECK(record.results.all_series[series_named(record, "trace_P_step")].unit == "m^2 + rad^2");
+}
+
+TEST_CASE("record 2: groups of innovation rows are judged by their observed rows") {
+    DrawnRecord drawn(30, 4, 2, 4);
+    for (int trial = 0; trial < 30; ++trial) {
+        drawn.innovation[drawn.at(trial, 1)](2) = std::nan("");
+        drawn.innovation[drawn.at(trial, 2)].head(3).setConstant(std::nan(""));
+    }
+    const auto write = [&](const Handle& root) { write_drawn(root, drawn); };
+    const Record record = read_written([&](const Handle& root) {
+        write(root);
+        text(root, "row_groups", "gps 2 0:2, baro 3");
+    });
+    check_same(totals_named(record, "nis"), totals_named(read_written(write), "nis"));
+    const auto observed = [&](std::size_t i, const std::vector<int>& rows) {
+        std::vector<int> there;
+        for (const int row : rows)
+            if (!std::isnan(drawn.innovation[i](row))) there.push_back(row);
+        return there;
+    };
+    for (const auto& [name, rows] : std::vector<std::pair<std::string, std::vector<int>>>{{"gps", {0, 1, 2}}, {"baro", {3}}}) {
+        CAPTURE(name);
+        for (int k = 0; k < drawn.steps; ++k) {
+            double nis = 0;
+            std::size_t count = 0;
+            for (int trial = 0; trial < drawn.trials; ++trial) {
+                const std::size_t i = drawn.at(trial, k);
+                const std::vector<int> there = observed(i, rows);
+                count += there.size();
+                if (!there.empty()) nis += plain_nees(drawn.innovation[i], drawn.innovation_covariance[i], there);
+            }
+            CHECK(totals_named(record, "nis_rows_" + name).sum[static_cast<std::size_t>(k)].rounded() == static_cast<double>(count));
+            CHECK(std::abs(totals_named(record, "nis_" + name).sum[static_cast<std::size_t>(k)].rounded() - nis) <= 1e-11 * nis);
+        }
+    }
+    const Evidence evidence = evidence_of(record.results, record.results.arms.front());
+    REQUIRE(evidence.nis.size() == 3);
+    CHECK(evidence.nis[1].part == "gps");
+    CHECK(evidence.nis[1].degrees == 30 * (3 + 2 + 0 + 3));
+    CHECK(evidence.nis[2].degrees == 30 * 4);
+}
+
+TEST_CASE("record 2: the asymmetry that singles leave is no mistake, and a larger one is") {
+    const DrawnRecord drawn(6, 2, 2);
+    const auto asymmetric = [&](double relative, bool singles) {
+        return [&, relative, singles](const Handle& root) {
+            write_errors(root, drawn);
+            std::vector<double> values = flat(drawn.covariance);
+            values[4 * 3 + 1] += relative * std::sqrt(values[4 * 3] * values[4 * 3 + 3]);
+            (singles ? write_values<float> : write_values<double>)(root, "covariance", extents_of(drawn, {2, 2}), values);
+        };
+    };
+    CHECK(read_written(asymmetric(1e-6, true)).trouble_count == 0);  // 8 epsilons of a single
+    check_refused(asymmetric(1e-5, true), "/covariance: trial 1, step 1 (both counted from 0) is not symmetric");
+    check_refused(asymmetric(1e-6, false), "/covariance: trial 1, step 1 (both counted from 0) is not symmetric");
+}
+
+TEST_CASE("record 2: what its attributes and times cannot mean is refused by name") {
+    const DrawnRecord drawn(3, 4, 4, 2);
+    const auto with = [&](const std::string& name, const std::string& value) {
+        return [&, name, value](const Handle& root) {
+            write_drawn(root, drawn);
+            text(root, name, value);
+        };
+    };
+    check_refused(with("groups", "a"), "/@groups: broken entry `a`. Write the groups as NAME and its components");
+    check_refused(with("groups", "a 0 x"), "/@groups: broken entry `a 0 x`");
+    check_refused(with("groups", "a 0 4"), "/@groups: `a 0 4` goes beyond the 4 components of the state");
+    check_refused(with("groups", "a 0:3 2"), "/@groups: `a 0:3 2` names component 2 twice");
+    check_refused(with("groups", "a 3:3"), "/@groups: `a 3:3` has no component `3:3`");
+    check_refused(with("groups", "a -1"), "/@groups: `a -1` has no component `-1`");
+    check_refused(with("groups", "a 0, a 1"), "/@groups: names two groups `a`");
+    check_refused(with("groups", "all 0"), "/@groups: `all` cannot name a group");
+    check_refused(with("row_groups", "gps 0:3"), "/@row_groups: `gps 0:3` goes beyond the 2 rows of the innovation");
+    check_refused(with("row_groups", "rows 0"), "/@row_groups: `rows` cannot name a group of rows");
+    check_refused(with("component_names", "a, b"), "/@component_names: has 2 entries, and the state has 4 components");
+    check_refused(with("component_names", "a, b, c, a"), "/@component_names: names two components `a`");
+    check_refused(with("component_units", "m, m, m, "), "/@component_units: `` is no unit");
+    check_refused([&](const Handle& root) {
+        with("groups", "a 0")(root);
+        text(root, "blocks", "a 0:1");
+    }, "/@groups: is there, and `blocks` too");
+    const auto time = [&](const hdf5::Extents& extents, std::vector<double> values) {
+        return [&, extents, values](const Handle& root) {
+            write_drawn(root, drawn);
+            write_values(root, "time", extents, values);
+        };
+    };
+    CHECK(read_written(time({4}, {0, 0.1, 0.2, 0.5})).trouble_count == 0);
+    check_refused(time({4}, {0, 0.1, 0.1, 0.5}), "/time: step 2 (counted from 0) has 0.1, and the time before is 0.1");
+    check_refused(time({3, 4}, {0, 1, 2, 3, 0, 1, 2, 3, 0, 5, 2, 3}), "/time: trial 2, step 2 (counted from 0) has 2");
+    check_refused(time({3}, {0, 1, 2}), "/time: does not fit: it is [3], and there are 3 trials and 4 steps");
+    const TemporaryFolder folder;
+    write_file(folder / "record.h5", [&](const Handle& root) { write_drawn(root, drawn); }, 3);
+    CHECK(refusal<InputError>([&] { read_record(folder / "record.h5"); }) ==
+          folder / "record.h5" + ": /@record_version: is 3. Write 2, or use a newer credence if there is such a version.");
+}
