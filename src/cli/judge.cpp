@@ -13,14 +13,16 @@ const Command& judge_command() {
         "judge",
         "RECORD.h5 [options]",
         "the verdict on anyone's filter, from the errors and covariances it made",
-        "\nRECORD.h5 holds the datasets\n"
+        "\nRECORD.h5 holds, with the root's attribute record_version = 2, the datasets\n"
         "  error                  [trial, step, n]     estimate - truth, in the chart of the covariance\n"
-        "  covariance             [trial, step, n, n]  NaN like the error where the run has no such step\n"
+        "  covariance             [trial, step, n, n]  or [trial, step, n]: variances only\n"
         "  steps                  [trial]              optional: steps of each run; one that ends early else has failed\n"
         "  innovation             [trial, step, m]     optional; NaN where a row was not observed\n"
         "  innovation_covariance  [trial, step, m, m]  with it\n"
-        "and, on the file, the attribute `blocks`, such as \"pose 0:3, feature_1 3:5\" (half-open, from 0): parts of the\n"
-        "state that are judged by themselves. analysis/ shows the few lines that write one from Python, Octave and C++.\n"
+        "and, on the file, the attribute `groups`, such as \"position 0 2, feature_1 3:5\" (from 0, the end of a range\n"
+        "not included): parts of the state that are judged by themselves. A component is NaN where it is not in the\n"
+        "state. docs/judge.md has the rest: covariances or NEES of groups alone, poses on manifolds, and version 1,\n"
+        "without record_version, whose groups are the attribute `blocks`.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
          failed_option("the verdict is `failed`"),

@@ -47,11 +47,16 @@ std::vector<double> group_nees(const DrawnRecord& drawn, const std::vector<int>&
     return values;
 }
 
+/// As most programs make it, without the order of creation.
+Handle plain_group(const Handle& parent, const std::string& name) {
+    return {H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, name, "no group"};
+}
+
 /// /group/NAME/covariance or nees.
 void write_group(const Handle& root, const DrawnRecord& drawn, const std::string& name, const std::vector<int>& members,
                  bool covariance) {
-    const Handle groups = hdf5::has_link(root, "group") ? hdf5::open_group(root, "group") : hdf5::new_group(root, "group");
-    const Handle group = hdf5::new_group(groups, name);
+    if (!hdf5::has_link(root, "group")) plain_group(root, "group");
+    const Handle group = plain_group(hdf5::open_group(root, "group"), name);
     const int d = static_cast<int>(members.size());
     if (covariance) return write_values(group, "covariance", extents_of(drawn, {d, d}), group_covariances(drawn, members));
     write_values(group, "nees", extents_of(drawn, {}), group_nees(drawn, members));

@@ -33,6 +33,9 @@ private:
     double epsilon_ = 0;
 };
 
+/// Names of a group's links in alphabetical order: programs need not keep the order of their creation.
+std::vector<std::string> sorted_link_names(const Handle& group);
+
 /// A text attribute without padding: fixed or variable length, ASCII or UTF-8, a scalar or a list, whose entries are
 /// joined by commas.
 std::string read_any_text(const Handle& object, const std::string& name);

@@ -232,7 +232,7 @@ void add_single_groups(const Handle& root, RecordShape& shape) {
 void open_groups(const Handle& root, const PlacedExtents& error, RecordLayout& layout) {
     if (!hdf5::has_link(root, "group")) return;
     const Handle all = hdf5::open_group(root, "group");
-    for (const std::string& name : hdf5::link_names(all)) {
+    for (const std::string& name : hdf5::sorted_link_names(all)) {
         const std::size_t b = find_group(layout.shape, name);
         if (b == 0 || b == layout.shape.groups.size())
             throw Error(hdf5::place_of(all, name), "is no group of components",
@@ -293,7 +293,7 @@ void open_states(const Handle& root, const PlacedExtents& error, RecordLayout& l
 PlacedExtents open_nees_alone(const Handle& root, RecordLayout& layout) {
     RecordShape& shape = layout.shape;
     std::vector<std::string> names;
-    if (hdf5::has_link(root, "group")) names = hdf5::link_names(hdf5::open_group(root, "group"));
+    if (hdf5::has_link(root, "group")) names = hdf5::sorted_link_names(hdf5::open_group(root, "group"));
     if (names.empty() && !hdf5::has_link(root, "nees"))
         throw Error(hdf5::place_of(root, "error"), "is missing",
                     "Write `error` [trial, step, n], `truth` and `estimate` with the attribute `manifold`, or a NEES "
