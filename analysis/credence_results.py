@@ -19,7 +19,7 @@ import h5py
 import numpy as np
 from scipy import stats
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSIONS = 2, 3
 STUDY, TRAJECTORIES = "credence results", "credence trajectories"
 
 
@@ -44,9 +44,9 @@ def open_file(path, kinds=(STUDY, TRAJECTORIES)):
     if kind not in kinds:
         file.close()
         raise ValueError(f"{path} is none of {', '.join(kinds)} (format={kind}). Give one.")
-    if version != SCHEMA_VERSION:
+    if version not in SCHEMA_VERSIONS:
         file.close()
-        raise ValueError(f"{path} has schema version {version}, not {SCHEMA_VERSION}. "
+        raise ValueError(f"{path} has schema version {version}, none of {SCHEMA_VERSIONS}. "
                          "Take the analysis folder of the credence that wrote it.")
     return file
 

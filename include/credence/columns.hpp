@@ -65,8 +65,17 @@ struct Series {
 inline constexpr double coverage_levels[] = {0.5, 0.9, 0.95, 0.99};
 inline constexpr int coverage_level_count = 4;
 
-/// Number of first trials of which more is kept: their errors, and the correlation of their innovations in time. Whole
-/// blocks; 4096 trials, or as many as give 2^24 numbers an arm.
+/// Numbers that a detailed trial keeps of its steps k, for the directions, the bias and the advice of the verdict
+/// [docs/statistics.md]: mean NEES of each group, [groups]; mean of e_j/sigma_j, [n]; sums of e_i e_j/(sigma_i sigma_j)
+/// and of P_ij/(sigma_i sigma_j), each the lower triangle row by row, [n (n + 1)/2]; sigma_j^2 = P_jj. 0 for states of
+/// more than `largest_moment_state`, whose trials keep none.
+inline constexpr int largest_moment_state = 64;
+inline int moment_count(int state_size, int groups) {
+    return state_size > largest_moment_state ? 0 : groups + state_size + state_size * (state_size + 1);
+}
+
+/// Number of first trials of which more is kept: their errors and moments, and the correlation of their innovations in
+/// time. Whole blocks; 4096 trials, or as many as give 2^24 errors an arm.
 int detailed_trials(int steps, int state_size);
 
 /// Lags at which innovations are correlated, 1 ... lag_count.

@@ -81,6 +81,7 @@ struct ArmResults {
     ProductTotals products;
     std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
     std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees series, NaN likewise
+    std::vector<double> moments;               ///< [detailed trials, moment_count], NaN likewise; empty where none are kept
 
     // Of a record only, whose runs may differ in length.
     std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all counted ones have
@@ -117,6 +118,8 @@ struct ScenarioResults {
     std::int64_t detailed() const;
     /// n
     int state_size() const { return all_series.front().dimension; }
+    /// Numbers in a detailed trial's moments.
+    int moment_count() const;
 };
 
 /// An empty result of a resolved scenario. Throws InputError where there is no such world.

@@ -11,8 +11,11 @@
 
 namespace credence {
 
-/// Version of columns, series, draws and file layout. Results of different versions are never mixed.
-inline constexpr int schema_version = 2;
+/// Version of the layout of results files; files of version 2 are read too. Results of different versions are never
+/// mixed.
+inline constexpr int schema_version = 3;
+/// Version of draws, columns and series.
+inline constexpr int draws_version = 2;
 
 /// A study has no more trials of a scenario than this.
 inline constexpr std::int64_t most_trials = 1'000'000'000'000;
@@ -24,7 +27,12 @@ struct Study {
     std::int64_t trials = 0;            ///< of each scenario that were asked for
     bool complete = true;               ///< every scenario has all of them
     Provenance computed_by{};           ///< which release computed which blocks; empty where it is not known
+    int schema = schema_version;        ///< of the file that it was read from
 };
+
+/// Throws InputError where a study was read from a file of an earlier schema version, which cannot be added to.
+/// `doing` is such as `resume`.
+void check_schema(const Study& study, const std::string& path, const std::string& doing);
 
 /// The definition of a study, which does not include its trials, threads, shards or stopping.
 struct StudyDefinition {
@@ -37,7 +45,7 @@ StudyDefinition definition_of(const Study& study);
 /// How the study keeps its columns: the same in every scenario.
 Keep keep_of(const Study& study);
 
-/// The identifier of the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, schema version and Keep.
+/// The identifier of the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, draws_version and Keep.
 std::string study_hash(const StudyDefinition& definition);
 std::string study_hash(const Study& study);
 

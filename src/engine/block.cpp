@@ -61,11 +61,11 @@ void store_columns(const std::vector<Column>& declared, const std::vector<double
 
 /// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
 struct Octets {
-    std::size_t trials = 0, padded = 0, steps = 0, components = 0;
+    std::size_t trials = 0, padded = 0, steps = 0, components = 0, moment_count = 0;
     bool detail = false;
     std::vector<double> columns, sums, square_sums, run_square_sums, nees;
     std::vector<std::int32_t> covered;
-    std::vector<double> errors, product_sums, product_square_sums, product_counts;
+    std::vector<double> errors, moments, product_sums, product_square_sums, product_counts;
 
     void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
         const auto all_series = static_cast<std::size_t>(shape.series_count);
@@ -82,10 +82,12 @@ struct Octets {
         run_square_sums.assign(all_series * octet, 0);
         covered.assign(blocks * steps * coverage_level_count, 0);
         if (!detail) {
-            errors = std::vector<double>();  // much room, and seldom wanted; {} would keep it
+            errors = moments = std::vector<double>();  // much room, and seldom wanted; {} would keep it
             return;
         }
         errors.resize(components * steps * padded);
+        moment_count = static_cast<std::size_t>(credence::moment_count(shape.state_size, shape.group_count));
+        moments.resize(moment_count * padded);
         for (auto* products : {&product_sums, &product_square_sums, &product_counts})
             products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
     }
@@ -99,6 +101,7 @@ struct Octets {
         batch.covered = covered.data();
         batch.nees = nees.data();
         batch.errors = detail ? errors.data() : nullptr;
+        batch.moments = detail ? moments.data() : nullptr;
         batch.product_sums = product_sums.data();
         batch.product_square_sums = product_square_sums.data();
         batch.product_counts = product_counts.data();
@@ -129,9 +132,10 @@ void store_cells(const Octets& from, const EquiprobableCells& cells, const std::
             for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
 }
 
-/// Errors and NEES by trial, rounded to single precision.
+/// Errors and NEES by trial, rounded to single precision, and moments.
 void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock& arm) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    arm.moments.reserve(from.trials * from.moment_count);
     arm.nees.reserve(from.trials * from.steps);
     arm.errors.reserve(from.trials * from.steps * from.components);
     for (std::size_t trial = 0; trial < from.trials; ++trial) {
@@ -141,6 +145,8 @@ void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock
                 arm.errors.push_back(
                     failed[trial] ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
         }
+        for (std::size_t i = 0; i < from.moment_count; ++i)
+            arm.moments.push_back(failed[trial] ? double{nan} : from.moments[i * from.padded + trial]);
     }
     arm.product_sums = added_up(from.product_sums);
     arm.product_square_sums = added_up(from.product_square_sums);

@@ -4,6 +4,7 @@
 //
 //   nu~ = L^-1 nu, S = L L', rows features (body frame) then edges in graph order
 
+#include "engine/moments.hpp"
 #include "slam/trial/step_evaluation.hpp"
 
 namespace credence {
@@ -55,11 +56,13 @@ public:
     bool on = false;
     const CommonView* problem = nullptr;
     Real* errors = nullptr;           ///< [n, K - 1] x^ - x after the updates
+    Real* moments = nullptr;          ///< [n + n (n + 1)] of moment_count, those of the groups' NEES left out; or null
     Real product_sum[largest_lag];    ///< [lag - 1] sum over poses and rows of nu~_k nu~_{k + lag}
     Real product_count[largest_lag];  ///< [lag - 1]
 
     template <class... Anything>
     void started(const Anything&...) {
+        for (int i = 0; moments != nullptr && i < own_moment_count(problem->state_size); ++i) moments[i] = Real(0);
         for (int lag = 0; lag < largest_lag; ++lag) product_sum[lag] = product_count[lag] = Real(0);
     }
     template <class... Anything>
@@ -82,9 +85,21 @@ public:
         estimation_error(belief, *truth_, layout, error);
         const int n = layout.size();
         for (int i = 0; i < n; ++i) errors[i * (problem->poses - 1) + k - 1] = error[i];
+        if (moments != nullptr) add_step_moments(n, belief.covariance, error);
     }
 
 private:
+    /// Errors and covariance in units of each step's own sigma. P is reported times a factor.
+    void add_step_moments(int n, const Symmetric<Real, Layout::capacity>& P, const Real* error) {
+        const Real inverse_root = Real(1 / __builtin_sqrt(problem->filter.covariance_factor));
+        Real inverse_sigma[Layout::capacity], standardised[Layout::capacity];
+        for (int i = 0; i < n; ++i) {
+            inverse_sigma[i] = Real(1) / sqrt(P.entry[i][i]);
+            standardised[i] = error[i] * inverse_sigma[i] * inverse_root;
+        }
+        add_moments(n, [&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma, moments);
+    }
+
     int pair_count(const Layout& layout) const {
         const int features = layout.features(), edges = problem->filter.edge_count;
         return features + (edges_whitened(features, edges) ? edges : 0);

@@ -139,24 +139,29 @@ struct BatchOf {
         Detail<Layout, Real> detail;
     };
 
-    /// Numbers behind the Room: the unfolded series, and the errors of one pack [n, K - 1].
+    /// Numbers behind the Room: the unfolded series, and of one pack the errors [n, K - 1] and the moments.
     static std::size_t error_cells(const CommonView& problem) {
         return static_cast<std::size_t>(problem.state_size) * static_cast<std::size_t>(problem.poses - 1);
+    }
+    static std::size_t moment_cells(const CommonView& problem) {
+        return static_cast<std::size_t>(moment_count(problem.state_size, 0));
     }
     static std::size_t workspace_size(const CommonView& problem) {
         const Unfolded<Real> unfolded(nullptr, problem);
         const std::size_t all_series = static_cast<std::size_t>(unfolded.cells * unfolded.capacity);
-        return sizeof(Room) + (all_series + error_cells(problem)) * sizeof(Real);
+        return sizeof(Room) + (all_series + error_cells(problem) + moment_cells(problem)) * sizeof(Real);
     }
 
     static void simulate(const View& problem, const Trial& trial, const Batch& batch) {
         auto& room = *static_cast<Room*>(batch.workspace);
         Real* errors = reinterpret_cast<Real*>(&room + 1);
-        Unfolded<Real> unfolded(errors + error_cells(problem), problem);
+        Real* moments = errors + error_cells(problem);
+        Unfolded<Real> unfolded(moments + moment_cells(problem), problem);
         Detail<Layout, Real>& detail = room.detail;
         detail.on = batch.errors != nullptr;
         detail.problem = &problem;
         detail.errors = errors;
+        detail.moments = detail.on && moment_cells(problem) > 0 ? moments : nullptr;
         for (int i = 0; i < batch.trials; i += lanes<Real>) {
             const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i),
                                          Trial::truncate(problem));
@@ -169,6 +174,7 @@ struct BatchOf {
             for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
             copy_out(all_series, problem.poses - 1, i, batch, batch.nees);
             if (detail.on) keep_detail(problem, detail, counts, i, batch);
+            if (detail.moments != nullptr) keep_moments(problem, detail.moments, all_series, i, batch);
             unfolded.keep(counts);
             if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
         }

@@ -1,5 +1,7 @@
 #include <credence/study.hpp>
 
+#include <credence/error.hpp>
+
 #include <boost/uuid/name_generator.hpp>
 #include <boost/uuid/uuid_io.hpp>
 
@@ -12,7 +14,7 @@ StudyDefinition definition_of(const Study& study) {
 }
 
 std::string study_hash(const StudyDefinition& definition) {
-    std::string text = "schema " + std::to_string(schema_version) + "\nroot_seed " +
+    std::string text = "schema " + std::to_string(draws_version) + "\nroot_seed " +
                        std::to_string(definition.root_seed) + "\nkeep " + keep_name(definition.keep) + "\n";
     for (const Scenario& scenario : definition.scenarios) text += "\n" + scenario_text(scenario);
     const boost::uuids::name_generator_sha1 generate(boost::uuids::ns::oid());
@@ -20,6 +22,13 @@ std::string study_hash(const StudyDefinition& definition) {
 }
 
 std::string study_hash(const Study& study) { return study_hash(definition_of(study)); }
+
+void check_schema(const Study& study, const std::string& path, const std::string& doing) {
+    if (study.schema == schema_version) return;
+    throw InputError("cannot " + doing + " " + path + " (it has schema version " + std::to_string(study.schema) +
+                     ", this program writes " + std::to_string(schema_version) +
+                     "). Use the release that wrote it, or run the study again.");
+}
 
 std::string difference_of(const StudyDefinition& there, const StudyDefinition& here) {
     if (study_hash(there) == study_hash(here)) return "";

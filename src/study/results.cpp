@@ -1,6 +1,7 @@
 #include <credence/results.hpp>
 
 #include "numeric/chi_square.hpp"
+#include "study/visit_totals.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -102,25 +103,22 @@ void add_totals(ScenarioResults& results, const Block& block) {
     add_totals(results, block, block_aggregates(results, block));
 }
 
+namespace {
+
+void add(ExactSum& to, const ExactSum& from) { to.add(from); }
+void add(std::vector<ExactSum>& to, const std::vector<ExactSum>& from) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i].add(from[i]);
+}
+void add(std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
+    std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
+}
+
+}  // namespace
+
 void add_totals(ArmResults& to, const ArmResults& from) {
-    const auto add_sums = [](std::vector<ExactSum>& sums, const std::vector<ExactSum>& others) {
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(others[i]);
-    };
-    const auto add_counts = [](std::vector<std::int64_t>& counts, const std::vector<std::int64_t>& others) {
-        std::transform(counts.begin(), counts.end(), others.begin(), counts.begin(), std::plus<>());
-    };
     to.counted += from.counted;
     to.aggregates.add(from.aggregates);
-    for (std::size_t f = 0; f < to.totals.size(); ++f) {
-        add_sums(to.totals[f].sum, from.totals[f].sum);
-        add_sums(to.totals[f].square_sum, from.totals[f].square_sum);
-        to.totals[f].run_square_sum.add(from.totals[f].run_square_sum);
-        add_counts(to.totals[f].covered, from.totals[f].covered);
-    }
-    add_counts(to.cells, from.cells);
-    add_sums(to.products.sum, from.products.sum);
-    add_sums(to.products.square_sum, from.products.square_sum);
-    add_counts(to.products.count, from.products.count);
+    visit_totals([](auto& sum, const auto& other) { add(sum, other); }, to, from);
 }
 
 void remove_totals(ScenarioResults& results, const Block& block) {

@@ -2,6 +2,7 @@
 
 #include "numeric/chi_square.hpp"
 #include <credence/results.hpp>
+#include "study/visit_totals.hpp"
 
 #include <type_traits>
 
@@ -73,7 +74,7 @@ bool has_totals(const ScenarioResults& results) { return results.arms.empty() ||
 std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) {
     constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the capacity of a few parts
     const std::int64_t steps = results.steps(), number = sizeof(double);
-    std::int64_t size = detailed * steps * (results.state_size() + 1) * number;
+    std::int64_t size = detailed * (steps * (results.state_size() + 1) + results.moment_count()) * number;
     if (distribution_counted(results.steps())) size += steps * distribution_cells * number;
     for (const Series& series : results.all_series) {
         size += steps * (series.integer ? 1 : 2) * sum_size;
@@ -92,8 +93,7 @@ void load_totals(ScenarioResults& results) {
         to.totals = std::move(from.totals);
         to.cells = std::move(from.cells);
         to.products = std::move(from.products);
-        to.errors = std::move(from.errors);
-        to.nees = std::move(from.nees);
+        visit_details(results, [](auto& values, auto& loaded, std::int64_t) { values = std::move(loaded); }, to, from);
         to.aggregates = std::move(from.aggregates);
         to.counted = from.counted;
     }
@@ -105,8 +105,7 @@ void drop_totals(ScenarioResults& results) {
         free(arm.totals);
         free(arm.cells);
         free(arm.products);
-        free(arm.errors);
-        free(arm.nees);
+        visit_details(results, [&](auto& values, std::int64_t) { free(values); }, arm);
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <credence/results.hpp>
 
+#include "study/visit_totals.hpp"
+
 #include "base/nan.hpp"
 
 #include <algorithm>
@@ -12,12 +14,13 @@ namespace {
 
 /// Detailed trials of a block, from a row on.
 void store_details(const ArmBlock& from, std::int64_t row, std::size_t trials, ArmResults& to) {
-    const auto put = [&](const std::vector<float>& values, std::vector<double>& all) {
+    const auto put = [&](const auto& values, std::vector<double>& all) {
         const auto width = static_cast<std::int64_t>(values.size() / trials);
         std::copy(values.begin(), values.end(), all.begin() + row * width);
     };
     put(from.errors, to.errors);
     put(from.nees, to.nees);
+    put(from.moments, to.moments);
 }
 
 /// A block that is kept: its old rows, its new rows, and their number.
@@ -70,6 +73,10 @@ std::int64_t ScenarioResults::detailed() const {
     return std::min(trials, block_size * blocks.count_below(most / block_size));
 }
 
+int ScenarioResults::moment_count() const {
+    return credence::moment_count(state_size(), static_cast<int>(scenario.groups.size()));
+}
+
 std::int64_t block_rows(const ScenarioResults& results, std::size_t place) {
     return std::min<std::int64_t>(block_size, results.trials - block_size * static_cast<std::int64_t>(place));
 }
@@ -110,13 +117,12 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
     }
     results.trials = trials_in(blocks, trials);
     results.blocks = std::move(blocks);
-    const std::int64_t steps = results.steps(), detailed = results.detailed();
+    const std::int64_t detailed = results.detailed();
     for (ArmResults& arm : results.arms) {
         if (!arm.kept)
             for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
         if (!has_totals(results)) continue;
-        move_rows(arm.nees, detailed_moves, detailed, steps);
-        move_rows(arm.errors, detailed_moves, detailed, steps * results.state_size());
+        visit_details(results, [&](auto& values, std::int64_t width) { move_rows(values, detailed_moves, detailed, width); }, arm);
     }
 }
 
@@ -142,27 +148,24 @@ bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_
     const std::int64_t row_a = first_row(a, block).value(), row_b = first_row(b, block).value();
     if (row_a >= a.detailed() || row_b >= b.detailed()) return true;
     const std::int64_t rows = block_rows(b, static_cast<std::size_t>(row_b / block_size));
-    const auto same = [&](const std::vector<double>& in_a, const std::vector<double>& in_b, std::int64_t width) {
+    bool all_same = true;
+    const auto compare = [&](const auto& in_a, const auto& in_b, std::int64_t width) {
         const auto begin = in_a.begin() + row_a * width;
-        return std::equal(begin, begin + rows * width, in_b.begin() + row_b * width,
-                          [](double x, double y) { return x == y || (x != x && y != y); });
+        all_same = all_same && std::equal(begin, begin + rows * width, in_b.begin() + row_b * width,
+                                          [](double x, double y) { return x == y || (x != x && y != y); });
     };
-    const std::int64_t steps = b.steps();
-    return same(a.arms[arm].nees, b.arms[arm].nees, steps) &&
-           same(a.arms[arm].errors, b.arms[arm].errors, steps * b.state_size());
+    visit_details(b, compare, a.arms[arm], b.arms[arm]);
+    return all_same;
 }
 
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
     const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
     if (row_to >= to.detailed() || row_from >= from.detailed()) return;
     const std::int64_t rows = block_rows(from, static_cast<std::size_t>(row_from / block_size));
-    const auto copy = [&](const std::vector<double>& source, std::vector<double>& target, std::int64_t width) {
+    const auto copy = [&](const auto& source, auto& target, std::int64_t width) {
         std::copy_n(source.begin() + row_from * width, rows * width, target.begin() + row_to * width);
     };
-    for (std::size_t a = 0; a < from.arms.size(); ++a) {
-        copy(from.arms[a].nees, to.arms[a].nees, from.steps());
-        copy(from.arms[a].errors, to.arms[a].errors, std::int64_t{from.steps()} * from.state_size());
-    }
+    for (std::size_t a = 0; a < from.arms.size(); ++a) visit_details(from, copy, from.arms[a], to.arms[a]);
 }
 
 }  // namespace credence

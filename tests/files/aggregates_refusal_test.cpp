@@ -161,6 +161,6 @@ TEST_CASE("aggregates: a journal of trials is not read as one of aggregates, nor
         std::filesystem::remove(one->path);
         std::filesystem::remove(one->path + ".journal");
     }
-    CHECK(header_bytes({JournalBase::none, {}, 3, {}, definition_of(trials.study)})[16] == 4);
-    CHECK(header_bytes({JournalBase::none, {}, 3, {}, definition_of(aggregates.study)})[16] == 5);
+    CHECK(header_bytes({JournalBase::none, {}, 3, {}, definition_of(trials.study)})[16] == 6);
+    CHECK(header_bytes({JournalBase::none, {}, 3, {}, definition_of(aggregates.study)})[16] == 7);
 }

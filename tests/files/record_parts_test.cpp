@@ -108,7 +108,7 @@ TEST_CASE("record 2: variances that are right are undecided, and wrong ones are 
     for (const Finding& finding : right.findings) found += sentence(finding) + "; ";
     CHECK(right.verdict == Verdict::undecided);
     CHECK(found == "");
-    CHECK(right.trials_to_decide == 0);
+    CHECK(right.trials_needed.value == 0);
     const Consistency small = judged(0.5);
     CHECK(small.verdict == Verdict::optimistic);
     REQUIRE_FALSE(small.findings.empty());

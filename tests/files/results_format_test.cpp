@@ -103,6 +103,7 @@ TEST_CASE("store: every variable has a long name, units and dimension scales in 
                                                   : name.starts_with("whiteness_")     ? Names{"lag", "part"}
                                                   : name == "detailed_nees"            ? Names{"detailed_trial", "step"}
                                                   : name == "detailed_error"   ? Names{"detailed_trial", "step", "component"}
+                                                  : name == "detailed_moments" ? Names{"detailed_trial", "moment"}
                                                   : name == "nees_cells"       ? Names{"step", "cell"}
                                                   : name.ends_with("_covered") ? Names{"step", "level"}
                                                   : name.ends_with("_run_square_total") ? std::vector<std::string>{"part"}

@@ -17,7 +17,7 @@ const std::string arm = "/first/greedy.ekf";
 const std::vector<Damage> header_damages{
     {"is not a results file", [](auto& r) { set_text(r, "/", "format", "credence trajectories"); }},
     {"is not a results file", [](auto& r) { H5Adelete(r.id(), "format"); }},
-    {"/@schema_version: is 9, this program's is 2",
+    {"/@schema_version: is 9, this program's is 3",
      [](auto& r) { set_number<std::int32_t>(r, "/", "schema_version", 9); }},
     {"/@schema_version: holds 64-bit integers, not 32-bit",
      [](auto& r) { set_number<std::int64_t>(r, "/", "schema_version", 1); }},

@@ -118,6 +118,7 @@ void check_same(const Block& lanes, const Block& one, const Scenario& scenario, 
         CHECK(differing(x.product_square_sums, y.product_square_sums, tolerance, nis * nis) == 0);
         CHECK(x.product_counts == y.product_counts);
         CHECK(differing(x.errors, y.errors, 1e-12) == 0);
+        CHECK(differing(x.moments, y.moments, tolerance, static_cast<double>(shape.poses)) == 0);
         CHECK(differing(x.nees, y.nees, 1.2e-7 + tolerance) == 0);  // neighbours in single precision
         if (tolerance > 1e-9) continue;  // beyond, a number may come to lie on the other side of a bound
         CHECK(x.covered == y.covered);
@@ -136,7 +137,7 @@ bool same_bits(const Block& a, const Block& b) {
         const ArmBlock &x = a.arms[i], &y = b.arms[i];
         all = same(x.columns, y.columns) && same(x.sums, y.sums) && same(x.square_sums, y.square_sums) &&
               same(x.run_square_sums, y.run_square_sums) && x.covered == y.covered && x.cells == y.cells &&
-              same(x.errors, y.errors) && same(x.nees, y.nees) && same(x.product_sums, y.product_sums) &&
+              same(x.errors, y.errors) && same(x.nees, y.nees) && same(x.moments, y.moments) && same(x.product_sums, y.product_sums) &&
               same(x.product_square_sums, y.product_square_sums) && same(x.product_counts, y.product_counts);
     }
     return all;

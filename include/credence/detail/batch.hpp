@@ -31,6 +31,7 @@ struct Batch {
     double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
     // Of detailed trials only; null for others.
     double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too
+    double* moments = nullptr;          ///< [moment_count, octets, 8] failed trials' too
     double* product_sums = nullptr;     ///< [lags, 8], added to: sums of products of whitened innovations
     double* product_square_sums = nullptr;  ///< [lags, 8], added to: of each trial's sum, squared
     double* product_counts = nullptr;   ///< [lags, 8], added to

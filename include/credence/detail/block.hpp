@@ -25,6 +25,7 @@ struct ArmBlock {
     // Of detailed trials only, else empty.
     std::vector<float> errors;              ///< [trials, K - 1, n], NaN if failed
     std::vector<float> nees;                ///< [trials, K - 1] of the whole state, NaN if failed
+    std::vector<double> moments;            ///< [trials, moment_count], NaN if failed
     std::vector<double> product_sums;       ///< [lags] of products of whitened innovations, a lag apart
     std::vector<double> product_square_sums;///< [lags] of each trial's sum, squared
     std::vector<double> product_counts;     ///< [lags]

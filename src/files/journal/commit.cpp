@@ -33,7 +33,8 @@ BlockLayout::BlockLayout(const ScenarioResults& results)
       arms_(static_cast<std::int64_t>(results.arms.size())),
       detailed_blocks_(detailed_trials(results.steps(), results.state_size()) / block_size),
       errors_(std::int64_t{results.steps()} * results.state_size()),
-      nees_(results.steps()) {
+      nees_(results.steps()),
+      moments_(results.moment_count()) {
     for (const ColumnType type : kept_types(results)) column_at_.push_back(column_at_.back() + value_size(type));
 }
 
@@ -46,7 +47,7 @@ std::int64_t BlockLayout::details_offset(std::size_t arm, std::int64_t trials) c
 }
 
 std::int64_t BlockLayout::details_size(std::int64_t trials) const {
-    return trials * (errors_ + nees_) * static_cast<std::int64_t>(sizeof(float));
+    return trials * ((errors_ + nees_) * static_cast<std::int64_t>(sizeof(float)) + moments_ * static_cast<std::int64_t>(sizeof(double)));
 }
 
 std::int64_t BlockLayout::size(const JournalBlock& block) const {
@@ -91,16 +92,18 @@ void put_block(ByteWriter& to, const std::vector<ColumnType>& types, const Block
     for (const ArmBlock& arm : block.arms) {
         to.put_all(arm.errors);
         to.put_all(arm.nees);
+        to.put_all(arm.moments);
     }
 }
 
 void get_details(ByteReader& from, const BlockLayout& layout, std::int64_t trials, std::int64_t row, ArmResults& to) {
-    const auto get = [&](std::vector<double>& all, std::int64_t width) {
-        const std::vector<float> values = from.get_all<float>(static_cast<std::size_t>(trials * width));
+    const auto get = [&]<class T>(T, std::vector<double>& all, std::int64_t width) {
+        const std::vector<T> values = from.get_all<T>(static_cast<std::size_t>(trials * width));
         std::copy(values.begin(), values.end(), all.begin() + row * width);
     };
-    get(to.errors, layout.errors());
-    get(to.nees, layout.nees());
+    get(float(), to.errors, layout.errors());
+    get(float(), to.nees, layout.nees());
+    get(double(), to.moments, layout.moments());
 }
 
 void put_commit_head(ByteWriter& to, const CommitHead& head) {

@@ -54,14 +54,15 @@ public:
     bool detailed(std::int64_t index) const { return index < detailed_blocks_; }
     std::int64_t detailed_blocks() const { return detailed_blocks_; }
     Keep keep() const { return keep_; }
-    /// Number of floats in a trial's details: its errors, then its NEES.
+    /// Numbers in a trial's details: its errors, then its NEES, both as floats; then its moments.
     std::int64_t errors() const { return errors_; }
     std::int64_t nees() const { return nees_; }
+    std::int64_t moments() const { return moments_; }
 
 private:
     Keep keep_;
     std::vector<std::int64_t> column_at_;  ///< [column_count + 1] bytes of a trial before each column; {0}: none
-    std::int64_t arms_, detailed_blocks_, errors_, nees_;
+    std::int64_t arms_, detailed_blocks_, errors_, nees_, moments_;
 };
 
 /// Bytes of a value in a column, and the conversion of a value to bytes and back.

@@ -12,7 +12,7 @@ namespace credence {
 namespace {
 
 const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 4, aggregates_version = 5;  ///< of a journal that keeps trials, or none
+constexpr std::uint32_t journal_version = 6, aggregates_version = 7;  ///< of a journal that keeps trials, or none
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {

@@ -1,5 +1,7 @@
 #include "files/journal/totals.hpp"
 
+#include "study/visit_totals.hpp"
+
 #include <algorithm>
 
 namespace credence {
@@ -8,25 +10,25 @@ namespace {
 
 constexpr std::uint64_t most_counted = std::uint64_t{1} << 62;
 
-void put_sum(ByteWriter& to, const ExactSum& sum) {
+void put(ByteWriter& to, const ExactSum& sum) {
     const std::vector<double> parts = sum.parts();
     to.put_count(parts.size());
     to.put_all(parts);
 }
 
-ExactSum get_sum(ByteReader& from) {
+void get(ByteReader& from, ExactSum& sum) {
     constexpr std::uint64_t most_parts = 64;  // the 2098 bits of doubles give at most 40 parts that do not overlap
     const std::uint64_t count = from.get_count();
     if (count == 0 || count > most_parts) throw BadBytes("a sum has an impossible number of parts");
-    return ExactSum::from_parts(from.get_all<double>(count));
+    sum = ExactSum::from_parts(from.get_all<double>(count));
 }
 
-void put_sums(ByteWriter& to, const std::vector<ExactSum>& sums) {
-    for (const ExactSum& sum : sums) put_sum(to, sum);
+void put(ByteWriter& to, const std::vector<ExactSum>& sums) {
+    for (const ExactSum& sum : sums) put(to, sum);
 }
 
-void get_sums(ByteReader& from, std::vector<ExactSum>& sums) {
-    for (ExactSum& sum : sums) sum = get_sum(from);
+void get(ByteReader& from, std::vector<ExactSum>& sums) {
+    for (ExactSum& sum : sums) get(from, sum);
 }
 
 std::int64_t get_number(ByteReader& from) {
@@ -37,7 +39,7 @@ std::int64_t get_number(ByteReader& from) {
 
 /// Writes counts with long runs of 0, such as those of cells early in a run: each 0 is followed by the number of
 /// further ones.
-void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
+void put(ByteWriter& to, const std::vector<std::int64_t>& counts) {
     for (auto count = counts.begin(); count != counts.end();) {
         to.put_count(static_cast<std::uint64_t>(*count));
         if (*count++ != 0) continue;
@@ -47,7 +49,7 @@ void put_counts(ByteWriter& to, const std::vector<std::int64_t>& counts) {
     }
 }
 
-void get_counts(ByteReader& from, std::vector<std::int64_t>& counts) {
+void get(ByteReader& from, std::vector<std::int64_t>& counts) {
     for (auto count = counts.begin(); count != counts.end();) {
         *count++ = get_number(from);
         if (count[-1] != 0) continue;
@@ -60,14 +62,14 @@ void get_counts(ByteReader& from, std::vector<std::int64_t>& counts) {
 
 void put_moments(ByteWriter& to, const ExactMoments& moments) {
     to.put_count(static_cast<std::uint64_t>(moments.count));
-    put_sum(to, moments.sum);
-    put_sum(to, moments.square_sum);
+    put(to, moments.sum);
+    put(to, moments.square_sum);
 }
 
 void get_moments(ByteReader& from, ExactMoments& moments) {
     moments.count = get_number(from);
-    moments.sum = get_sum(from);
-    moments.square_sum = get_sum(from);
+    get(from, moments.sum);
+    get(from, moments.square_sum);
 }
 
 void put_aggregates(ByteWriter& to, const ArmAggregates& aggregates) {
@@ -95,31 +97,13 @@ void get_aggregates(ByteReader& from, ArmAggregates& aggregates) {
 
 void put_arm(ByteWriter& to, const ArmResults& arm) {
     to.put(arm.counted);
-    for (const SeriesTotals& series : arm.totals) {
-        put_sums(to, series.sum);
-        put_sums(to, series.square_sum);
-        put_sum(to, series.run_square_sum);
-        put_counts(to, series.covered);
-    }
-    put_counts(to, arm.cells);
-    put_sums(to, arm.products.sum);
-    put_sums(to, arm.products.square_sum);
-    put_counts(to, arm.products.count);
+    visit_totals([&](const auto& part) { put(to, part); }, arm);
     put_aggregates(to, arm.aggregates);
 }
 
 void get_arm(ByteReader& from, ArmResults& arm) {
     arm.counted = from.get<std::int64_t>();
-    for (SeriesTotals& series : arm.totals) {
-        get_sums(from, series.sum);
-        get_sums(from, series.square_sum);
-        series.run_square_sum = get_sum(from);
-        get_counts(from, series.covered);
-    }
-    get_counts(from, arm.cells);
-    get_sums(from, arm.products.sum);
-    get_sums(from, arm.products.square_sum);
-    get_counts(from, arm.products.count);
+    visit_totals([&](auto& part) { get(from, part); }, arm);
     if (arm.aggregates.statuses.empty()) return;  // the trials are kept
     get_aggregates(from, arm.aggregates);
     if (arm.aggregates.counted() != arm.counted) throw BadBytes("totals of an impossible number of trials");

@@ -127,6 +127,7 @@ Study merge_results(const std::vector<std::string>& paths, std::int64_t most_tot
     Merger merger(paths);
     for (std::size_t file = 0; file < paths.size(); ++file) {
         Study part = read_results_without_totals(paths[file]).study;
+        check_schema(part, paths[file], "merge");
         if (merger.shares(part)) return merge_shared(paths, most_totals);
         merger.add(file, std::move(part));
     }

@@ -21,6 +21,8 @@ std::size_t lags(const ScenarioResults& results) { return static_cast<std::size_
 
 const std::string& first_nees(const ScenarioResults& results) { return results.all_series.front().name; }
 
+const std::string moments_name = "detailed_moments";
+
 std::string coverage_name(const Series& series) { return series.name + "_covered"; }
 std::string cells_name(const ScenarioResults& results) { return first_nees(results) + "_cells"; }
 
@@ -75,6 +77,14 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
                                              {"error of the state after the update, estimate - truth",
                                               state_units(results.scenario.components)});
     hdf5::write_numbers<float>(errors, "_FillValue", {fill});
+    if (results.moment_count() == 0) return;
+    const auto moment = numbered<std::int32_t>(group, "moment", 0, static_cast<std::size_t>(results.moment_count()),
+                                               "moment: NEES by group, standardised error, its products, correlations of P");
+    std::vector<double> values;
+    std::transform(arm.moments.begin(), arm.moments.end(), std::back_inserter(values), one_nan);
+    const Handle moments = hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
+                                              {"means and sums over the steps of standardised errors and covariances", "1"});
+    hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(NAN)});
 }
 
 void read_coverage(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
@@ -116,8 +126,9 @@ void read_products(const Handle& group, const ScenarioResults& results, hsize_t 
 
 }  // namespace
 
-std::vector<std::string> evidence_links(const ScenarioResults& results) {
+std::vector<std::string> evidence_links(const ScenarioResults& results, int schema) {
     std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
+    if (results.moment_count() > 0 && schema > 2) names.insert(names.end(), {"moment", moments_name});
     if (distribution_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
     for (const Series& series : results.all_series)
         if (series.role == SeriesRole::nees) names.push_back(coverage_name(series));
@@ -154,6 +165,11 @@ void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t 
     check_numbered<std::int32_t>(group, "component", 0, size);
     arm.nees = read_single(group, "detailed_nees", {detailed, steps});
     arm.errors = read_single(group, "detailed_error", {detailed, steps, size});
+    const auto moments = static_cast<hsize_t>(results.moment_count());
+    arm.moments.assign(detailed * moments, nan);  // what files of schema 2 have of them
+    if (moments == 0 || !hdf5::has_link(group, moments_name)) return;  // (read_arm requires it where it must be there)
+    check_numbered<std::int32_t>(group, "moment", 0, moments);
+    arm.moments = read_as<double>(group, moments_name, {detailed, moments});
 }
 
 }  // namespace credence

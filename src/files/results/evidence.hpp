@@ -18,7 +18,7 @@ struct EvidenceDimensions {
 };
 
 /// Names of these datasets, coordinates included.
-std::vector<std::string> evidence_links(const ScenarioResults& results);
+std::vector<std::string> evidence_links(const ScenarioResults& results, int schema);
 
 void write_evidence(const hdf5::Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm);

@@ -47,7 +47,7 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
 }
 
 /// Names of the datasets in the group of the next arm.
-std::vector<std::string> arm_links(const ScenarioResults& results) {
+std::vector<std::string> arm_links(const ScenarioResults& results, int schema) {
     std::vector<std::string> names{"step", "part"};
     if (results.keep == Keep::trials) {
         names.push_back("trial");
@@ -61,7 +61,7 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
         if (!series.integer) names.push_back(series.name + "_square_total");
         names.push_back(series.name + "_run_square_total");
     }
-    const std::vector<std::string> evidence = evidence_links(results);
+    const std::vector<std::string> evidence = evidence_links(results, schema);
     names.insert(names.end(), evidence.begin(), evidence.end());
     return names;
 }
@@ -87,6 +87,7 @@ struct Opened {
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
     Keep keep = Keep::trials;
+    int schema = schema_version;
     std::optional<std::int64_t> most_totals;  ///< most bytes of totals to load; nothing: they are not read
 };
 
@@ -149,7 +150,7 @@ private:
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
                     const Opened& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
-    require_links(group, arm_links(results));
+    require_links(group, arm_links(results, source.schema));
     const bool trials = results.keep == Keep::trials;
     const BlockRanges blocks = trials ? read_blocks(group, source.asked) : read_block_ranges(group, source.asked);
     if (results.arms.empty()) set_blocks(results, blocks, source.asked);
@@ -191,14 +192,16 @@ ScenarioResults read_scenario_results(const std::string& name, const Opened& sou
     return results;
 }
 
-void check_header(const Handle& root) {
+/// The schema version, which this program must be able to read.
+int read_header(const Handle& root) {
     if (!hdf5::has_attribute(root, "format") || hdf5::read_text(root, "format") != results_format)
         throw Error("the file", "is not a results file", "Give a file that credence run wrote");
     const int version = hdf5::read_number<std::int32_t>(root, "schema_version");
-    if (version != schema_version)
+    if (version != schema_version && version != 2)
         throw Error("/@schema_version",
                     "is " + std::to_string(version) + ", this program's is " + std::to_string(schema_version),
                     "Use the release that wrote the file, or run the study again");
+    return version;
 }
 
 /// Whether every trial that was asked for is present. Throws where the file says so but some are missing.
@@ -235,6 +238,7 @@ StoredStudy read_study(const Opened& source) {
     if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
         throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
     study.trials = source.asked;
+    study.schema = source.schema;
     TotalsInMemory in_memory(source.most_totals.value_or(0));
     for (const std::string& name : hdf5::link_names(root))
         if (name != run_group) {
@@ -252,8 +256,8 @@ StoredStudy read_study(const Opened& source) {
 }
 
 Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
-    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
-    check_header(*source.file);
+    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, schema_version, most_totals};
+    source.schema = read_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
     // Only a file that keeps no trials has this attribute.

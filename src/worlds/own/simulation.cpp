@@ -6,6 +6,7 @@
 #include <credence/own_trial.hpp>
 #include "scenario/state_series.hpp"
 
+#include "worlds/own/moments.hpp"
 #include "worlds/own/recorder.hpp"
 #include "worlds/own/step.hpp"
 #include "worlds/own/trial_ends.hpp"
@@ -70,12 +71,14 @@ public:
           errors_(of.steps() * size(of.shape.n)),
           own_(of.report.columns.size()),
           step_series_(of.all_series.list.size()),
-          products_(size(lag_count(of.scenario.poses)), size(of.shape.m)) {}
+          products_(size(lag_count(of.scenario.poses)), size(of.shape.m)),
+          moments_(of.shape.n, of.shape.groups.size()) {}
 
     void run(std::uint64_t root_seed, std::uint64_t trial) {
         draws_.emplace(root_seed, trial, std::numeric_limits<double>::infinity());
         std::fill(own_.begin(), own_.end(), 0.0);
         products_.start_trial();
+        moments_.start_trial();
         status_ = Status::completed;
         status_pose_ = -1;
         step_ = 0;
@@ -131,6 +134,9 @@ public:
     const std::vector<double>& all_series() const { return all_series_; }
     const std::vector<double>& errors() const { return errors_; }  ///< [K - 1, n]
     const LagProducts& products() const { return products_; }
+    /// Whether trials keep moments, from the next one on.
+    void keep_moments(bool keep) { keeps_moments_ = keep; }
+    std::vector<double> moments() const { return moments_.moments(); }
     bool counts() const { return !failed(status_); }
     std::size_t steps_taken() const { return step_; }
 
@@ -175,6 +181,7 @@ private:
         for (std::size_t f = 0; f < step_series_.size(); ++f) all_series_[f * case_.steps() + step_] = step_series_[f];
         std::copy(error.begin(), error.end(), errors_.begin() + static_cast<std::ptrdiff_t>(step_) * n);
         products_.correlate(step_);
+        if (keeps_moments_) moments_.add(step_series_.data(), step_series_.data() + case_.all_series.standardised_error, checked_.P);
         ++step_;
     }
 
@@ -197,6 +204,8 @@ private:
     std::size_t step_ = 0;
     std::vector<double> all_series_, errors_, own_, step_series_;
     LagProducts products_;
+    TrialMomentSums moments_;
+    bool keeps_moments_ = false;
 };
 
 /// Adds a trial to a batch's running sums, at its place among eight.
@@ -214,6 +223,10 @@ public:
             for (std::size_t c = 0, n = case_.scenario.components.size(); c < n; ++c)
                 for (std::size_t k = 0; k < steps; ++k)
                     batch_.errors[(c * steps + k) * padded + i] = judged.errors()[k * n + c];
+        if (batch_.moments != nullptr) {
+            const std::vector<double> moments = judged.moments();
+            for (std::size_t c = 0; c < moments.size(); ++c) batch_.moments[c * padded + i] = moments[c];
+        }
         if (!judged.counts()) return;
         for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, judged);
         for (std::size_t b = 0; b < case_.scenario.groups.size(); ++b) add_coverage(b, judged);
@@ -263,6 +276,7 @@ public:
     std::size_t workspace_size(std::size_t) const override { return 0; }
     void simulate(std::size_t arm, const Batch& batch) const override {
         EvaluatedTrial trial(case_, arm);
+        trial.keep_moments(batch.moments != nullptr);
         BatchSums sums(case_, batch);
         std::vector<double> row;
         for (int i = 0; i < batch.trials; ++i) {

@@ -48,6 +48,11 @@ std::string component_name(const RecordShape& shape, int j) {
     return shape.components.empty() ? "x" + std::to_string(j) : shape.components[static_cast<std::size_t>(j)].name;
 }
 
+bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
+    Eigen::LLT<Eigen::MatrixXd> any;
+    return factor(matrix, epsilon, any).empty();
+}
+
 StateSeries record_series(const RecordShape& shape) {
     std::vector<Component> components = shape.components;
     for (int j = static_cast<int>(components.size()); j < shape.n; ++j) components.push_back({component_name(shape, j), ""});

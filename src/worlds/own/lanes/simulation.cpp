@@ -93,6 +93,9 @@ public:
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
           all_series_(scenario.components, scenario.groups, innovations_) {
         for (const ComponentGroup& group : scenario.groups) {
+            if (!group.contiguous())
+                throw std::invalid_argument("world " + scenario.world + ": group " + group.name +
+                                            " is a list of components; a world in lanes has contiguous groups.");
             groups_.push_back({group.first, group.count});
             for (const double level : coverage_levels)
                 coverage_bounds_.push_back(stable_chi_square_quantile(level, group.count));

@@ -16,6 +16,8 @@ std::size_t error_cells(const OwnView& view) {
     return static_cast<std::size_t>(view.state_size) * static_cast<std::size_t>(view.poses - 1);
 }
 
+std::size_t moment_cells(const OwnView& view) { return static_cast<std::size_t>(moment_count(view.state_size, 0)); }
+
 /// What of a pack's trials is kept of detailed ones.
 void keep_detail(const OwnView& view, const PackOfTrials<Real>& pack, const Real* errors, int trial, const Batch& batch) {
     const int padded = (batch.trials + octet - 1) / octet * octet, cells = static_cast<int>(error_cells(view));
@@ -37,7 +39,7 @@ void keep_detail(const OwnView& view, const PackOfTrials<Real>& pack, const Real
 std::size_t own_workspace_size(const OwnView& view) {
     const Unfolded<Real> unfolded(nullptr, view);
     const auto columns = static_cast<std::size_t>(view.column_count);
-    return (PackOfTrials<Real>::room(view) + columns + error_cells(view) +
+    return (PackOfTrials<Real>::room(view) + columns + error_cells(view) + moment_cells(view) +
             static_cast<std::size_t>(unfolded.cells * unfolded.capacity)) * sizeof(Real);
 }
 
@@ -45,11 +47,12 @@ void simulate_own(const OwnView& view, const Batch& batch) {
     Real* room = static_cast<Real*>(batch.workspace);
     Real* columns = room + PackOfTrials<Real>::room(view);
     Real* errors = columns + view.column_count;
-    Unfolded<Real> unfolded(errors + error_cells(view), view);
+    Real* moments = batch.moments != nullptr && moment_cells(view) > 0 ? errors + error_cells(view) : nullptr;
+    Unfolded<Real> unfolded(errors + error_cells(view) + moment_cells(view), view);
     for (int i = 0; i < batch.trials; i += lanes<Real>) {
         const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i), __builtin_inf());
         PackOfTrials<Real> pack(view, draws, first_lanes<Real>(batch.trials - i), room, unfolded.next(),
-                                batch.errors != nullptr ? errors : nullptr);
+                                batch.errors != nullptr ? errors : nullptr, moments);
         view.run(view, pack);
         pack.columns(columns);
         double* to = batch.columns + i / octet * view.column_count * octet + i % octet;
@@ -57,6 +60,7 @@ void simulate_own(const OwnView& view, const Batch& batch) {
         const int padded = (batch.trials + octet - 1) / octet * octet;
         for (int k = 0; k < view.poses - 1; ++k) store(unfolded.next()[k], batch.nees + k * padded + i);
         if (batch.errors != nullptr) keep_detail(view, pack, errors, i, batch);
+        if (moments != nullptr) keep_moments(view, moments, unfolded.next(), i, batch);
         unfolded.keep(pack.counts());
         if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, view, batch);
     }

@@ -42,12 +42,13 @@ public:
     Outcome<Real> outcome;
     LaneProducts<Real> products;
 
-    /// `all_series` [series_count, K - 1] and `errors` [n, K - 1] are filled; errors may be null.
+    /// `all_series` [series_count, K - 1], `errors` [n, K - 1] and `moments` [own_moment_count] are filled; the last two
+    /// may be null.
     PackOfTrials(const PackOfTrials&) = delete;
     PackOfTrials& operator=(const PackOfTrials&) = delete;
     PackOfTrials(const OwnView& view, const KeyedDraws<Real>& draws, Mask<Real> there, Real* room, Real* all_series,
-                 Real* errors)
-        : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors) {
+                 Real* errors, Real* moments)
+        : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors), moments_(moments) {
         world = view.world;
         arm = view.arm;
         poses = view.poses;
@@ -63,6 +64,7 @@ public:
         for (int c = 0; c < view.own_column_count; ++c) own[c] = Real(0);
         own_columns = reinterpret_cast<double*>(own);
         LanePack::all_series = reinterpret_cast<const double*>(all_series_);
+        for (int i = 0; moments_ != nullptr && i < own_moment_count(state_size); ++i) moments_[i] = Real(0);
         normal = draw_normal;
         uniform = draw_uniform;
         step = take_step;
@@ -159,6 +161,16 @@ private:
             *series(view_.standardised_error + j) = e / sqrt(P.at(j, j));
             if (errors_ != nullptr) errors_[j * (poses - 1) + steps] = e;
         }
+        if (moments_ != nullptr) add_step_moments(P);
+    }
+
+    void add_step_moments(const StoredMatrix<Real>& P) {
+        Real *standardised = L_, *inverse_sigma = e_;  // not in use at this time
+        for (int j = 0; j < state_size; ++j) {
+            standardised[j] = *series(view_.standardised_error + j);
+            inverse_sigma[j] = Real(1) / sqrt(P.at(j, j));
+        }
+        add_moments(state_size, [&](int i, int j) { return P.at(j, i); }, standardised, inverse_sigma, moments_);
     }
 
     void evaluate_innovation(const LaneStep& step) {
@@ -225,7 +237,7 @@ private:
     const KeyedDraws<Real>& draws_;
     Mask<Real> there_;  ///< lanes that have a trial
     Real* all_series_;
-    Real* errors_;
+    Real *errors_, *moments_;
     Real *L_, *e_, *observed_;
 };
 
