@@ -73,6 +73,7 @@ struct CompareReport {
     std::uint64_t root_seed = 1;
     std::vector<ComparedPair> pairs;    ///< never empty
     std::vector<std::string> left_out;  ///< scenarios that are not compared, and why
+    bool of_records = false;            ///< of the same runs, whose draws are not known
     double failed_limit = Limits().failed;  ///< where a larger share of an arm's trials failed, a warning comes first
 };
 

@@ -8,21 +8,24 @@
 
 namespace credence {
 
-/// consistent: equivalent to the nominal level within the margin, in every group; optimistic: P too small somewhere;
-/// pessimistic: P too large somewhere; mixed: both; undecided: neither could be shown; failed: too many trials failed,
-/// whatever the others show.
+/// consistent: NEES, directions and bias are shown to lie within their margins; optimistic: something is too large for P;
+/// pessimistic: something is too small for P; mixed: both; undecided: neither could be shown; failed: too many trials
+/// failed, whatever the others show.
 enum class Verdict { consistent, optimistic, pessimistic, mixed, undecided, failed };
 
 const std::string& verdict_name(Verdict verdict);
 
 /// The limits that a verdict uses, as shares: 0.05 is 5 %.
 struct Limits {
-    double margin = 0.05;  ///< NEES/dimension within [1 - margin, 1 + margin] counts as consistent
-    double failed = 0.01;  ///< where a larger share of the trials failed, the verdict is `failed`
+    double margin = 0.05;     ///< NEES/dimension within 1 -+ margin counts as consistent; a direction beyond it is a finding
+    double failed = 0.01;     ///< where a larger share of the trials failed, the verdict is `failed`
+    double direction = 0.10;  ///< the squared error of every direction, over what P says, within 1 -+ direction counts
+    double bias = 0.1;        ///< a mean error within this many sigmas counts
 
     Limits() = default;
     /// Implicit, because most callers only choose a margin.
-    Limits(double nees_margin, double failed_share = 0.01) : margin(nees_margin), failed(failed_share) {}
+    Limits(double nees_margin, double failed_share = 0.01)
+        : margin(nees_margin), failed(failed_share), direction(2 * nees_margin) {}
 };
 
 /// Whether `failed` of `trials` is more than the share. Exactly the share is not more, whatever the rounding of share
@@ -35,6 +38,31 @@ struct Finding {
     std::string where, when;
     double value = 0;       ///< NEES/dimension, mean error/sigma, correlation, or distance, where it is farthest off
     Interval interval;      ///< corrected for all tests that were made
+    std::string measure;    ///< of `value`: NEES/dim, NIS/m, squared error over P's, mean error/sigma ...
+};
+
+/// A linear combination of the state, each component in units of its own sigma, and the ratio of its squared error to
+/// what P says, over all steps.
+struct DirectionOfGroup {
+    std::string group;
+    std::string name;                ///< such as `0.71 x - 0.71 y`
+    double ratio = 0;
+    Interval interval;               ///< corrected, each end one-sided
+};
+
+/// What the trials say of all directions of the state.
+struct DirectionsFound {
+    std::string unknown;                       ///< why there are none; empty where there are
+    double trials = 0;                         ///< from which they are computed
+    std::vector<DirectionOfGroup> largest, smallest;  ///< by group of two or more components
+    std::vector<double> spectrum;              ///< [n] ratios of the whole state's generalised eigenvectors, rising
+    Interval range;                            ///< that contains the ratio of every direction, at 95 %
+};
+
+/// The number of trials at which an exactly consistent filter with the spread seen would be shown consistent in 80 % of
+/// studies, as a range; 0 where it is not given.
+struct TrialsNeeded {
+    double low = 0, value = 0, high = 0;
 };
 
 struct Consistency {
@@ -44,16 +72,16 @@ struct Consistency {
     /// Cautions that do not concern the size of P: innovations that are correlated, errors whose distribution is not
     /// normal. The verdict does not depend on them, except for that on a single trial.
     std::vector<Finding> cautions;
-    /// Undecided only: number of trials at which the intervals no longer contain the margin's edge; 0 where it is not
-    /// known.
-    double trials_to_decide = 0;
+    DirectionsFound directions;
+    std::vector<std::string> hints;    ///< what such findings often come from
+    std::vector<std::string> reasons;  ///< undecided only: what could not be shown, and why
+    TrialsNeeded trials_needed;        ///< undecided only
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.
 Interval over_steps95(const GroupEvidence& block);
 
-/// The verdict on one arm. Intervals are Student's; those used against a group are Bonferroni-corrected over groups and
-/// steps, those of the bias over components and steps. The verdict on a single trial uses its NIS and the whiteness of
+/// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness of
 /// its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
 Consistency judge(const Evidence& evidence, const Limits& limits);
 

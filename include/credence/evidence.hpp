@@ -6,6 +6,7 @@
 #include <credence/results.hpp>
 #include <credence/statistics.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct Accuracy {
 struct GroupEvidence {
     std::string block;
     int dimension = 0;
+    std::vector<int> components;               ///< of the state
     Moments run;                               ///< of NEES/dim, averaged over each trial's steps
     std::vector<Moments> step;                 ///< of NEES/dim
     BandedRatio anees;
@@ -83,9 +85,14 @@ struct Whiteness {
 
 /// Mean standardised error of one component.
 struct BiasEvidence {
-    std::string component;
+    std::string component, unit;
+    Moments run;                               ///< averaged over each trial's steps
     std::vector<Moments> step;
+    double largest_error = 0;                  ///< of the detailed trials, in the component's unit
 };
+
+/// The numbers of single trials from which directions are computed [src/statistics/trial_moments.hpp].
+struct TrialMoments;
 
 /// Distance of the NEES of the whole state from chi-square(n), step by step.
 struct DistributionEvidence {
@@ -97,6 +104,19 @@ struct DistributionEvidence {
 struct CredibilityEvidence {
     std::vector<Credibility> step;
     double nci = 0, inclination = 0;           ///< means over the steps
+};
+
+/// A trial with a large NEES of the whole state.
+struct WorstTrial {
+    std::int64_t trial = 0;
+    double nees_ratio = 0;                     ///< NEES/dim, mean over its steps
+    int step = 0;                              ///< at which its NEES is largest
+};
+
+/// Of the detailed trials, those with the largest NEES.
+struct WorstTrials {
+    std::vector<WorstTrial> trials;            ///< ten at most, the worst first
+    double share = 0;                          ///< of the sum of NEES over the detailed trials
 };
 
 struct Evidence {
@@ -112,6 +132,8 @@ struct Evidence {
     std::vector<BiasEvidence> bias;
     DistributionEvidence shape;
     CredibilityEvidence credibility;
+    WorstTrials worst;
+    std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
     std::int64_t failed_trials() const { return left_out + diverged; }

@@ -12,6 +12,8 @@
 
 namespace credence {
 
+struct Study;
+
 /// Why a trial of a record failed; both counted from 0, as in the file.
 struct RecordTrouble {
     std::int64_t trial = 0;
@@ -66,5 +68,9 @@ struct Record {
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
 Record read_record(const std::string& path,
                                    const std::function<void(const Progress&)>& progress = {});
+
+/// A record as a study of one scenario, to be compared with others of the same runs: its columns, without those that a
+/// record does not have.
+Study study_of(Record record);
 
 }  // namespace credence

@@ -65,6 +65,9 @@ Report make_report(const Study& study, const Limits& limits);
 /// The same of a record: one arm, `record`; `path` names it.
 Report make_record_report(Record record, const std::string& path, const Limits& limits);
 
+/// Several reports of records as one, an arm for each, scenarios of the same name told apart by a number.
+Report together(std::vector<Report> reports);
+
 /// One arm's part of a report.
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
                      const Limits& limits);

@@ -161,12 +161,30 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     return parsed;
 }
 
-double parse_margin(const Parsed& parsed) {
-    const std::string given = parsed.text("margin").value_or("5%");
-    const double margin = parse_share(given).value_or(0);
-    if (!(margin > 0 && margin < 1))
-        throw invalid_value("--margin", given, "must be between 0 and 100 %, both excluded", "Write 5% or 0.05");
-    return margin;
+namespace {
+
+/// The share that an option gives, between 0 and 1, both excluded.
+double parse_open_share(const Parsed& parsed, const std::string& option, const std::string& usual) {
+    const std::string given = parsed.text(option).value_or(usual);
+    const double share = parse_share(given).value_or(0);
+    if (!(share > 0 && share < 1))
+        throw invalid_value("--" + option, given, "must be between 0 and 100 %, both excluded", "Write " + usual + " or 0.05");
+    return share;
+}
+
+}  // namespace
+
+Limits parse_limits(const Parsed& parsed) {
+    Limits limits(parse_open_share(parsed, "margin", "5%"), parse_failed(parsed));
+    if (parsed.has("margin-direction")) limits.direction = parse_open_share(parsed, "margin-direction", "10%");
+    if (limits.direction < limits.margin)
+        throw invalid_value("--margin-direction", *parsed.text("margin-direction"), "less than the margin",
+                            "Give at least --margin=" + to_text(limits.margin));
+    const std::string bias = parsed.text("bias").value_or("0.1");
+    limits.bias = to_number(bias).value_or(0);
+    if (!(limits.bias > 0 && limits.bias <= 10))
+        throw invalid_value("--bias", bias, "must be above 0 and at most 10 sigmas", "Write 0.1");
+    return limits;
 }
 
 double parse_failed(const Parsed& parsed) {
@@ -210,6 +228,16 @@ Option sweep_option() {
 
 Option margin_option() {
     return {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"};
+}
+
+Option margin_direction_option() {
+    return {"margin-direction", "SHARE",
+            "the squared error of every combination of the state, over what P says, within 1 -+ this counts (default: twice "
+            "the margin)"};
+}
+
+Option bias_option() {
+    return {"bias", "SIGMAS", "a mean error of a component within this many of its sigmas counts (default 0.1)"};
 }
 
 Option failed_option(const std::string& what) {

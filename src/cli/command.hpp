@@ -58,8 +58,8 @@ public:
 /// closest known one. Nothing if `--help` was asked for and has been printed.
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments);
 
-/// --margin: `5%` or `0.05` as a number in (0, 1); throws InputError.
-double parse_margin(const Parsed& parsed);
+/// --margin, --margin-direction, --bias and --failed, with their defaults; throws InputError.
+Limits parse_limits(const Parsed& parsed);
 /// --failed: `1%` or `0.01` as a number in [0, 1]; throws InputError.
 double parse_failed(const Parsed& parsed);
 
@@ -79,6 +79,8 @@ void write_output(const Parsed& parsed, const std::string& text);
 Option set_option();
 Option sweep_option();
 Option margin_option();
+Option margin_direction_option();
+Option bias_option();
 /// --failed; `what`: the consequence of too many failed trials.
 Option failed_option(const std::string& what);
 Option output_option(const std::string& help, const std::string& value = "FILE");

@@ -1,5 +1,6 @@
 #include <credence/compare.hpp>
 #include <credence/error.hpp>
+#include <credence/record.hpp>
 #include <credence/store.hpp>
 #include <set>
 
@@ -18,7 +19,7 @@ const Command& compare_command() {
         "greedy arm against the fixed arm of its estimator, and every horizon against the greedy one. Of several files,\n"
         "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the second, or\n"
         "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the same world\n"
-        "under --set filter.measurement=0.8 shows what that did.\n",
+        "under --set filter.measurement=0.8 shows what that did. Records (credence judge) of the same runs are compared too.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
          failed_option("a warning comes first"),
          format_option({"text", "json", "csv", "html"}),
@@ -36,6 +37,22 @@ void check_paths(const std::vector<std::string>& paths) {
         if (!seen.insert(path).second) throw InputError("repeated file " + path + ". Name each once.");
 }
 
+/// Results files, or records of the same runs.
+std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
+    const bool records = kind_of(paths.front()) == FileKind::record;
+    for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
+    if (records && paths.size() == 1) throw InputError("compare takes several records of the same runs. Give another.");
+    std::vector<StudyFile> files;
+    for (const std::string& path : paths) {
+        files.push_back({path, records ? study_of(read_record(path)) : read_results(path, 0).study});
+        if (records && files.back().study.trials != files.front().study.trials)
+            throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +
+                             std::to_string(files.back().study.trials) + " trials, not " +
+                             std::to_string(files.front().study.trials) + "). Give records of the same runs.");
+    }
+    return files;
+}
+
 }  // namespace
 
 int compare(const Parsed& parsed) {
@@ -45,11 +62,10 @@ int compare(const Parsed& parsed) {
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
     const double failed_limit = parse_failed(parsed);
     check_output_option(parsed);
-    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::results});
-    std::vector<StudyFile> files;
-    for (const std::string& path : parsed.arguments) files.push_back({path, read_results(path, 0).study});
+    const std::vector<StudyFile> files = read_files(parsed.arguments);
     CompareReport report = compare_studies(files, choice);
     report.failed_limit = failed_limit;
+    report.of_records = kind_of(parsed.arguments.front()) == FileKind::record;
     write_output(parsed, format == "json"   ? compare_json(report)
                          : format == "csv"  ? compare_csv(report)
                          : format == "html" ? compare_html(report, made_by())

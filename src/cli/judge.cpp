@@ -11,7 +11,7 @@ namespace credence::cli {
 const Command& judge_command() {
     static const Command command{
         "judge",
-        "RECORD.h5 [options]",
+        "RECORD.h5 [MORE.h5 ...] [options]",
         "the verdict on anyone's filter, from the errors and covariances it made",
         "\nRECORD.h5 holds, with the root's attribute record_version = 2, the datasets\n"
         "  error                  [trial, step, n]     estimate - truth, in the chart of the covariance\n"
@@ -25,6 +25,8 @@ const Command& judge_command() {
         "without record_version, whose groups are the attribute `blocks`.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
+         margin_direction_option(),
+         bias_option(),
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
@@ -35,14 +37,17 @@ const Command& judge_command() {
 }
 
 int judge(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("judge takes one record. Give RECORD.h5.");
-    const std::string& path = parsed.arguments.front();
+    if (parsed.arguments.empty()) throw InputError("judge takes one record or several. Give RECORD.h5.");
     const ReportRequest request = read_report_request(parsed);
-    check_kind(path, {FileKind::record});
-    ProgressLine progress(parsed.has("quiet"));
-    Record record = read_record(path, [&](const Progress& now) { progress(now); });
-    progress.finish();
-    return give_report(parsed, request, make_record_report(std::move(record), path, request.limits), path, {});
+    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::record});
+    std::vector<Report> reports;
+    for (const std::string& path : parsed.arguments) {
+        ProgressLine progress(parsed.has("quiet"));
+        Record record = read_record(path, [&](const Progress& now) { progress(now); });
+        progress.finish();
+        reports.push_back(make_record_report(std::move(record), path, request.limits));
+    }
+    return give_report(parsed, request, together(std::move(reports)), parsed.arguments.front(), {});
 }
 
 }  // namespace credence::cli

@@ -17,6 +17,8 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
         {margin_option(),
+         margin_direction_option(),
+         bias_option(),
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
@@ -26,7 +28,7 @@ const Command& report_command() {
 }
 
 ReportRequest read_report_request(const Parsed& parsed) {
-    const ReportRequest request{parsed.choice("format"), {parse_margin(parsed), parse_failed(parsed)}};
+    const ReportRequest request{parsed.choice("format"), parse_limits(parsed)};
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require");
     return request;

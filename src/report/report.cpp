@@ -60,6 +60,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
                      const Limits& limits) {
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, limits);
+    report.evidence.moments.reset();  // large, and of no further use
     report.failed = report.evidence.left_out;
     report.diverged = report.evidence.diverged;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
@@ -98,6 +99,30 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     constexpr std::uint64_t bootstrap_seed = 1;
     report.arms.push_back(report_arm(results, arm, bootstrap_seed, limits));
     return report;
+}
+
+Report together(std::vector<Report> reports) {
+    Report all = std::move(reports.front());
+    const bool several = reports.size() > 1;
+    const auto name_troubles = [&](Report& report) {
+        for (RecordTrouble& trouble : report.troubles)
+            if (several) trouble.what = report.scenarios.front().name + ": " + trouble.what;
+    };
+    name_troubles(all);
+    for (std::size_t i = 1; i < reports.size(); ++i) {
+        Report& one = reports[i];
+        const bool again = std::any_of(all.scenarios.begin(), all.scenarios.end(), [&](const Scenario& scenario) {
+            return scenario.name == one.scenarios.front().name;
+        });
+        if (again) one.scenarios.front().name = one.arms.front().scenario += "_" + std::to_string(i + 1);
+        name_troubles(one);
+        all.source += ", " + one.source;
+        all.scenarios.push_back(std::move(one.scenarios.front()));
+        all.arms.push_back(std::move(one.arms.front()));
+        all.troubles.insert(all.troubles.end(), one.troubles.begin(), one.troubles.end());
+        all.not_judged.insert(all.not_judged.end(), one.not_judged.begin(), one.not_judged.end());
+    }
+    return all;
 }
 
 void require_consistent(const Report& report) {

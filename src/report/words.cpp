@@ -17,15 +17,17 @@ namespace {
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
-    return finding.what == "biased" ? std::abs(finding.value) : std::abs(std::log(finding.value));
+    return finding.what == "biased" || finding.what == "correlated" ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
 
+bool is_direction(const Finding& finding) { return finding.when.starts_with("direction "); }
+
 /// The findings of one kind: each group or component at its worst, the farthest off first.
-std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what) {
+std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what, bool directions) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
-        if (finding.what != what) continue;
+        if (finding.what != what || is_direction(finding) != directions) continue;
         const auto same =
             std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
         if (same == worst.end())
@@ -37,7 +39,8 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
               [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
-        parts.push_back(worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+        parts.push_back(directions ? worst[i].where + ", " + worst[i].when.substr(10) + ": " + number(worst[i].value, 2) + " times P"
+                                   : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
     if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
     return parts;
 }
@@ -50,18 +53,23 @@ std::string failed_text(const ArmReport& arm) {
            short_number(100 * arm.consistency.limits.failed) + " %";
 }
 
-/// The reason why an arm is undecided, and whether there are any data.
-std::string undecided_text(const ArmReport& arm) {
+std::string needed_text(const TrialsNeeded& needed) {
+    if (!(needed.value > 0)) return {};
+    return "a consistent filter with this spread needs about " + number(needed.value, 0) + " trials to be shown consistent (" +
+           number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
+}
+
+/// The reasons why an arm is undecided, and whether there are any data.
+std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
-    if (arm.evidence.trials == 0) return "no trial is left that could be judged";
-    if (verdict.verdict == Verdict::undecided && verdict.trials_to_decide > 0)
-        return "about " + number(verdict.trials_to_decide, 0) + " trials would decide";
-    if (verdict.verdict == Verdict::undecided && !verdict.findings.empty() && arm.evidence.trials > 1)
-        return "every block is within the margin: only this keeps it from being consistent";
-    if (verdict.verdict == Verdict::undecided && arm.evidence.trials == 1)
-        return arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
-                                        : "the innovations of one trial do not decide: give more trials or steps";
-    return {};
+    if (arm.evidence.trials == 0) return {"no trial is left that could be judged"};
+    if (verdict.verdict != Verdict::undecided) return {};
+    if (arm.evidence.trials == 1)
+        return {arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
+                                         : "the innovations of one trial do not decide: give more trials or steps"};
+    std::vector<std::string> reasons = verdict.reasons;
+    if (const std::string text = needed_text(verdict.trials_needed); !text.empty()) reasons.push_back(text);
+    return reasons;
 }
 
 /// The trials of a record that are left out of the numbers, the first of them by name.
@@ -75,7 +83,8 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
                         (failed(trouble.status) ? "; the trial is in no figure." : "; the trial is in the figures."));
     }
-    const std::int64_t failed = report.arms.empty() ? 0 : report.arms.front().failed_trials();
+    std::int64_t failed = 0;
+    for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
     if (shown > 0 && failed > static_cast<std::int64_t>(shown))
         lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
 }
@@ -98,7 +107,7 @@ std::string reason_text(const Reason& reason) {
 std::string no_claim_text(const ArmReport& arm) {
     if (arm.not_run()) return "not run yet: no trial of it is in the file";
     const std::string text = failed_text(arm);
-    return text.empty() ? undecided_text(arm) : text;
+    return text.empty() ? joined(undecided_reasons(arm), "; ") : text;
 }
 
 bool has_run(const Report& report, const std::string& scenario) {
@@ -127,19 +136,28 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
     std::vector<Reason> reasons;
     if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}});
-    const auto list = [&](const std::string& what, const std::string& measure) {
-        if (auto parts = findings_parts(verdict.findings, what); !parts.empty())
+    const auto list = [&](const std::string& what, const std::string& measure, bool directions = false) {
+        if (auto parts = findings_parts(verdict.findings, what, directions); !parts.empty())
             reasons.push_back({what + " (" + measure + "):", std::move(parts)});
     };
     list("optimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
     list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list("optimistic", "directions", true);
+    list("pessimistic", "directions", true);
     list("biased", "mean error/sigma");
     list("correlated", "whitened innovations");
     if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
                     [](const Whiteness& lag) { return !lag.known(); }))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
+    for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
+    if (const WorstTrials& worst = arm.evidence.worst; worst.share > 0.2 && worst.trials.size() >= 10) {
+        std::vector<std::string> parts;
+        for (const WorstTrial& one : worst.trials)
+            parts.push_back(std::to_string(one.trial) + " (step " + std::to_string(one.step) + ")");
+        reasons.push_back({"note, ten trials carry " + number(100 * worst.share, 0) + " % of NEES:", parts});
+    }
     for (const Finding& caution : verdict.cautions) reasons.push_back({"note, " + sentence(caution), {}});
-    if (const std::string text = undecided_text(arm); !text.empty()) reasons.push_back({text, {}});
+    for (const std::string& text : undecided_reasons(arm)) reasons.push_back({text, {}});
     return reasons;
 }
 

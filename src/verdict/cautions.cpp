@@ -1,6 +1,7 @@
 // The verdict on a single trial, and the cautions beside a verdict.
 
 #include "statistics/goodness.hpp"
+#include "statistics/whiteness.hpp"
 
 #include "verdict/consistency_parts.hpp"
 
@@ -29,7 +30,7 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
         const Side side = side_of(corrected, margin);
         if (side == Side::inside) continue;
         (side == Side::above ? above : below) = true;
-        verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected});
+        verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected, "NIS/m"});
     }
     const double lags = static_cast<double>(evidence.whiteness.size()),
                  quantile = evidence.whiteness.empty() ? 0 : normal_quantile(0.025 / lags);
@@ -37,7 +38,7 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
         all_inside = all_inside && lag.known();
         if (lag.known() && std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
             verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.scaled,
-                                        interval_of(lag)});
+                                        interval_of(lag), "relative correlation"});
     }
     if (above && below) verdict.verdict = Verdict::mixed;
     else if (above) verdict.verdict = Verdict::optimistic;
@@ -52,12 +53,15 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
     const Whiteness* worst = nullptr;
     std::vector<int> lags;
     for (const Whiteness& lag : evidence.whiteness) {
-        if (!lag.known() || std::abs(lag.scaled) - lag.simultaneous_bound <= verdict.limits.margin) continue;
+        if (!lag.known() || static_cast<double>(lag.count) < least_products ||
+            !(std::abs(lag.scaled) - lag.simultaneous_bound > verdict.limits.margin))
+            continue;
         if (worst == nullptr || std::abs(lag.scaled) > std::abs(worst->scaled)) worst = &lag;
         lags.push_back(lag.lag);
     }
     if (worst == nullptr) return;
-    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst)});
+    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst),
+                                "relative correlation"});
 }
 
 /// Innovations of the wrong size beside a consistent state: NEES does not show them.
@@ -66,7 +70,7 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     for (const NisEvidence& nis : evidence.nis)
         if (const Side side = side_of(nis.ratio95, verdict.limits.margin); side != Side::inside)
             verdict.cautions.push_back(
-                {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95});
+                {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95, "NIS/m"});
 }
 
 /// A distance from chi-square that is significantly beyond the margin: Massart's bound on the distance of N values from
@@ -75,15 +79,18 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict) {
     for (const Finding& finding : verdict.findings)
         if (finding.where == evidence.blocks.front().block) return;
-    Found found;
+    std::vector<int> steps;
+    Estimate worst;
     for (std::size_t k = 0; k < evidence.shape.distance.size(); ++k) {
         const double count = evidence.blocks.front().step[k].count, alpha = 0.05 / evidence.steps;
         const Estimate distance{evidence.shape.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
-        if (distance.interval().low > verdict.limits.margin) found.add(k, distance, distance.value);
+        if (!(distance.interval().low > verdict.limits.margin)) continue;
+        steps.push_back(static_cast<int>(k) + 1);
+        if (distance.value > worst.value) worst = distance;
     }
-    if (!found.steps.empty())
-        verdict.cautions.push_back({"misshapen", evidence.blocks.front().block, steps_text(found.steps), found.worst.value,
-                                    found.worst.interval()});
+    if (!steps.empty())
+        verdict.cautions.push_back({"misshapen", evidence.blocks.front().block, steps_text(steps), worst.value,
+                                    worst.interval(), "distance from chi-square"});
 }
 
 }  // namespace credence

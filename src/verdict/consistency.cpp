@@ -1,6 +1,7 @@
-#include "statistics/goodness.hpp"
+#include "verdict/judgement.hpp"
 
-#include "verdict/consistency_parts.hpp"
+#include "statistics/mean_bounds.hpp"
+#include "statistics/tails.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,147 +12,148 @@ namespace credence {
 
 namespace {
 
-/// Student's intervals at one level, for any number of trials.
-class Student {
+/// NEES/dim of one group, over the steps and at each of them.
+class GroupJudge {
 public:
-    explicit Student(double alpha) : alpha_(alpha) {}
-    Estimate operator()(const Moments& moments) const {
-        if (moments.count != count_) {
-            count_ = moments.count;
-            quantile_ = t_quantile(alpha_, count_ - 1);
-        }
-        return {moments.mean, quantile_ * moments.standard_error};
-    }
-    double alpha() const { return alpha_; }
+    GroupJudge(const Evidence& evidence, std::size_t group, Judgement& judgement)
+        : evidence_(evidence), group_(evidence.blocks[group]), place_(static_cast<int>(group)), judgement_(judgement) {}
 
-private:
-    double alpha_;
-    mutable double count_ = -1, quantile_ = 0;
-};
-
-class Judge {
-public:
-    Judge(const Evidence& evidence, const Limits& limits)
-        : evidence_(evidence),
-          corrected_(0.05 / std::max(1.0, static_cast<double>(evidence.blocks.size()) * (evidence.steps + 1.0))),
-          corrected_bias_(0.05 / std::max(1.0, static_cast<double>(evidence.bias.size()) * evidence.steps)) {
-        verdict_.limits = limits;
-    }
-
-    Consistency run() {
-        for (const GroupEvidence& block : evidence_.blocks) look_at_block(block);
-        for (const BiasEvidence& bias : evidence_.bias) examine_bias(bias);
-        decide();
-        return verdict_;
+    void judge() {
+        if (!(group_.run.count > 0) && evidence_.trials > 0) return;  // a record that does not give this group's NEES
+        over_steps();
+        at_steps();
     }
 
 private:
-    void look_at_block(const GroupEvidence& block) {
-        const double margin = verdict_.limits.margin;
-        const Interval time = over_steps95(block);
-        all_inside_ = all_inside_ && within(time, margin);
-        note_needed_trials(block.run);
-        const Estimate corrected = corrected_(block.run);
-        if (const Side side = side_of(corrected.interval(), margin);
-            side != Side::inside && beyond_chi_square(corrected, side, degrees_over_steps(block)))
-            add_finding(side, block.block, "over all steps", corrected);
+    double margin() const { return judgement_.limits().margin; }
+
+    void over_steps() {
+        const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
+        const auto groups = static_cast<int>(evidence_.blocks.size());
+        const MeanClaim claim = claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps),
+                                              level_of_group(levels::run, place_, groups) / 2, margin());
+        if (claim.above || claim.below)
+            judgement_.add(claim.above ? Side::above : Side::below, {"", group_.block, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
+        const std::string what = "NEES/dim of " + group_.block;
+        const Acceptance acceptance = accept_mean(sample, margin());
+        if (claim.tails)
+            judgement_.not_shown(what + " looks too small, but rare large errors that were not seen could explain it" + tail_text());
+        judgement_.accept(acceptance, what + (acceptance == Acceptance::tails ? tail_text() : ""));
+    }
+
+    /// What the tail of the trials is like, where they are kept.
+    std::string tail_text() const {
+        std::vector<double> values;
+        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
+            values.push_back(evidence_.moments->X(i, place_));
+        if (values.size() < 2) return {};
+        const Tail tail = tail_of(std::move(values));
+        char text[120];
+        std::snprintf(text, sizeof text, " (the 1 %% largest trials carry %.2g %% of it%s", 100 * tail.worst_share, tail.degrees ? "" : ")");
+        std::string all = text;
+        if (!tail.degrees) return all;
+        std::snprintf(text, sizeof text, "; tails like Student's t with about %.0f degrees of freedom)", *tail.degrees);
+        return all + text;
+    }
+
+    /// The largest mean NEES/dim of the detailed trials; 0 where there are none.
+    double largest_of_trials() const {
+        double largest = 0;
+        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
+            largest = std::max(largest, evidence_.moments->X(i, place_));
+        return largest;
+    }
+
+    void at_steps() {
+        const double tests = static_cast<double>(evidence_.blocks.size()) * evidence_.steps;
         Found found[2];
-        for (std::size_t k = 0; k < block.step.size(); ++k) {
-            const Estimate step = corrected_(block.step[k]);
-            const Side side = side_of(step.interval(), margin);
-            if (side != Side::inside && beyond_chi_square(step, side, block.anees.degrees[k]))
-                found[side == Side::above ? 0 : 1].add(k, step, std::abs(step.value - 1));
+        for (std::size_t k = 0; k < group_.step.size(); ++k) {
+            if (!(group_.step[k].count > 1)) continue;
+            const MeanClaim claim = claim_on_nees(positive_sample(group_.step[k], 0), group_.anees.degrees[k],
+                                                  levels::step / tests / 2, margin());
+            if (claim.above || claim.below) found[claim.above ? 0 : 1].add(k, group_.step[k].mean, claim.bounds);
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                add_finding(side, block.block, steps_text(steps.steps), steps.worst);
-    }
-
-    /// For few trials Student's interval alone is too narrow, because chi-square is skewed: a step must also be beyond
-    /// the exact bound for NEES distributed as (1 -+ margin) chi-square(dimension), which needs no estimated deviation.
-    /// So must all steps.
-    bool beyond_chi_square(const Estimate& step, Side side, double degrees) const {
-        const double margin = verdict_.limits.margin,
-                     scaled = step.value / (1 + (side == Side::above ? margin : -margin));
-        const Interval band = chi_square_band(degrees, corrected_.alpha());
-        return side == Side::above ? scaled > band.high : scaled < band.low;
-    }
-
-    /// Degrees of freedom of the NEES over all steps, from its spread over the trials: chi-square has 2
-    /// mean^2/variance. At least those of fully correlated steps, which count as one, and at most those of independent
-    /// ones.
-    double degrees_over_steps(const GroupEvidence& block) const {
-        const double fewest = block.run.count * block.dimension,
-                     told = 2 * block.run.count * std::pow(block.run.mean / block.run.standard_deviation, 2);
-        return told > fewest ? std::min(told, fewest * evidence_.steps) : fewest;
-    }
-
-    void examine_bias(const BiasEvidence& bias) {
-        Found found;
-        for (std::size_t k = 0; k < bias.step.size(); ++k) {
-            const Estimate step = corrected_bias_(bias.step[k]);
-            if (std::abs(step.value) > step.half_width) found.add(k, step, std::abs(step.value));
-        }
-        if (found.steps.empty()) return;
-        verdict_.findings.push_back(
-            {"biased", bias.component, steps_text(found.steps), found.worst.value, found.worst.interval()});
-    }
-
-    void add_finding(Side side, const std::string& block, const std::string& when, const Estimate& estimate) {
-        (side == Side::above ? optimistic_ : pessimistic_) = true;
-        verdict_.findings.push_back({name_of(side), block, when, estimate.value, estimate.interval()});
-    }
-
-    /// Number of trials at which the time-averaged interval no longer contains the margin's edge, if the mean stays the
-    /// same: every group must get inside, but one outside is enough.
-    void note_needed_trials(const Moments& run) {
-        const double off = std::abs(run.mean - 1), slack = std::abs(off - verdict_.limits.margin);
-        const bool inside = off < verdict_.limits.margin;
-        const double needed = trials_needed(inside ? 0.05 : corrected_.alpha(), run.standard_deviation / slack);
-        if (!std::isfinite(needed)) return;
-        if (inside) needed_inside_ = std::max(needed_inside_, needed);
-        else needed_outside_ = std::min(needed_outside_, needed);
-    }
-
-    /// The least N > count with t_{N - 1} ratio / sqrt(N) <= 1.
-    double trials_needed(double alpha, double ratio) const {
-        const double count = static_cast<double>(evidence_.trials);
-        double needed = std::ceil(std::pow(normal_quantile(alpha) * ratio, 2));
-        for (int round = 0; round < 10 && needed < 1000; ++round)  // beyond this, t equals z
-            needed = std::ceil(std::pow(t_quantile(alpha, std::max(count, needed - 1)) * ratio, 2));
-        return std::max(count + 1, needed);
-    }
-
-    void decide() {
-        if (optimistic_ && pessimistic_) verdict_.verdict = Verdict::mixed;
-        else if (optimistic_) verdict_.verdict = Verdict::optimistic;
-        else if (pessimistic_) verdict_.verdict = Verdict::pessimistic;
-        else if (all_inside_ && evidence_.joint && !evidence_.blocks.empty() && verdict_.findings.empty())
-            verdict_.verdict = Verdict::consistent;
-        constexpr std::int64_t enough_to_tell = 30;
-        if (verdict_.verdict == Verdict::undecided && !all_inside_ && evidence_.joint && evidence_.trials >= enough_to_tell)
-            verdict_.trials_to_decide = std::isfinite(needed_outside_) ? needed_outside_ : needed_inside_;
+                judgement_.add(side, {"", group_.block, steps_text(steps.steps), steps.value, steps.interval, "NEES/dim"});
     }
 
     const Evidence& evidence_;
-    Student corrected_, corrected_bias_;
-    double needed_inside_ = 0, needed_outside_ = std::numeric_limits<double>::infinity();
-    bool all_inside_ = true, optimistic_ = false, pessimistic_ = false;
-    Consistency verdict_;
+    const GroupEvidence& group_;
+    int place_;
+    Judgement& judgement_;
 };
+
+Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
+    Judgement judgement(limits);
+    for (std::size_t group = 0; group < evidence.blocks.size(); ++group) GroupJudge(evidence, group, judgement).judge();
+    judge_directions(evidence, judgement);
+    judge_bias(evidence, judgement);
+    if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state");
+    return judgement.consistency(evidence);
+}
 
 /// The verdict on the trials that did not fail.
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1) return judge_single_trial(evidence, limits);
-    Consistency verdict = Judge(evidence, limits).run();
-    if (evidence.blocks.empty()) return verdict;
+    Consistency verdict = judge_trials(evidence, limits);
+    if (evidence.blocks.empty() || evidence.trials == 0) return verdict;
     caution_about_whiteness(evidence, verdict);
     caution_about_innovations(evidence, verdict);
     caution_about_distribution(evidence, verdict);
+    add_hints(evidence, verdict);
     return verdict;
 }
 
 }  // namespace
+
+void Judgement::add(Side side, Finding finding) {
+    (side == Side::above ? above_ : below_) = true;
+    finding.what = name_of(side);
+    findings_.push_back(std::move(finding));
+}
+
+void Judgement::add_bias(Finding finding) {
+    above_ = true;
+    finding.what = "biased";
+    findings_.push_back(std::move(finding));
+}
+
+void Judgement::accept(Acceptance acceptance, const std::string& what) {
+    if (acceptance == Acceptance::shown) return;
+    all_shown_ = false;
+    (acceptance == Acceptance::tails ? tails_ : unknown_).push_back(what);
+}
+
+void Judgement::not_shown(const std::string& why) {
+    all_shown_ = false;
+    reasons_.push_back(why);
+}
+
+Consistency Judgement::consistency(const Evidence& evidence) {
+    Consistency verdict;
+    verdict.limits = limits_;
+    verdict.findings = std::move(findings_);
+    verdict.directions = std::move(directions);
+    if (above_ && below_) verdict.verdict = Verdict::mixed;
+    else if (above_) verdict.verdict = Verdict::optimistic;
+    else if (below_) verdict.verdict = Verdict::pessimistic;
+    else if (all_shown_ && !evidence.blocks.empty()) verdict.verdict = Verdict::consistent;
+    if (verdict.verdict != Verdict::undecided || evidence.trials == 0) return verdict;
+    verdict.reasons = std::move(reasons_);
+    const auto list = [&](const std::vector<std::string>& names, const std::string& why) {
+        constexpr std::size_t most = 3;
+        if (names.empty()) return;
+        std::string text = names.front();
+        for (std::size_t i = 1; i < std::min(most, names.size()); ++i) text += ", " + names[i];
+        if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+        verdict.reasons.push_back(text + why);
+    };
+    list(unknown_, ": too few trials to show that it is within its margin");
+    list(tails_, ": within its margin, but for trials as large as the largest that were seen");
+    verdict.trials_needed = trials_needed(evidence, limits_);
+    return verdict;
+}
 
 std::string listed(const std::string& what, const std::vector<int>& numbers) {
     std::string text = what + (numbers.size() == 1 ? " " : "s ");
@@ -182,23 +184,18 @@ Consistency judge(const Evidence& evidence, const Limits& limits) {
     Consistency verdict = judge_survivors(evidence, limits);
     if (too_many_failed(evidence.failed_trials(), evidence.all_trials, limits.failed)) {
         verdict.verdict = Verdict::failed;
-        verdict.trials_to_decide = 0;
+        verdict.reasons.clear();
+        verdict.trials_needed = {};
     }
     return verdict;
 }
 
 std::string sentence(const Finding& finding) {
-    const bool innovations = finding.where.starts_with("innovations (");
-    const std::string measure = finding.what == "biased"       ? "mean error/sigma"
-                                : finding.what == "correlated" ? "correlation"
-                                : finding.what == "misshapen"  ? "distance from chi-square"
-                                : innovations                  ? "NIS/m"
-                                                               : "NEES/dim";
-    char figures[160];
-    std::snprintf(figures, sizeof figures, "%s %.3g (%.3g to %.3g)", measure.c_str(), finding.value,
+    char numbers[160];
+    std::snprintf(numbers, sizeof numbers, "%s %.3g (%.3g to %.3g)", finding.measure.c_str(), finding.value,
                   finding.interval.low, finding.interval.high);
     const std::string where = finding.what == "biased" ? "component " + finding.where : finding.where;
-    return finding.what + ": " + where + ", " + finding.when + ", " + figures;
+    return finding.what + ": " + where + ", " + finding.when + ", " + numbers;
 }
 
 }  // namespace credence

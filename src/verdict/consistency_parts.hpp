@@ -34,18 +34,16 @@ inline std::string steps_text(const std::vector<int>& steps) { return listed("st
 /// Steps with a finding, and the one of them that is farthest off.
 struct Found {
     std::vector<int> steps;
-    Estimate worst;
+    double value = 0;
+    Interval interval;
 
-    void add(std::size_t k, const Estimate& estimate, double distance) {
-        if (steps.empty() || distance > distance_) {
-            worst = estimate;
-            distance_ = distance;
+    void add(std::size_t k, double mean, const Interval& bounds) {
+        if (steps.empty() || std::abs(mean - 1) > std::abs(value - 1)) {
+            value = mean;
+            interval = bounds;
         }
         steps.push_back(static_cast<int>(k) + 1);
     }
-
-private:
-    double distance_ = 0;
 };
 
 /// The verdict on one trial: its NIS and the whiteness of its innovations.
@@ -55,5 +53,8 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits);
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict);
+
+/// Adds hints: what findings such as these often come from.
+void add_hints(const Evidence& evidence, Consistency& verdict);
 
 }  // namespace credence

@@ -2,6 +2,8 @@
 
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
+#include "statistics/trial_moments.hpp"
+#include "statistics/whiteness.hpp"
 
 #include "verdict/evidence_parts.hpp"
 #include "base/nan.hpp"
@@ -51,24 +53,102 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
     return evidence;
 }
 
-/// `scale` NIS/m. The bounds hold for innovations of the right size; otherwise the products are off by that factor.
-std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double scale) {
+/// Number of trials whose innovations were correlated: the detailed ones of a study, all of a record.
+double correlated_trials(const ScenarioResults& results, const ArmResults& arm) {
+    if (results.blocks.empty()) return static_cast<double>(arm.counted);
+    const auto steps = static_cast<std::size_t>(results.steps());
+    double trials = 0;
+    for (std::size_t row = 0; row < arm.nees.size(); row += steps) trials += !std::isnan(arm.nees[row]);
+    return trials;
+}
+
+/// Sums of a lag, the number of products taken as the same in every trial: the files keep its total alone.
+LagSums lag_sums(const ProductTotals& products, std::size_t lag, double trials, double scale) {
+    const double count = static_cast<double>(products.count[lag]), each = count / trials, sum = products.sum[lag].rounded();
+    return {trials, sum, products.square_sum[lag].rounded(), sum * each, count, count * each, count * scale * scale};
+}
+
+/// `scale` is NIS/m: correlations are given over it too, because a wrong size of S is not correlation.
+std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double scale, double trials) {
     std::vector<Whiteness> evidence;
     const double lags = static_cast<double>(products.sum.size());
     for (std::size_t lag = 0; lag < products.sum.size(); ++lag) {
-        const double count = static_cast<double>(products.count[lag]);
-        if (count == 0) continue;
-        const double mean = products.sum[lag].rounded() / count;
-        evidence.push_back({static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale,
-                            normal_quantile(0.05) / std::sqrt(count), normal_quantile(0.05 / lags) / std::sqrt(count)});
+        if (products.count[lag] == 0) continue;
+        const LagSums sums = lag_sums(products, lag, trials, scale);
+        const auto bound = [&](double alpha) {
+            const std::optional<LagCorrelation> correlation = correlation_of(sums, alpha);
+            // Of few products the bound is shown, and not used [cautions.cpp].
+            return correlation ? (correlation->interval.high - correlation->interval.low) / 2 / scale
+                               : normal_quantile(alpha) / std::sqrt(sums.c);
+        };
+        const double mean = sums.p / sums.c;
+        evidence.push_back({static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale, bound(0.05), bound(0.05 / lags)});
     }
     return evidence;
 }
 
-BiasEvidence bias_evidence(const Series& series, const ArmResults& arm, const SeriesTotals& totals) {
-    BiasEvidence evidence{series.part, {}};
+BiasEvidence bias_evidence(const ScenarioResults& results, const Series& series, const ArmResults& arm,
+                           const SeriesTotals& totals) {
+    std::string unit;
+    for (const Component& component : results.scenario.components)
+        if (component.name == series.part) unit = component.unit;
+    BiasEvidence evidence{series.part, unit, run_moments(arm, totals, results.steps(), 1), {}, 0};
     for (std::size_t k = 0; k < totals.sum.size(); ++k) evidence.step.push_back(moments_at(arm, totals, k, 1));
     return evidence;
+}
+
+/// Largest |e_j| of the detailed trials, by component.
+void add_largest_errors(const ScenarioResults& results, const ArmResults& arm, std::vector<BiasEvidence>& bias) {
+    const auto n = static_cast<std::size_t>(results.state_size());
+    if (bias.size() != n) return;
+    for (std::size_t i = 0; i < arm.errors.size(); ++i)
+        if (double& largest = bias[i % n].largest_error; std::abs(arm.errors[i]) > largest) largest = std::abs(arm.errors[i]);
+}
+
+/// Rows of trials that did not fail. The file has the mean NEES of a group, the statistics want it per dimension.
+std::shared_ptr<const TrialMoments> trial_moments(const ScenarioResults& results, const ArmResults& arm,
+                                                  const std::vector<GroupEvidence>& groups) {
+    const auto size = static_cast<std::size_t>(results.moment_count());
+    if (size == 0 || arm.moments.empty() || groups.empty()) return nullptr;
+    auto moments = std::make_shared<TrialMoments>();
+    moments->components = results.state_size();
+    moments->groups = static_cast<int>(groups.size());
+    for (std::size_t row = 0; row < arm.moments.size() / size; ++row) {
+        const double* from = arm.moments.data() + row * size;
+        const auto is_nan = [](double value) { return std::isnan(value); };
+        if (std::all_of(from, from + groups.size(), is_nan)) continue;  // the trial failed
+        const auto place = static_cast<std::int64_t>(row);
+        double* to = moments->append(results.blocks.empty() ? place : trial_numbers(results, place, 1).front());
+        std::copy_n(from, size, to);
+        for (std::size_t g = 0; g < groups.size(); ++g) to[g] /= groups[g].dimension;
+    }
+    return moments->trials() == 0 ? nullptr : moments;
+}
+
+WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) {
+    constexpr std::size_t most = 10;
+    const auto steps = static_cast<std::size_t>(results.steps());
+    WorstTrials worst;
+    double total = 0;
+    for (std::size_t row = 0; row < arm.nees.size() / steps; ++row) {
+        const double *first = arm.nees.data() + row * steps, *last = first + steps;
+        double sum = 0, known = 0;
+        const double* largest = first;
+        for (const double* at = first; at != last; ++at)
+            if (!std::isnan(*at)) sum += *at, ++known, largest = !(*largest >= *at) ? at : largest;
+        if (known == 0) continue;
+        const double ratio = sum / known / results.state_size();
+        total += ratio;
+        const auto place = static_cast<std::int64_t>(row);
+        worst.trials.push_back({results.blocks.empty() ? place : trial_numbers(results, place, 1).front(), ratio,
+                                static_cast<int>(largest - first) + 1});
+    }
+    const auto end = worst.trials.begin() + static_cast<std::ptrdiff_t>(std::min(most, worst.trials.size()));
+    std::partial_sort(worst.trials.begin(), end, worst.trials.end(),
+                      [](const WorstTrial& a, const WorstTrial& b) { return a.nees_ratio > b.nees_ratio; });
+    worst.trials.erase(end, worst.trials.end());
+    for (const WorstTrial& trial : worst.trials) worst.share += trial.nees_ratio / total;
+    return worst;
 }
 
 DistributionEvidence shape_evidence(const ScenarioResults& results, const ArmResults& arm) {
@@ -131,13 +211,17 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
         if (series.role == SeriesRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));
         if (series.role == SeriesRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
         if (series.role == SeriesRole::standardised_error)
-            evidence.bias.push_back(bias_evidence(series, arm, arm.totals[f]));
+            evidence.bias.push_back(bias_evidence(results, series, arm, arm.totals[f]));
         if (series.role == SeriesRole::nis)
             if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0) evidence.nis.push_back(std::move(nis));
     }
-    evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio);
+    evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
+                                           correlated_trials(results, arm));
     evidence.shape = shape_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);
+    evidence.worst = worst_trials(results, arm);
+    add_largest_errors(results, arm, evidence.bias);
+    evidence.moments = trial_moments(results, arm, evidence.blocks);
     return evidence;
 }
 

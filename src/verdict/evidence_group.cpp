@@ -26,11 +26,6 @@ double run_total(const SeriesTotals& totals) {
     return sum.rounded();
 }
 
-/// Of each trial's mean over its steps.
-Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
-    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()), scale / steps);
-}
-
 std::vector<Coverage> coverage_of(const ArmResults& arm, const SeriesTotals& totals) {
     std::vector<Coverage> coverage;
     for (std::size_t level = 0; level < coverage_level_count; ++level) {
@@ -110,6 +105,10 @@ bool within(double value, const Interval& interval) { return value >= interval.l
 
 }  // namespace
 
+Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
+    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()), scale / steps);
+}
+
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale) {
     const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
     return scaled(moments_from_sums(arm.counted_at(totals, k), totals.sum[k].rounded(), square), scale);
@@ -137,6 +136,8 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
 GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     GroupEvidence evidence;
     fill_ratios(results, arm, f, evidence);
+    for (const ComponentGroup& group : results.scenario.groups)
+        for (int j = 0; group.name == evidence.block && j < group.count; ++j) evidence.components.push_back(group.component(j));
     for (std::size_t k = 0; k < evidence.step.size(); ++k) {
         const Moments& step = evidence.step[k];
         const double whole = evidence.dimension,

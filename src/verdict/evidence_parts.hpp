@@ -8,6 +8,9 @@ namespace credence {
 /// Moments of a series over trials at step k + 1, times `scale`.
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale);
 
+/// Moments over trials of each trial's mean over its steps, times `scale`.
+Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale);
+
 /// Ratios and bands of totals whose degrees of freedom are already set.
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
 

@@ -34,14 +34,14 @@ if command -v ccache >/dev/null; then
 fi
 { cmake -S "$tree" -B "$build" "${generator[@]}" "${launcher[@]}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCREDENCE_TARGET_V4=OFF -DCREDENCE_WRITTEN_OUT=0 -DCREDENCE_MPI=OFF &&
-  cmake --build "$build" --target credence tracker write_record -j "$(nproc)"; } >"$work/log" 2>&1 ||
+  cmake --build "$build" --target credence tracker -j "$(nproc)"; } >"$work/log" 2>&1 ||
   { tail -n 60 "$work/log"; fail "diffs: the tree does not build with them"; }
 credence=$build/credence scenario=$tree/experiments/seed/ekf-circle-constant.ini
 cd "$work/run"
 
 # mean FILE ARM COLUMN: that column's mean in the report of a file.
 mean() {
-  "$credence" "${report:-report}" "$1" --format csv |
+  "$credence" report "$1" --format csv |
     awk -F, -v arm="$2" -v column="$3" '$2 == arm && $5 == column { print $7; found = 1 } END { exit !found }' ||
     fail "$(basename "$1") has no column $3 of $2"
 }
@@ -54,10 +54,6 @@ run two --set scenario.poses=2
 [ "$(mean two.h5 fixed.ekf last_pose_error)" = "$(mean two.h5 fixed.ekf pose_error)" ] || fail "A column: last_pose_error is wrong"
 run twenty
 below "$(mean twenty.h5 fixed.ekf last_pose_error)" "$(mean twenty.h5 fixed.ekf pose_error)" || fail "A column: last_pose_error is wrong"
-"$build/tests/write_record" record.h5
-report=judge
-below "$(mean record.h5 record last_pose_error)" "$(mean record.h5 record pose_error)" || fail "A column: it is wrong in a record"
-report=report
 
 # An estimator: it runs beside another one, and its covariance is larger.
 run both --set arms.estimators=ekf,fading

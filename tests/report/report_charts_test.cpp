@@ -69,7 +69,7 @@ TEST_CASE("charts: no verdict, finding or caution depends on them") {
     CHECK(with.verdict == wrong.verdict);
     CHECK(with.findings.size() == wrong.findings.size());
     CHECK(with.cautions.size() == wrong.cautions.size());
-    CHECK(with.trials_to_decide == wrong.trials_to_decide);
+    CHECK(with.trials_needed.value == wrong.trials_needed.value);
 }
 
 TEST_CASE("charts: text, JSON and CSV show them; scenarios without another estimator have none") {

@@ -120,15 +120,3 @@ TEST_CASE("consistency: the verdict on a single trial uses its innovations") {
     evidence.nis.clear();
     CHECK(judge(evidence, 0.05).verdict == Verdict::undecided);
 }
-
-TEST_CASE("consistency: trials that would decide are more than there are, and are not guessed from few") {
-    for (const int trials : {2, 5, 20, 29, 30, 60, 300}) {
-        Normals normals(43);
-        std::vector<double> nees;
-        for (int i = 0; i < trials; ++i) nees.push_back(normals.chi_square(1));
-        const Consistency verdict = judge(evidence_of_values(nees), 0.05);
-        CAPTURE(trials);
-        CHECK(verdict.verdict == Verdict::undecided);
-        CHECK((trials < 30 ? verdict.trials_to_decide == 0 : verdict.trials_to_decide > trials));
-    }
-}

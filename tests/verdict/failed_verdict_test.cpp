@@ -144,7 +144,7 @@ TEST_CASE("failed: the verdict takes precedence over the other trials and over e
         CHECK(with.verdict == Verdict::failed);
         CHECK(without.verdict == (scale < 1 ? Verdict::pessimistic : scale > 1 ? Verdict::optimistic : Verdict::consistent));
         CHECK(with.findings.size() == without.findings.size());
-        CHECK(with.trials_to_decide == 0);
+        CHECK(with.trials_needed.value == 0);
     }
 }
 

@@ -1,5 +1,7 @@
 // The empty results of a record: the same declarations as a run has.
 
+#include <credence/record.hpp>
+#include <credence/study.hpp>
 #include <credence/text.hpp>
 
 #include "files/record/results.hpp"
@@ -51,6 +53,7 @@ ArmResults empty_arm(const ScenarioResults& results) {
     const std::size_t detailed = static_cast<std::size_t>(results.detailed()) * steps;
     arm.errors.assign(detailed * static_cast<std::size_t>(results.state_size()), nan);
     arm.nees.assign(detailed, nan);
+    arm.moments.assign(static_cast<std::size_t>(results.detailed() * results.moment_count()), nan);
     arm.present.resize(steps);
     return arm;
 }
@@ -100,10 +103,24 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.columns = record_columns(shape);
     results.all_series = all_series;
     results.trials = shape.trials;
+    results.scenario.groups = shape.groups;
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
     results.arms.push_back(empty_arm(results));
     return results;
+}
+
+Study study_of(Record record) {
+    Study study;
+    ScenarioResults& results = record.results;
+    results.scenario.name = "record";
+    results.blocks = BlockRanges::below(block_count(results.trials));
+    results.columns.erase(results.columns.begin() + RecordColumn::unseen);
+    std::vector<std::vector<double>>& columns = results.arms.front().columns;
+    columns.erase(columns.begin() + RecordColumn::unseen);
+    study.trials = results.trials;
+    study.scenarios.push_back(std::move(results));
+    return study;
 }
 
 }  // namespace credence

@@ -25,7 +25,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
       all_series_(record_series(shape_)),
       judge_(shape_, all_series_),
       presence_(shape_),
-      products_(size(lag_count(shape_.steps + 1)), size(shape_.m)) {
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m), shape_.version == 1 ? Lags::in_steps : Lags::in_measurements),
+      moments_(shape_.n, shape_.groups.size()) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
     keeps_nees_ = shape.trials <= most_values / shape.steps;
@@ -58,7 +59,7 @@ void RecordTotals::add_covered(const RecordStep& step) {
         case Presence::broken: return note(step, Status::non_finite, checked_.broken);
         case Presence::absent: break;
     }
-    products_.leave_out(size(step.step));
+    products_.leave_out();
 }
 
 /// Ends a trial. One that has fewer steps than it should has failed, unless the record declares a lower number.
@@ -82,12 +83,13 @@ void RecordTotals::start_trial() {
     presence_.start_trial();
     present_.clear();
     products_.start_trial();
+    moments_.start_trial();
 }
 
 void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
     const std::size_t k = size(step.step);
     double* values = &series(0, k);
-    const std::string trouble = judge_.judge(checked, values, products_.at(k).data());
+    const std::string trouble = judge_.judge(checked, values, products_.now.data());
     if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
     if (!figures_add_up(values, all_series_.list.size()))
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
@@ -97,7 +99,7 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     set_dimension(k);
     present_.push_back(k);
     keep_details(step.trial, k, checked);
-    products_.correlate(k);
+    if (record_.has_innovations) products_.correlate();
 }
 
 /// Notes the dimension that the state has at this step, and scales its NEES to that of the whole state.
@@ -125,6 +127,7 @@ void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const Checked
     for (Eigen::Index j = 0; j < checked.e.size(); ++j)
         arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
             checked.here.empty() || checked.here[static_cast<std::size_t>(j)] ? checked.e(j) : nan;
+    if (shape_.has_errors) moments_.add(&series(0, k), &series(all_series_.standardised_error, k), checked.P);
 }
 
 void RecordTotals::end_trial(std::int64_t trial) {
@@ -132,6 +135,10 @@ void RecordTotals::end_trial(std::int64_t trial) {
     if (status_ != Status::completed) {
         ++record_.trouble_count;
         if (record_.troubles.size() < most_troubles) record_.troubles.push_back(trouble_);
+    }
+    if (trial < record_.results.detailed() && !failed(status_)) {
+        const std::vector<double> moments = moments_.moments();
+        std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
     if (!failed(status_)) return add_totals();
     if (trial >= record_.results.detailed()) return;

@@ -6,7 +6,8 @@
 #include "files/record/file.hpp"
 #include "files/record/presence.hpp"
 #include "worlds/own/step.hpp"
-#include "worlds/own/lag_products.hpp"
+#include "files/record/row_products.hpp"
+#include "worlds/own/moments.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -67,7 +68,8 @@ private:
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
     std::vector<int> dimensions_;                ///< [steps] of the state, of version 2 with a joint covariance; else empty
-    LagProducts products_;
+    RowProducts products_;
+    TrialMomentSums moments_;
 };
 
 /// Reads a whole record, part by part. The result does not depend on the size of the parts.

@@ -104,8 +104,9 @@ std::string compare_head(const CompareReport& report) {
     std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
     text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
     const bool trials = first_pair.keep == Keep::trials;
-    return text + "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) +
-           "). Intervals are two-sided 95 %" +
+    text += report.of_records ? "Both of a pair are of the same run"
+                              : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
+    return text + ". Intervals are two-sided 95 %" +
            (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures below"
                    : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: credence run --keep trials") +
            (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");

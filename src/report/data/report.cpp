@@ -39,9 +39,22 @@ Json findings_json(const std::vector<Finding>& findings) {
     Json json = Json::array();
     for (const Finding& finding : findings)
         json.push_back({{"what", finding.what}, {"where", finding.where}, {"when", finding.when},
-                        {"value", finding.value}, {"interval", interval_json(finding.interval)},
+                        {"measure", finding.measure}, {"value", finding.value}, {"interval", interval_json(finding.interval)},
                         {"text", sentence(finding)}});
     return json;
+}
+
+Json directions_json(const DirectionsFound& directions) {
+    if (!directions.unknown.empty()) return {{"unknown", directions.unknown}};
+    if (directions.spectrum.empty()) return nullptr;
+    const auto list = [](const std::vector<DirectionOfGroup>& all) {
+        Json json = Json::array();
+        for (const DirectionOfGroup& one : all)
+            json.push_back({{"group", one.group}, {"direction", one.name}, {"ratio", one.ratio}, {"interval", interval_json(one.interval)}});
+        return json;
+    };
+    return {{"trials", directions.trials}, {"range95", interval_json(directions.range)}, {"spectrum", directions.spectrum},
+            {"largest", list(directions.largest)}, {"smallest", list(directions.smallest)}};
 }
 
 Json arm_json(const Report& report, const ArmReport& arm) {
@@ -54,7 +67,17 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;
     json["margin"] = arm.consistency.limits.margin;
     json["failed_limit"] = arm.consistency.limits.failed;
-    if (arm.consistency.trials_to_decide > 0) json["trials_to_decide"] = arm.consistency.trials_to_decide;
+    json["margin_direction"] = arm.consistency.limits.direction;
+    json["bias_limit"] = arm.consistency.limits.bias;
+    if (const TrialsNeeded& needed = arm.consistency.trials_needed; needed.value > 0) {
+        json["trials_to_decide"] = needed.value;
+        json["trials_to_decide_range"] = {needed.low, needed.high};
+    }
+    json["directions"] = directions_json(arm.consistency.directions);
+    json["hints"] = arm.consistency.hints;
+    json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};
+    for (const WorstTrial& one : arm.evidence.worst.trials)
+        json["worst_trials"]["trials"].push_back({{"trial", one.trial}, {"nees_ratio", one.nees_ratio}, {"step", one.step}});
     json["findings"] = findings_json(arm.consistency.findings);
     json["cautions"] = findings_json(arm.consistency.cautions);
     json.update(evidence_json(arm.evidence));

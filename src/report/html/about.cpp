@@ -23,8 +23,12 @@ std::string fact(const RunFacts& facts, const std::string& name) {
 
 /// The options that give the same verdicts again.
 std::string limits_options(const Limits& limits) {
-    const bool usual = limits.failed == Limits().failed;
-    return " --margin " + to_text(limits.margin) + (usual ? "" : " --failed " + to_text(limits.failed));
+    const Limits usual(limits.margin);
+    std::string options = " --margin " + to_text(limits.margin);
+    if (limits.failed != usual.failed) options += " --failed " + to_text(limits.failed);
+    if (limits.direction != usual.direction) options += " --margin-direction " + to_text(limits.direction);
+    if (limits.bias != usual.bias) options += " --bias " + to_text(limits.bias);
+    return options;
 }
 
 /// The command that makes the study's file from the scenarios on this page.

@@ -188,6 +188,11 @@ Html charts(const Part& part) {
     Html differences;
     for (std::size_t i = 0; i < part.pairs.size(); ++i) differences += difference_charts(*part.pairs[i], i);
     const Html html = chart_group("Over all steps", over_all, equivalence_chart(part) + coverage_chart(part)) +
+                      chart_group("Directions",
+                                  "Combinations of the state, each component in units of its own sigma: where the "
+                                  "squared error is largest and smallest against what P says. A filter that is right has "
+                                  "its marks in the shaded region, and its errors on the circle.",
+                                  direction_charts(part)) +
                       chart_group("NEES/dim by step", by_step, nees_panels(part)) +
                       chart_group("NIS/m by step", by_step, nis_panels(part)) +
                       chart_group("Innovations a lag apart",

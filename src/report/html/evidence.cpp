@@ -148,7 +148,8 @@ Html distribution_table(const Part& part) {
 
 Html evidence_tables(const Part& part) {
     const Html html = blocks_table(part) + omitted_blocks(part) + charts_table(part) + coverage_table(part) + nis_table(part) +
-                      distribution_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part));
+                      distribution_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part)) +
+                      direction_tables(part) + worst_trials_table(part);
     return html.empty() ? html : "<h3>Is the covariance right?</h3>\n"_html + html;
 }
 

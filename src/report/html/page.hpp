@@ -80,6 +80,10 @@ Html legend(const Part& part);
 
 Html equivalence_chart(const Part& part);
 Html coverage_chart(const Part& part);
+Html direction_charts(const Part& part);
+/// The numbers of these charts, and the trials with the largest NEES.
+Html direction_tables(const Part& part);
+Html worst_trials_table(const Part& part);
 Html nees_panels(const Part& part);
 Html nis_panels(const Part& part);
 Html whiteness_chart(const Part& part);

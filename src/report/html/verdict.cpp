@@ -38,7 +38,9 @@ std::string why(const ArmReport& arm) {
     if (arm.not_run()) return no_claim_text(arm);
     const std::vector<Reason> reasons = reasons_of(arm);
     if (arm.consistency.verdict == Verdict::consistent)
-        return "NEES/dim of the whole state and of every block is within 1 ± " + to_text(arm.consistency.limits.margin);
+        return "NEES/dim of the whole state and of every group is within 1 ± " + to_text(arm.consistency.limits.margin) +
+               ", the squared error of every direction within 1 ± " + to_text(arm.consistency.limits.direction) +
+               " of P's, every bias within " + to_text(arm.consistency.limits.bias) + " sigma";
     return reasons.empty() ? "no interval lies wholly within the margin or wholly outside"
                            : reason_text(reasons.front());
 }
@@ -135,8 +137,9 @@ Html verdicts(const Report& report) {
         if (has_section(report, arm.scenario)) lines += verdict_line(arm);
     return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
            "NEES/dim 1 "
-           "in every block of the state and at every step; the verdict holds all of them against 1 ± "_html +
-           escaped(to_text(report.limits.margin)) +
+           "in every group of components and at every step; the verdict holds all of them against 1 ± "_html +
+           escaped(to_text(report.limits.margin) + ", the squared error of every direction against 1 ± " +
+                   to_text(report.limits.direction) + " of what P says, and every bias against " + to_text(report.limits.bias) + " sigma") +
            ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
            "too "
            "large). Failed: more than "_html + escaped(short_number(100 * report.limits.failed)) +

@@ -63,8 +63,9 @@ std::string report_text(const Report& report) {
     std::string text;
     for (const std::string& warning : warnings_of(report)) text += wrapped(warning) + "\n";
     text += report.source + ": " + trials_text(report) +
-            ".\nA consistent filter has NEES/dim 1 in every block of the state and at every step; the verdict holds all of "
-            "them\nagainst 1 ± " + to_text(report.limits.margin) + ". Intervals are two-sided 95 %.\n\n";
+            ".\nA consistent filter has NEES/dim 1 in every group of components and at every step, and errors as large as P says in\n"
+            "every direction. The verdict holds them against 1 ± " + to_text(report.limits.margin) + " and 1 ± " +
+            to_text(report.limits.direction) + ". Intervals are two-sided 95 %.\n\n";
     const std::vector<const ArmReport*> arms = arms_by_themselves(report);
     text += verdicts_part(arms);
     for (const Scenario& scenario : report.scenarios)

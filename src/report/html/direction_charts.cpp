@@ -1,0 +1,135 @@
+// The page's charts of directions: how large the errors are in every combination of the state, against what P says.
+
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "report/html/chart.hpp"
+#include "report/html/page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace credence::page {
+
+namespace {
+
+bool has_directions(const ArmReport& arm) { return !arm.consistency.directions.spectrum.empty(); }
+
+const DirectionOfGroup* of_state(const std::vector<DirectionOfGroup>& all) { return all.empty() ? nullptr : &all.front(); }
+
+/// Ratios of all directions of the whole state, an arm a row, with the interval that contains them.
+Html spectrum_chart(const Part& part) {
+    constexpr double width = 360, left = 96, right = width - 12, top = 34, row = 26;
+    const double margin = part.report.limits.direction, bottom = top + row * static_cast<double>(part.arms.size());
+    Range range;
+    for (const double end : {1 - 1.6 * margin, 1 + 1.6 * margin}) range.include(end);
+    for (const ArmReport* arm : part.arms) {
+        const DirectionsFound& found = arm->consistency.directions;
+        for (const double ratio : found.spectrum) range.include(ratio);
+        if (has_directions(*arm) && found.range.low > 0) range.include(found.range.low), range.include(found.range.high);
+    }
+    const Scale x = range.scale(left, right, 4);
+    Svg svg(width, bottom + 36);
+    svg.box({x(1 - margin), top}, {x(1 + margin), bottom}, "margin", "within the margin of directions");
+    svg.line({x(1), top}, {x(1), bottom}, "ideal");
+    svg.text({left, 12}, Anchor::start, "◀ smaller than P says");
+    svg.text({right, 12}, Anchor::end, "larger ▶");
+    Axes{x, {ScaleKind::linear, 0, 1, bottom, top}, "squared error over what P says, by direction", "", 5, 0}.draw(svg);
+    std::string described;
+    for (std::size_t i = 0; i < part.arms.size(); ++i) {
+        const DirectionsFound& found = part.arms[i]->consistency.directions;
+        const double y = top + row * (static_cast<double>(i) + 0.5);
+        svg.text({left - 8, y + 4}, Anchor::end, part.arms[i]->arm.substr(0, 14), "label row");
+        if (found.spectrum.empty()) continue;
+        const std::string says = part.arms[i]->arm + ": " + short_number(found.spectrum.front()) + " to " +
+                                 short_number(found.spectrum.back()) + ", all within " + short_number(found.range.low) +
+                                 " to " + short_number(found.range.high) + " with 95 %";
+        svg.line({x(found.range.low), y}, {x(found.range.high), y}, "whisker " + series_class(i), says);
+        for (const double ratio : found.spectrum) svg.mark({x(ratio), y}, i, part.arms[i]->arm + ": " + short_number(ratio));
+        described += says + ". ";
+    }
+    return chart("Directions of the whole state",
+                 svg.html(part.id("directions"), part.scenario.name + ": squared error over P's, by direction", described));
+}
+
+/// An ellipse with these half-axes about a centre, as a closed path.
+std::vector<ChartPoint> ellipse(ChartPoint centre, double along_x, double along_y) {
+    constexpr int points = 72;
+    std::vector<ChartPoint> path;
+    for (int i = 0; i <= points; ++i) {
+        const double angle = 2 * std::numbers::pi * i / points;
+        path.push_back({centre.x + along_x * std::cos(angle), centre.y - along_y * std::sin(angle)});
+    }
+    return path;
+}
+
+/// The plane of the largest and the smallest direction, in which P is a circle: the ellipse of the errors beside it.
+Html ellipse_chart(const Part& part, std::size_t i) {
+    const ArmReport& arm = *part.arms[i];
+    const DirectionsFound& found = arm.consistency.directions;
+    const DirectionOfGroup *largest = of_state(found.largest), *smallest = of_state(found.smallest);
+    if (largest == nullptr || smallest == nullptr) return {};
+    constexpr double width = 360, height = 250, room = 88;
+    const ChartPoint centre{width / 2, 112};
+    const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio), unit = room / std::max({1.0, wide, high});
+    Svg svg(width, height);
+    svg.path(ellipse(centre, unit, unit), "ideal");
+    svg.path(ellipse(centre, unit * wide, unit * high), "line " + series_class(i));
+    for (const double side : {-1.0, 1.0}) {
+        svg.mark({centre.x + side * unit * wide, centre.y}, i, largest->name + ": " + short_number(wide));
+        svg.mark({centre.x, centre.y + side * unit * high}, i, smallest->name + ": " + short_number(high));
+    }
+    svg.text({width / 2, height - 26}, Anchor::middle, "→ " + largest->name.substr(0, 56));
+    svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + smallest->name.substr(0, 56));
+    const std::string says = arm.arm + ": the errors are " + short_number(wide) + " times as large as P says along " +
+                             largest->name + ", and " + short_number(high) + " times along " + smallest->name;
+    return chart(arm.arm + ": errors (line) against P (circle)",
+                 svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
+}
+
+}  // namespace
+
+Html direction_charts(const Part& part) {
+    constexpr std::size_t most = 6;
+    if (std::none_of(part.arms.begin(), part.arms.end(), [](const ArmReport* arm) { return has_directions(*arm); })) return {};
+    Html html = spectrum_chart(part);
+    for (std::size_t i = 0; i < std::min(most, part.arms.size()); ++i) html += ellipse_chart(part, i);
+    return html;
+}
+
+Html direction_tables(const Part& part) {
+    HtmlTable table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
+                    {"arm, group", "direction", "ratio", "interval, corrected"});
+    HtmlTable spectrum(part.scenario.name + ": all directions of the whole state",
+                       {"arm", "ratios", "every direction within, 95 %", "from these trials"});
+    for (const ArmReport* arm : part.arms) {
+        const DirectionsFound& found = arm->consistency.directions;
+        for (const auto* all : {&found.largest, &found.smallest})
+            for (const DirectionOfGroup& one : *all)
+                table.row(escaped(arm->arm + ", " + one.group),
+                          {escaped(one.name), escaped(short_number(one.ratio)),
+                           escaped(short_number(one.interval.low) + " to " + short_number(one.interval.high))});
+        if (found.spectrum.empty()) continue;
+        std::vector<std::string> ratios;
+        for (const double ratio : found.spectrum) ratios.push_back(short_number(ratio));
+        spectrum.row(escaped(arm->arm), {escaped(joined(ratios)), escaped(short_number(found.range.low) + " to " + short_number(found.range.high)),
+                                         count_html(found.trials)});
+    }
+    return folded("Directions, with their intervals", spectrum.html() + table.html());
+}
+
+Html worst_trials_table(const Part& part) {
+    HtmlTable table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
+    Html shares;
+    for (const ArmReport* arm : part.arms) {
+        const WorstTrials& worst = arm->evidence.worst;
+        for (const WorstTrial& one : worst.trials)
+            table.row(escaped(arm->arm + ", " + std::to_string(one.trial)), {escaped(short_number(one.nees_ratio)), count_html(one.step)});
+        if (!worst.trials.empty())
+            shares += element("p", escaped(arm->arm + ": they have a share of " + short_number(worst.share) + " of NEES.")) + "\n"_html;
+    }
+    return folded("Trials with the largest NEES", table.html() + shares);
+}
+
+}  // namespace credence::page

@@ -1,0 +1,45 @@
+// How many trials would show that a filter is consistent.
+
+#include "statistics/advice.hpp"
+#include "statistics/bias.hpp"
+#include "verdict/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+/// The first trials: enough to know the spread, and few enough for a report of many arms.
+TrialMoments first_trials(const TrialMoments& all) {
+    constexpr std::size_t most = 1024;
+    TrialMoments first = all;
+    first.trial.resize(std::min(most, all.trials()));
+    first.values.resize(first.trials() * first.size());
+    return first;
+}
+
+/// To two digits.
+double rounded(double trials) {
+    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(trials)) - 1));
+    return std::round(trials / unit) * unit;
+}
+
+}  // namespace
+
+TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
+    if (!evidence.moments || evidence.blocks.empty() || !evidence.joint) return {};
+    std::vector<int> state;
+    for (int j = 0; j < evidence.moments->components; ++j)
+        if (static_cast<std::size_t>(j) >= evidence.bias.size() ||
+            evidence.bias[static_cast<std::size_t>(j)].largest_error > rounding_error)
+            state.push_back(j);
+    constexpr std::uint64_t seed = 1;  // the same advice for the same trials
+    const std::optional<Advice> advice = trials_for_consistent(first_trials(*evidence.moments), state, seed,
+                                                               {limits.margin, limits.direction, limits.bias});
+    if (!advice) return {};
+    return {rounded(advice->range.low), rounded(advice->trials), rounded(advice->range.high)};
+}
+
+}  // namespace credence

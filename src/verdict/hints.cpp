@@ -1,0 +1,59 @@
+// Hints beside a verdict: mistakes in writing a record or a filter that look like the findings at hand.
+
+#include "verdict/consistency_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace credence {
+
+namespace {
+
+std::string with_number(const char* format, double number) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, number);
+    return text;
+}
+
+/// All directions are off by nearly one factor.
+void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) {
+    const std::vector<double>& spectrum = verdict.directions.spectrum;
+    if (spectrum.size() < 2 || !(spectrum.front() > 0)) return;
+    const double middle = std::sqrt(spectrum.front() * spectrum.back()), spread = spectrum.back() / spectrum.front();
+    if (spread < 1.3 && std::abs(middle - 1) > 3 * verdict.limits.direction)
+        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?", middle));
+}
+
+/// The errors have the size that P says, and yet some directions are far too large.
+void hint_at_chart(const Evidence& evidence, const Consistency& verdict, std::vector<std::string>& hints) {
+    const std::vector<double>& spectrum = verdict.directions.spectrum;
+    const double size = evidence.blocks.front().accuracy.ratio;
+    if (spectrum.size() < 2 || !(std::abs(size - 1) < 0.03)) return;
+    if (spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)
+        hints.push_back(with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error in "
+                                    "the chart and frame of P, and is a correlation missing?", size));
+}
+
+/// Errors of an angle beyond half a turn.
+void hint_at_angles(const Evidence& evidence, std::vector<std::string>& hints) {
+    for (const BiasEvidence& component : evidence.bias)
+        if (component.unit == "rad" && component.largest_error > 1.01 * std::numbers::pi)
+            hints.push_back(with_number(("errors of " + component.component + " reach %.3g rad: were angles wrapped to half a turn?").c_str(),
+                                        component.largest_error));
+}
+
+}  // namespace
+
+void add_hints(const Evidence& evidence, Consistency& verdict) {
+    if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
+        verdict.hints.push_back("the correlation of innovations was not tested: none are so few steps apart (a record of version 2 "
+                                "counts the measurements between them)");
+    if (verdict.findings.empty()) return;
+    hint_at_scale(verdict, verdict.hints);
+    hint_at_chart(evidence, verdict, verdict.hints);
+    hint_at_angles(evidence, verdict.hints);
+}
+
+}  // namespace credence

@@ -1,0 +1,34 @@
+// The verdict's bias: mean errors against a margin, over all steps.
+
+#include "statistics/bias.hpp"
+#include "verdict/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+/// The steps whose mean error is farthest from 0, for the text alone.
+std::string worst_step(const BiasEvidence& bias) {
+    const auto size = [](const Moments& step) { return std::isnan(step.mean) ? 0 : std::abs(step.mean); };
+    const auto worst = std::max_element(bias.step.begin(), bias.step.end(),
+                                        [&](const Moments& a, const Moments& b) { return size(a) < size(b); });
+    return "over all steps, most at step " + std::to_string(worst - bias.step.begin() + 1);
+}
+
+}  // namespace
+
+void judge_bias(const Evidence& evidence, Judgement& judgement) {
+    for (const BiasEvidence& bias : evidence.bias) {
+        if (!(bias.run.count > 0) && evidence.trials > 0) continue;  // a record that does not give this component's sigma
+        const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
+                                              judgement.limits().bias);
+        if (claim.finding)
+            judgement.add_bias({"", bias.component, worst_step(bias), claim.value, claim.interval, "mean error/sigma"});
+        judgement.accept(claim.accepted ? Acceptance::shown : Acceptance::more_trials, "bias of " + bias.component);
+    }
+}
+
+}  // namespace credence

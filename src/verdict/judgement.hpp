@@ -1,0 +1,47 @@
+#pragma once
+// The verdict while its parts are judged: findings against consistency, and what was or was not shown for it.
+
+#include "statistics/directions.hpp"
+#include "statistics/mean_bounds.hpp"
+#include "verdict/consistency_parts.hpp"
+
+#include <string>
+#include <vector>
+
+namespace credence {
+
+class Judgement {
+public:
+    explicit Judgement(const Limits& limits) : limits_(limits) {}
+    const Limits& limits() const { return limits_; }
+
+    /// A finding that something is too large (above) or too small for P; its `what` is set here.
+    void add(Side side, Finding finding);
+    void add_bias(Finding finding);
+    /// Whether something was shown to lie within its margin; `what` names it.
+    void accept(Acceptance acceptance, const std::string& what);
+    /// `consistent` is withheld, for this reason.
+    void not_shown(const std::string& why);
+
+    DirectionsFound directions;
+
+    /// The verdict, after all parts.
+    Consistency consistency(const Evidence& evidence);
+
+private:
+    Limits limits_;
+    std::vector<Finding> findings_;
+    std::vector<std::string> reasons_, unknown_, tails_;
+    bool above_ = false, below_ = false, all_shown_ = true;
+};
+
+/// Directions of every group of two or more components.
+void judge_directions(const Evidence& evidence, Judgement& judgement);
+
+/// Mean errors against the margin of the bias, in sigmas.
+void judge_bias(const Evidence& evidence, Judgement& judgement);
+
+/// How many trials would do [docs/statistics.md, Advice]; 0 below 30 trials.
+TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);
+
+}  // namespace credence
