@@ -57,15 +57,18 @@ public:
     /// and is counted as failed. The function ends where all have.
     template <class Error, class Covariance>
     void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P) {
-        const auto &e = as_reals(error.derived()), &p = as_reals(P.derived());
+        const auto& e = as_reals(error.derived());
+        const auto& p = as_reals(P.derived());
         take(e, p, LaneStep{});
     }
     /// The innovation's rows are NaN in the lanes in which they were not observed.
     template <class Error, class Covariance, class Innovation, class InnovationCovariance>
     void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P,
               const Eigen::MatrixBase<Innovation>& innovation, const Eigen::MatrixBase<InnovationCovariance>& S) {
-        const auto &e = as_reals(error.derived()), &p = as_reals(P.derived());
-        const auto &nu = as_reals(innovation.derived()), &s = as_reals(S.derived());
+        const auto& e = as_reals(error.derived());
+        const auto& p = as_reals(P.derived());
+        const auto& nu = as_reals(innovation.derived());
+        const auto& s = as_reals(S.derived());
         if (nu.rows() > pack_.largest_innovation) refuse(pack_, "an innovation longer than innovation_rows");
         if (s.rows() != nu.rows() || s.cols() != nu.rows()) refuse(pack_, "an S of another size than its innovation");
         take(e, p, {nullptr, nullptr, static_cast<int>(nu.rows()), numbers(nu), numbers(s)});

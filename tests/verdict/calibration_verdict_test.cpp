@@ -4,6 +4,7 @@
 
 #include <credence/consistency.hpp>
 
+#include "statistics/mean_bounds.hpp"
 #include "calibration_support.hpp"
 
 using namespace credence;
@@ -118,7 +119,8 @@ TEST_CASE("calibration: what all steps say counts as soon as their corrected int
     Evidence evidence;
     replicate(s, 4000, 1, [&](const Evidence& one) { evidence = one; });
     const Moments& run = evidence.blocks.front().run;
-    const double half = t_quantile(0.05 / (6 * 20), run.count - 1) * run.standard_error;  // 6 blocks, 19 steps and all
+    const double level = level_of_group(levels::run, 0, 6) / 2;  // of the whole state, one-sided
+    const double half = t_quantile(2 * level, run.count - 1) * run.standard_error;
     const auto found = [&](double margin) {
         const Consistency judged = judge(evidence, margin);
         for (const Finding& finding : judged.findings)
