@@ -34,7 +34,7 @@ if command -v ccache >/dev/null; then
 fi
 { cmake -S "$tree" -B "$build" "${generator[@]}" "${launcher[@]}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCREDENCE_TARGET_V4=OFF -DCREDENCE_WRITTEN_OUT=0 -DCREDENCE_MPI=OFF &&
-  cmake --build "$build" --target credence tracker -j "$(nproc)"; } >"$work/log" 2>&1 ||
+  cmake --build "$build" --target credence tracker write_record -j "$(nproc)"; } >"$work/log" 2>&1 ||
   { tail -n 60 "$work/log"; fail "diffs: the tree does not build with them"; }
 credence=$build/credence scenario=$tree/experiments/seed/ekf-circle-constant.ini
 cd "$work/run"
@@ -67,6 +67,7 @@ below "$(mean both.h5 fixed.ekf mean_trace_P)" "$(mean both.h5 fixed.fading mean
 "$credence" report both.h5 --format markdown >both.md
 [ "$(wc -l <both.md)" -eq 4 ] && grep -qE '^\| ekf-circle-constant/fixed\.fading \| [a-z]+ \| [0-9.]+ ± [0-9.]+ \|' both.md ||
   { cat both.md; fail "A report format: it is not the table"; }
+"$build/tests/write_record" record.h5
 "$credence" judge record.h5 --quiet --format markdown | grep -qE '^\| [A-Za-z_]+/record \| consistent \|' ||
   fail "A report format: judge does not give it"
 

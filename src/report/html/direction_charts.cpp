@@ -74,7 +74,7 @@ Html ellipse_chart(const Part& part, std::size_t i) {
     const ChartPoint centre{width / 2, 112};
     const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio), unit = room / std::max({1.0, wide, high});
     Svg svg(width, height);
-    svg.path(ellipse(centre, unit, unit), "ideal");
+    svg.path(ellipse(centre, unit, unit), "line ideal");
     svg.path(ellipse(centre, unit * wide, unit * high), "line " + series_class(i));
     for (const double side : {-1.0, 1.0}) {
         svg.mark({centre.x + side * unit * wide, centre.y}, i, largest->name + ": " + short_number(wide));
