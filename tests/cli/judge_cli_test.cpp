@@ -3,6 +3,11 @@
 #include "judgement_support.hpp"
 #include "program.hpp"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <random>
 
 using namespace credence;
@@ -28,7 +33,100 @@ void write_correlated(const std::string& path, double correlation, double scale,
     hdf5::write_dataset(root, "covariance", hdf5::type_of<double>(), covariance.data(), {count, steps, 2, 2}, {"", ""});
 }
 
+/// Errors of 3 independent components of unit variance over 6 steps, and P = I, to be spoilt and written.
+struct PlainRecord {
+    static constexpr std::size_t trials = 2000, steps = 6, n = 3;
+    std::vector<double> error, covariance;
+
+    explicit PlainRecord(unsigned seed) {
+        std::mt19937_64 random(seed);
+        std::normal_distribution<double> normal;
+        for (std::size_t i = 0; i < trials * steps * n; ++i) error.push_back(normal(random));
+        for (std::size_t i = 0; i < trials * steps; ++i)
+            covariance.insert(covariance.end(), {1, 0, 0, 0, 1, 0, 0, 0, 1});
+    }
+    double* e(std::size_t trial, std::size_t step) { return error.data() + (trial * steps + step) * n; }
+    double* P(std::size_t trial, std::size_t step) { return covariance.data() + (trial * steps + step) * n * n; }
+    /// Trials by their NEES, the best-behaved first.
+    std::vector<std::size_t> by_nees() {
+        std::vector<std::size_t> order(trials);
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const auto nees = [&](std::size_t trial) { return std::inner_product(e(trial, 0), e(trial, 0) + steps * n, e(trial, 0), 0.0); };
+        std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nees(a) < nees(b); });
+        return order;
+    }
+    /// The state in other coordinates: e becomes A e, P becomes A P A'.
+    void transform(const Eigen::Matrix3d& A) {
+        for (std::size_t i = 0; i < trials * steps; ++i) {
+            Eigen::Map<Eigen::Vector3d> x(error.data() + i * n);
+            Eigen::Map<Eigen::Matrix3d> Q(covariance.data() + i * n * n);
+            x = (A * x).eval();
+            Q = (A * Q * A.transpose()).eval();
+        }
+    }
+    void write(const std::string& path) const {
+        const Handle root(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, path, "no file");
+        hdf5::write_dataset(root, "error", hdf5::type_of<double>(), error.data(), {trials, steps, n}, {"", ""});
+        hdf5::write_dataset(root, "covariance", hdf5::type_of<double>(), covariance.data(), {trials, steps, n, n}, {"", ""});
+    }
+};
+
+/// Ways in which a trial fails, at step 3.
+using Spoil = void (*)(PlainRecord&, std::size_t trial);
+const std::vector<std::pair<const char*, Spoil>> spoils{
+    {"error is NaN", [](PlainRecord& r, std::size_t trial) { r.e(trial, 3)[0] = std::nan(""); }},
+    {"P is NaN", [](PlainRecord& r, std::size_t trial) { r.P(trial, 3)[4] = std::nan(""); }},
+    {"P is negative", [](PlainRecord& r, std::size_t trial) { r.P(trial, 3)[4] = -1; }},
+    {"P is singular", [](PlainRecord& r, std::size_t trial) { std::fill_n(r.P(trial, 3), 9, 1.0); }},
+    {"diverged", [](PlainRecord& r, std::size_t trial) { r.e(trial, 3)[1] = 1e13; }},
+    {"cut short", [](PlainRecord& r, std::size_t trial) {
+         std::fill(r.e(trial, 3), r.e(trial, 5) + 3, std::nan(""));
+         std::fill(r.P(trial, 3), r.P(trial, 5) + 9, std::nan(""));
+     }}};
+
 }  // namespace
+
+TEST_CASE("judge: the gate is closed for a record in which more than the share of trials failed, whichever they are") {
+    const Workplace here;
+    for (const auto& [name, spoil] : spoils)
+        for (const double share : {0.001, 0.02, 0.5, 0.99})
+            for (const bool best : {true, false}) {
+                CAPTURE(name, share, best);
+                PlainRecord record(7);
+                std::vector<std::size_t> order = record.by_nees();
+                if (!best) std::reverse(order.begin(), order.end());
+                const auto spoilt = static_cast<std::size_t>(share * PlainRecord::trials);
+                for (std::size_t i = 0; i < spoilt; ++i) spoil(record, order[i]);
+                record.write(here.path("spoilt.h5"));
+                const int code = here.credence("judge spoilt.h5 --quiet --require consistent").exit_code;
+                if (share > 0.01) CHECK(code == 1);
+                else if (name != std::string("diverged")) CHECK(code == 0);  // a diverged trial is in the figures
+            }
+}
+
+TEST_CASE("judge: units, order and rotation of the components change no verdict") {
+    const Workplace here;
+    const Eigen::Matrix3d units = Eigen::Vector3d(1e6, 1, 1e-6).asDiagonal();
+    Eigen::Matrix3d order, rotation = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5).normalized().toRotationMatrix();
+    order << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+    for (const double correlation : {0.0, 0.4}) {
+        PlainRecord plain(9);
+        Eigen::Matrix3d mix = Eigen::Matrix3d::Identity();
+        mix(1, 0) = correlation, mix(1, 1) = std::sqrt(1 - correlation * correlation);
+        for (std::size_t i = 0; i < PlainRecord::trials * PlainRecord::steps; ++i) {
+            Eigen::Map<Eigen::Vector3d> x(plain.error.data() + i * 3);
+            x = (mix * x).eval();
+        }
+        for (const Eigen::Matrix3d& A : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), units, order, rotation}) {
+            PlainRecord changed = plain;
+            changed.transform(A);
+            changed.write(here.path("changed.h5"));
+            const Json arm = Json::parse(here.credence("judge changed.h5 --quiet --format json").out)[0];
+            CHECK(arm["verdict"] == (correlation == 0 ? "consistent" : "mixed"));
+            if (correlation > 0) CHECK(arm["directions"]["spectrum"][2].get<double>() == Approx(1.4).margin(0.05));
+        }
+    }
+}
 
 TEST_CASE("judge: several records are one report, each with its verdict and its name") {
     const Workplace here;
