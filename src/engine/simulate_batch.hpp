@@ -123,6 +123,21 @@ Mask<Real> first_lanes(int count) {
     }
 }
 
+/// Adds the products of whitened innovations of the trials that count, [lags], to the running sums.
+template <class Real>
+void keep_products(int poses, const Real* product_sum, const Real* product_count, Mask<Real> counts, int trial,
+                   const Batch& batch) {
+    for (int lag = 0; lag < lag_count(poses); ++lag) {
+        const Real sum = select(counts, product_sum[lag], Real(0));
+        const int place = lag * octet + trial % octet;
+        double *sums = batch.product_sums + place, *squares = batch.product_square_sums + place;
+        double* counted = batch.product_counts + place;
+        store(load<Real>(sums) + sum, sums);
+        store(fma(sum, sum, load<Real>(squares)), squares);
+        store(load<Real>(counted) + select(counts, product_count[lag], Real(0)), counted);
+    }
+}
+
 /// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that nobody reads.
 ///
 /// `Trial` is a world's: the types View (a CommonView), Layout, Real and Workspace, `truncate(View)`, and
@@ -189,15 +204,7 @@ struct BatchOf {
     static void keep_detail(const CommonView& problem, const Detail<Layout, Real>& detail, Mask<Real> counts,
                             int trial, const Batch& batch) {
         copy_out(detail.errors, problem.state_size * (problem.poses - 1), trial, batch, batch.errors);
-        for (int lag = 0; lag < lag_count(problem.poses); ++lag) {
-            const Real sum = select(counts, detail.product_sum[lag], Real(0));
-            const int place = lag * octet + trial % octet;
-            double *sums = batch.product_sums + place, *squares = batch.product_square_sums + place;
-            double* counted = batch.product_counts + place;
-            store(load<Real>(sums) + sum, sums);
-            store(fma(sum, sum, load<Real>(squares)), squares);
-            store(load<Real>(counted) + select(counts, detail.product_count[lag], Real(0)), counted);
-        }
+        keep_products(problem.poses, detail.product_sum, detail.product_count, counts, trial, batch);
     }
 };
 

@@ -1,7 +1,6 @@
 // How many trials would show that a filter is consistent.
 
 #include "statistics/advice.hpp"
-#include "statistics/bias.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>
@@ -14,9 +13,10 @@ namespace {
 /// The first trials: enough to know the spread, and few enough for a report of many arms.
 TrialMoments first_trials(const TrialMoments& all) {
     constexpr std::size_t most = 1024;
-    TrialMoments first = all;
-    first.trial.resize(std::min(most, all.trials()));
-    first.values.resize(first.trials() * first.size());
+    const std::size_t count = std::min(most, all.trials());
+    TrialMoments first{all.components, all.groups, {}, {}};
+    first.trial.assign(all.trial.begin(), all.trial.begin() + static_cast<std::ptrdiff_t>(count));
+    first.values.assign(all.values.data(), all.values.data() + count * all.size());
     return first;
 }
 
@@ -30,11 +30,7 @@ double rounded(double trials) {
 
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
     if (!evidence.moments || evidence.blocks.empty() || !evidence.joint) return {};
-    std::vector<int> state;
-    for (int j = 0; j < evidence.moments->components; ++j)
-        if (static_cast<std::size_t>(j) >= evidence.bias.size() ||
-            evidence.bias[static_cast<std::size_t>(j)].largest_error > rounding_error)
-            state.push_back(j);
+    const std::vector<int> state = uncertain_components(evidence, evidence.blocks.front().components);
     constexpr std::uint64_t seed = 1;  // the same advice for the same trials
     const std::optional<Advice> advice = trials_for_consistent(first_trials(*evidence.moments), state, seed,
                                                                {limits.margin, limits.direction, limits.bias});

@@ -16,7 +16,10 @@ namespace {
 class GroupJudge {
 public:
     GroupJudge(const Evidence& evidence, std::size_t group, Judgement& judgement)
-        : evidence_(evidence), group_(evidence.blocks[group]), place_(static_cast<int>(group)), judgement_(judgement) {}
+        : evidence_(evidence), group_(evidence.blocks[group]), place_(static_cast<int>(group)), judgement_(judgement) {
+        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
+            if (const double trial = evidence_.moments->X(i, place_); !std::isnan(trial)) trials_.push_back(trial);
+    }
 
     void judge() {
         if (!(group_.run.count > 0) && evidence_.trials > 0) return;  // a record that does not give this group's NEES
@@ -43,11 +46,8 @@ private:
 
     /// What the tail of the trials is like, where they are kept.
     std::string tail_text() const {
-        std::vector<double> values;
-        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
-            values.push_back(evidence_.moments->X(i, place_));
-        if (values.size() < 2) return {};
-        const Tail tail = tail_of(std::move(values));
+        if (trials_.size() < 2) return {};
+        const Tail tail = tail_of(trials_);
         char text[120];
         std::snprintf(text, sizeof text, " (the 1 %% largest trials carry %.2g %% of it%s", 100 * tail.worst_share, tail.degrees ? "" : ")");
         std::string all = text;
@@ -56,11 +56,10 @@ private:
         return all + text;
     }
 
-    /// The largest mean NEES/dim of the detailed trials; 0 where there are none.
+    /// 0 where there are no detailed trials.
     double largest_of_trials() const {
         double largest = 0;
-        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
-            largest = std::max(largest, evidence_.moments->X(i, place_));
+        for (const double trial : trials_) largest = std::max(largest, trial);
         return largest;
     }
 
@@ -82,6 +81,7 @@ private:
     const GroupEvidence& group_;
     int place_;
     Judgement& judgement_;
+    std::vector<double> trials_;  ///< mean NEES/dim of each detailed trial that has the group
 };
 
 Consistency judge_trials(const Evidence& evidence, const Limits& limits) {

@@ -97,6 +97,12 @@ BiasEvidence bias_evidence(const ScenarioResults& results, const Series& series,
     return evidence;
 }
 
+/// The trial that a detailed row is of: of a record, the row itself.
+std::int64_t trial_of(const ScenarioResults& results, std::size_t row) {
+    const auto place = static_cast<std::int64_t>(row);
+    return results.blocks.empty() ? place : trial_numbers(results, place, 1).front();
+}
+
 /// Largest |e_j| of the detailed trials, by component.
 void add_largest_errors(const ScenarioResults& results, const ArmResults& arm, std::vector<BiasEvidence>& bias) {
     const auto n = static_cast<std::size_t>(results.state_size());
@@ -117,8 +123,7 @@ std::shared_ptr<const TrialMoments> trial_moments(const ScenarioResults& results
         const double* from = arm.moments.data() + row * size;
         const auto is_nan = [](double value) { return std::isnan(value); };
         if (std::all_of(from, from + groups.size(), is_nan)) continue;  // the trial failed
-        const auto place = static_cast<std::int64_t>(row);
-        double* to = moments->append(results.blocks.empty() ? place : trial_numbers(results, place, 1).front());
+        double* to = moments->append(trial_of(results, row));
         std::copy_n(from, size, to);
         for (std::size_t g = 0; g < groups.size(); ++g) to[g] /= groups[g].dimension;
     }
@@ -139,9 +144,7 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
         if (known == 0) continue;
         const double ratio = sum / known / results.state_size();
         total += ratio;
-        const auto place = static_cast<std::int64_t>(row);
-        worst.trials.push_back({results.blocks.empty() ? place : trial_numbers(results, place, 1).front(), ratio,
-                                static_cast<int>(largest - first) + 1});
+        worst.trials.push_back({trial_of(results, row), ratio, static_cast<int>(largest - first) + 1});
     }
     const auto end = worst.trials.begin() + static_cast<std::ptrdiff_t>(std::min(most, worst.trials.size()));
     std::partial_sort(worst.trials.begin(), end, worst.trials.end(),

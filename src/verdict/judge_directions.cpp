@@ -28,16 +28,6 @@ std::string name_of(const Direction& direction, const std::vector<BiasEvidence>&
     return text;
 }
 
-/// The group's components but those that are known exactly: these have no error to be too large or too small.
-std::vector<int> uncertain_components(const Evidence& evidence, const GroupEvidence& group) {
-    std::vector<int> components;
-    for (const int j : group.components) {
-        const auto place = static_cast<std::size_t>(j);
-        if (place >= evidence.bias.size() || evidence.bias[place].largest_error > rounding_error) components.push_back(j);
-    }
-    return components;
-}
-
 /// Ratios of the generalised eigenvectors of sum S against sum C, rising; none where C is singular.
 std::vector<double> spectrum_of(const FoldSums& sums) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(sums.all_S(), sums.all_C(), Eigen::EigenvaluesOnly);
@@ -82,11 +72,20 @@ void accept_state(const GroupMoments& state, const FoldSums& sums, Judgement& ju
 
 }  // namespace
 
+std::vector<int> uncertain_components(const Evidence& evidence, const std::vector<int>& components) {
+    std::vector<int> uncertain;
+    for (const int j : components) {
+        const auto place = static_cast<std::size_t>(j);
+        if (place >= evidence.bias.size() || evidence.bias[place].largest_error > rounding_error) uncertain.push_back(j);
+    }
+    return uncertain;
+}
+
 void judge_directions(const Evidence& evidence, Judgement& judgement) {
     if (evidence.blocks.empty() || evidence.blocks.front().dimension < 2 || !evidence.joint) return;
     std::vector<const GroupEvidence*> groups;
     for (const GroupEvidence& group : evidence.blocks)
-        if (uncertain_components(evidence, group).size() >= 2) groups.push_back(&group);
+        if (uncertain_components(evidence, group.components).size() >= 2) groups.push_back(&group);
     if (groups.empty()) return;
     if (!evidence.moments || static_cast<double>(evidence.moments->trials()) < direction_trials) {
         judgement.directions.unknown = why_unknown(evidence);
@@ -94,7 +93,7 @@ void judge_directions(const Evidence& evidence, Judgement& judgement) {
     }
     judgement.directions.trials = static_cast<double>(evidence.moments->trials());
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        const GroupMoments moments = group_moments(*evidence.moments, uncertain_components(evidence, *groups[g]));
+        const GroupMoments moments = group_moments(*evidence.moments, uncertain_components(evidence, groups[g]->components));
         const FoldSums sums = fold_sums(moments);
         const double level = level_of_group(levels::direction, static_cast<int>(g), static_cast<int>(groups.size())) / 2;
         judge_group(evidence, *groups[g], moments, sums, level, judgement);

@@ -35,6 +35,9 @@ private:
     bool above_ = false, below_ = false, all_shown_ = true;
 };
 
+/// Those of these components that are not known exactly: the others have no error to be too large or too small.
+std::vector<int> uncertain_components(const Evidence& evidence, const std::vector<int>& components);
+
 /// Directions of every group of two or more components.
 void judge_directions(const Evidence& evidence, Judgement& judgement);
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace credence {
 
@@ -20,21 +21,28 @@ using hdf5::extents_text;
 using hdf5::Handle;
 using hdf5::RealDataset;
 
-/// The root attribute `record_version`, a number of any type; 1 without it.
-int read_version(const Handle& root) {
-    const std::string name = "record_version", place = hdf5::attribute_place(root, name);
-    if (!hdf5::has_attribute(root, name)) return 1;
-    const Handle attribute(H5Aopen(root.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it");
+/// The number in an attribute, of any type; nothing where it holds anything else.
+std::optional<double> read_any_number(const Handle& object, const std::string& name) {
+    const std::string place = hdf5::attribute_place(object, name);
+    const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it");
     const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
     const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
     const H5T_class_t kind = H5Tget_class(type.id());
-    double version = 0;
-    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
-        throw Error(place, "is not one number", "Write 2");
-    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &version), place, "HDF5 cannot read it");
-    if (version != 1 && version != 2)
-        throw Error(place, "is " + to_text(version), "Write 2, or use a newer credence if there is such a version");
-    return static_cast<int>(version);
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1) return std::nullopt;
+    double number = 0;
+    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
+    return number;
+}
+
+/// The root attribute `record_version`; 1 without it.
+int read_version(const Handle& root) {
+    const std::string name = "record_version", place = hdf5::attribute_place(root, name);
+    if (!hdf5::has_attribute(root, name)) return 1;
+    const std::optional<double> version = read_any_number(root, name);
+    if (!version) throw Error(place, "is not one number", "Write 2");
+    if (*version != 1 && *version != 2)
+        throw Error(place, "is " + to_text(*version), "Write 2, or use a newer credence if there is such a version");
+    return static_cast<int>(*version);
 }
 
 /// Sets trials and steps by extents [..., size], `rank` of them with trials.
@@ -54,6 +62,11 @@ void set_state(const PlacedExtents& error, RecordLayout& layout) {
     set_extents(error, 3, "[trial, step, n]", layout);
     require_between(error, error.extents.size() - 1, largest_record_state, "components");
     layout.shape.n = static_cast<int>(error.extents.back());
+}
+
+void open_innovations(const Handle& root, RecordDatasets& data) {
+    if (auto dataset = optional_dataset(root, "innovation", "innovation_covariance")) data.innovation.emplace(std::move(*dataset));
+    if (auto dataset = optional_dataset(root, "innovation_covariance", "innovation")) data.innovation_covariance.emplace(std::move(*dataset));
 }
 
 void add_innovations(const Handle& root, const PlacedExtents& leading, RecordLayout& layout) {
@@ -122,8 +135,7 @@ RecordLayout open_version_1(const Handle& root) {
     RecordDatasets& data = layout.data;
     data.error.emplace(with_dataset(root, "error"), "error");
     data.covariance.emplace(with_dataset(root, "covariance"), "covariance");
-    if (auto dataset = optional_dataset(root, "innovation", "innovation_covariance")) data.innovation.emplace(std::move(*dataset));
-    if (auto dataset = optional_dataset(root, "innovation_covariance", "innovation")) data.innovation_covariance.emplace(std::move(*dataset));
+    open_innovations(root, data);
     const PlacedExtents error = placed(*data.error);
     require_squares(error, *data.covariance, "error", "covariance");
     set_state(error, layout);
@@ -189,13 +201,7 @@ void open_own(const Handle& group, const PlacedExtents& leading, std::size_t b, 
 int read_dimension(const RealDataset& dataset, const Handle& object) {
     const std::string name = "dimension", place = hdf5::attribute_place(object, name);
     if (!hdf5::has_attribute(object, name)) throw Error(place, "is missing", "Write the number of components of " + dataset.place());
-    const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it");
-    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
-    const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
-    double dimension = 0;
-    const H5T_class_t kind = H5Tget_class(type.id());
-    if ((kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Sget_simple_extent_npoints(space.id()) == 1)
-        hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &dimension), place, "HDF5 cannot read it");
+    const double dimension = read_any_number(object, name).value_or(0);
     if (!(dimension >= 1 && dimension <= static_cast<double>(largest_record_state) && dimension == std::nearbyint(dimension)))
         throw Error(place, "is no number of components", "Write a whole number from 1 to 1000");
     return static_cast<int>(dimension);
@@ -328,8 +334,7 @@ RecordLayout open_version_2(const Handle& root) {
     RecordLayout layout;
     RecordDatasets& data = layout.data;
     layout.shape.version = 2;
-    if (auto dataset = optional_dataset(root, "innovation", "innovation_covariance")) data.innovation.emplace(std::move(*dataset));
-    if (auto dataset = optional_dataset(root, "innovation_covariance", "innovation")) data.innovation_covariance.emplace(std::move(*dataset));
+    open_innovations(root, data);
     PlacedExtents leading = open_errors(root, data);
     layout.shape.has_errors = !leading.extents.empty();
     if (layout.shape.has_errors) open_states(root, leading, layout);

@@ -22,16 +22,7 @@ std::size_t moment_cells(const OwnView& view) { return static_cast<std::size_t>(
 void keep_detail(const OwnView& view, const PackOfTrials<Real>& pack, const Real* errors, int trial, const Batch& batch) {
     const int padded = (batch.trials + octet - 1) / octet * octet, cells = static_cast<int>(error_cells(view));
     for (int cell = 0; cell < cells; ++cell) store(errors[cell], batch.errors + cell * padded + trial);
-    const Mask<Real> counts = pack.counts();
-    for (int lag = 0; lag < lag_count(view.poses); ++lag) {
-        const Real sum = select(counts, pack.products.sum[lag], Real(0));
-        const int place = lag * octet + trial % octet;
-        double *sums = batch.product_sums + place, *squares = batch.product_square_sums + place;
-        double* counted = batch.product_counts + place;
-        store(load<Real>(sums) + sum, sums);
-        store(fma(sum, sum, load<Real>(squares)), squares);
-        store(load<Real>(counted) + select(counts, pack.products.count[lag], Real(0)), counted);
-    }
+    keep_products(view.poses, pack.products.sum, pack.products.count, pack.counts(), trial, batch);
 }
 
 }  // namespace
