@@ -79,7 +79,7 @@ struct Consistency {
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.
-Interval over_steps95(const GroupEvidence& block);
+Interval over_steps95(const GroupEvidence& group);
 
 /// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness of
 /// its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.

@@ -81,7 +81,7 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status) ? "; the trial is in no figure." : "; the trial is in the figures."));
+                        (failed(trouble.status) ? "; the trial is left out of the numbers." : "; the trial is kept in the numbers."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
@@ -93,6 +93,14 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
 
 std::string verdict_word(const ArmReport& arm) {
     return arm.not_run() ? "not run yet" : verdict_name(arm.consistency.verdict);
+}
+
+Cell verdict_cell(const ArmReport& arm) {
+    return Cell::Piece{verdict_word(arm), std::nullopt, {}, arm.consistency.verdict};
+}
+
+Cell failed_cell(const ArmReport& arm) {
+    return arm.not_run() ? Cell("-") : count_cell(static_cast<double>(arm.failed_trials()));
 }
 
 std::string verdict_clause(const ArmReport& arm) {
@@ -181,7 +189,7 @@ std::vector<std::string> warnings_of(const Report& report) {
     for (const ArmReport& arm : report.arms) {
         const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                             {"are left out of its figures", "are in the figures"}), std::back_inserter(lines));
+                             {"are left out of its numbers", "are kept in the numbers"}), std::back_inserter(lines));
     }
     add_troubles(report, lines);
     for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
@@ -203,7 +211,7 @@ const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const
     return columns.front();
 }
 
-std::string figure_title(const std::string& column, const std::string& unit) {
+std::string column_title(const std::string& column, const std::string& unit) {
     const std::string name = column == "trace_P"        ? "trace(P), last step"
                              : column == "mean_trace_P" ? "trace(P), mean over the steps"
                              : column == "pose_error"   ? "pose error, sum over the poses"
@@ -211,16 +219,16 @@ std::string figure_title(const std::string& column, const std::string& unit) {
     return unit == "1" ? name : name + " [" + unit + "]";
 }
 
-std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence) {
+std::vector<const GroupEvidence*> shown_groups(const Evidence& evidence) {
     constexpr std::size_t most = 10;
-    std::vector<const GroupEvidence*> blocks;
-    for (const GroupEvidence& block : evidence.blocks) blocks.push_back(&block);
-    if (blocks.size() <= most) return blocks;
-    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
+    std::vector<const GroupEvidence*> groups;
+    for (const GroupEvidence& group : evidence.groups) groups.push_back(&group);
+    if (groups.size() <= most) return groups;
+    std::stable_sort(groups.begin() + 1, groups.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
         return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
     });
-    blocks.resize(most);
-    return blocks;
+    groups.resize(most);
+    return groups;
 }
 
 double mean_of(const std::vector<double>& values) {
@@ -233,17 +241,17 @@ double mean_of(const std::vector<double>& values) {
     return sum / known;
 }
 
-WorstDistribution worst_distribution(const DistributionEvidence& shape) {
+WorstDistribution worst_distribution(const DistributionEvidence& distribution) {
     std::size_t worst = 0;
     WorstDistribution found;
-    for (std::size_t k = 0; k < shape.distance.size(); ++k) {
-        found.known += !std::isnan(shape.distance[k]);
-        if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;
+    for (std::size_t k = 0; k < distribution.distance.size(); ++k) {
+        found.known += !std::isnan(distribution.distance[k]);
+        if (!(distribution.distance[k] <= distribution.distance[worst])) worst = std::isnan(distribution.distance[k]) ? worst : k;
     }
     if (found.known == 0) return found;
     found.step = static_cast<int>(worst) + 1;
-    found.distance = shape.distance[worst];
-    found.p = std::min(1.0, shape.p[worst] * found.known);
+    found.distance = distribution.distance[worst];
+    found.p = std::min(1.0, distribution.p[worst] * found.known);
     return found;
 }
 

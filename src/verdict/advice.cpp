@@ -29,8 +29,8 @@ double rounded(double trials) {
 }  // namespace
 
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
-    if (!evidence.moments || evidence.blocks.empty() || !evidence.joint) return {};
-    const std::vector<int> state = uncertain_components(evidence, evidence.blocks.front().components);
+    if (!evidence.moments || evidence.groups.empty() || !evidence.joint) return {};
+    const std::vector<int> state = uncertain_components(evidence, evidence.groups.front().components);
     constexpr std::uint64_t seed = 1;  // the same advice for the same trials
     const std::optional<Advice> advice = trials_for_consistent(first_trials(*evidence.moments), state, seed,
                                                                {limits.margin, limits.direction, limits.bias});

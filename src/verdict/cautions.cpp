@@ -78,18 +78,18 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
 /// of P already explains is not reported twice.
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict) {
     for (const Finding& finding : verdict.findings)
-        if (finding.where == evidence.blocks.front().block) return;
+        if (finding.where == evidence.groups.front().name) return;
     std::vector<int> steps;
     Estimate worst;
-    for (std::size_t k = 0; k < evidence.shape.distance.size(); ++k) {
-        const double count = evidence.blocks.front().step[k].count, alpha = 0.05 / evidence.steps;
-        const Estimate distance{evidence.shape.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
+    for (std::size_t k = 0; k < evidence.distribution.distance.size(); ++k) {
+        const double count = evidence.groups.front().step[k].count, alpha = 0.05 / evidence.steps;
+        const Estimate distance{evidence.distribution.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
         if (!(distance.interval().low > verdict.limits.margin)) continue;
         steps.push_back(static_cast<int>(k) + 1);
         if (distance.value > worst.value) worst = distance;
     }
     if (!steps.empty())
-        verdict.cautions.push_back({"misshapen", evidence.blocks.front().block, steps_text(steps), worst.value,
+        verdict.cautions.push_back({"misshapen", evidence.groups.front().name, steps_text(steps), worst.value,
                                     worst.interval(), "distance from chi-square"});
 }
 

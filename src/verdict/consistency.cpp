@@ -16,7 +16,7 @@ namespace {
 class GroupJudge {
 public:
     GroupJudge(const Evidence& evidence, std::size_t group, Judgement& judgement)
-        : evidence_(evidence), group_(evidence.blocks[group]), place_(static_cast<int>(group)), judgement_(judgement) {
+        : evidence_(evidence), group_(evidence.groups[group]), place_(static_cast<int>(group)), judgement_(judgement) {
         for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
             if (const double trial = evidence_.moments->X(i, place_); !std::isnan(trial)) trials_.push_back(trial);
     }
@@ -32,12 +32,12 @@ private:
 
     void over_steps() {
         const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
-        const auto groups = static_cast<int>(evidence_.blocks.size());
+        const auto groups = static_cast<int>(evidence_.groups.size());
         const MeanClaim claim = claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps),
                                               level_of_group(levels::run, place_, groups) / 2, margin());
         if (claim.above || claim.below)
-            judgement_.add(claim.above ? Side::above : Side::below, {"", group_.block, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
-        const std::string what = "NEES/dim of " + group_.block;
+            judgement_.add(claim.above ? Side::above : Side::below, {"", group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
+        const std::string what = "NEES/dim of " + group_.name;
         const Acceptance acceptance = accept_mean(sample, margin());
         if (claim.tails)
             judgement_.not_shown(what + " looks too small, but rare large errors that were not seen could explain it" + tail_text());
@@ -64,7 +64,7 @@ private:
     }
 
     void at_steps() {
-        const double tests = static_cast<double>(evidence_.blocks.size()) * evidence_.steps;
+        const double tests = static_cast<double>(evidence_.groups.size()) * evidence_.steps;
         Found found[2];
         for (std::size_t k = 0; k < group_.step.size(); ++k) {
             if (!(group_.step[k].count > 1)) continue;
@@ -74,7 +74,7 @@ private:
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                judgement_.add(side, {"", group_.block, steps_text(steps.steps), steps.value, steps.interval, "NEES/dim"});
+                judgement_.add(side, {"", group_.name, steps_text(steps.steps), steps.value, steps.interval, "NEES/dim"});
     }
 
     const Evidence& evidence_;
@@ -86,7 +86,7 @@ private:
 
 Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     Judgement judgement(limits);
-    for (std::size_t group = 0; group < evidence.blocks.size(); ++group) GroupJudge(evidence, group, judgement).judge();
+    for (std::size_t group = 0; group < evidence.groups.size(); ++group) GroupJudge(evidence, group, judgement).judge();
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
     if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state");
@@ -97,7 +97,7 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1) return judge_single_trial(evidence, limits);
     Consistency verdict = judge_trials(evidence, limits);
-    if (evidence.blocks.empty() || evidence.trials == 0) return verdict;
+    if (evidence.groups.empty() || evidence.trials == 0) return verdict;
     caution_about_whiteness(evidence, verdict);
     caution_about_innovations(evidence, verdict);
     caution_about_distribution(evidence, verdict);
@@ -138,7 +138,7 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     if (above_ && below_) verdict.verdict = Verdict::mixed;
     else if (above_) verdict.verdict = Verdict::optimistic;
     else if (below_) verdict.verdict = Verdict::pessimistic;
-    else if (all_shown_ && !evidence.blocks.empty()) verdict.verdict = Verdict::consistent;
+    else if (all_shown_ && !evidence.groups.empty()) verdict.verdict = Verdict::consistent;
     if (verdict.verdict != Verdict::undecided || evidence.trials == 0) return verdict;
     verdict.reasons = std::move(reasons_);
     const auto list = [&](const std::vector<std::string>& names, const std::string& why) {
@@ -173,7 +173,7 @@ const std::string& verdict_name(Verdict verdict) {
     return names[static_cast<int>(verdict)];
 }
 
-Interval over_steps95(const GroupEvidence& block) { return t_interval(block.run); }
+Interval over_steps95(const GroupEvidence& group) { return t_interval(group.run); }
 
 bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
     constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();

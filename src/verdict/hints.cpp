@@ -29,7 +29,7 @@ void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) 
 /// The errors have the size that P says, and yet some directions are far too large.
 void hint_at_chart(const Evidence& evidence, const Consistency& verdict, std::vector<std::string>& hints) {
     const std::vector<double>& spectrum = verdict.directions.spectrum;
-    const double size = evidence.blocks.front().accuracy.ratio;
+    const double size = evidence.groups.front().accuracy.ratio;
     if (spectrum.size() < 2 || !(std::abs(size - 1) < 0.03)) return;
     if (spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)
         hints.push_back(with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error in "

@@ -36,7 +36,7 @@ std::vector<double> spectrum_of(const FoldSums& sums) {
 }
 
 std::string why_unknown(const Evidence& evidence) {
-    const int size = evidence.blocks.front().dimension;
+    const int size = evidence.groups.front().dimension;
     if (size > largest_moment_state)
         return "directions are computed for states of up to " + std::to_string(largest_moment_state) + " components, and this has " +
                std::to_string(size);
@@ -48,14 +48,14 @@ std::string why_unknown(const Evidence& evidence) {
 void judge_group(const Evidence& evidence, const GroupEvidence& group, const GroupMoments& moments, const FoldSums& sums,
                  double level, Judgement& judgement) {
     const GroupDirections found = find_directions(moments, sums, level, {judgement.limits().margin, judgement.limits().direction});
-    if (found.left_out > 0 && group.block != evidence.blocks.front().block)
-        judgement.not_shown("conditioning: P of " + group.block + " cannot be told from singular in " +
+    if (found.left_out > 0 && group.name != evidence.groups.front().name)
+        judgement.not_shown("conditioning: P of " + group.name + " cannot be told from singular in " +
                             std::to_string(found.left_out) + " directions");
     if (found.state != GroupDirections::State::known) return;
     const auto add = [&](Side side, const Direction& direction, std::vector<DirectionOfGroup>& all) {
-        all.push_back({group.block, name_of(direction, evidence.bias), direction.ratio.mean, direction.bounds});
+        all.push_back({group.name, name_of(direction, evidence.bias), direction.ratio.mean, direction.bounds});
         if (direction.finding)
-            judgement.add(side, {"", group.block, "direction " + all.back().name, direction.ratio.mean, direction.bounds,
+            judgement.add(side, {"", group.name, "direction " + all.back().name, direction.ratio.mean, direction.bounds,
                                  "squared error over P's"});
     };
     add(Side::above, found.largest, judgement.directions.largest);
@@ -82,9 +82,9 @@ std::vector<int> uncertain_components(const Evidence& evidence, const std::vecto
 }
 
 void judge_directions(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.blocks.empty() || evidence.blocks.front().dimension < 2 || !evidence.joint) return;
+    if (evidence.groups.empty() || evidence.groups.front().dimension < 2 || !evidence.joint) return;
     std::vector<const GroupEvidence*> groups;
-    for (const GroupEvidence& group : evidence.blocks)
+    for (const GroupEvidence& group : evidence.groups)
         if (uncertain_components(evidence, group.components).size() >= 2) groups.push_back(&group);
     if (groups.empty()) return;
     if (!evidence.moments || static_cast<double>(evidence.moments->trials()) < direction_trials) {

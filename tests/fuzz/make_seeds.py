@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 FOR_OTHERS = ("long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
-              "flag_meanings", "figure", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
+              "flag_meanings", "series", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
 
 
 def copy_attributes(source, target):

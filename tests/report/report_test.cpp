@@ -93,15 +93,15 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
     CHECK(arms[0]["failed"] == 300);
     CHECK(arms[0]["trace_P"]["mean"].is_null());
     CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].columns[column_trace_P].summary.mean);
-    CHECK(arms[1]["blocks"].size() == 8);  // all, pose, heading, position, features, 3 features
+    CHECK(arms[1]["groups"].size() == 8);  // all, pose, heading, position, features, 3 features
     const std::string csv = report_csv(report);
     std::int64_t evidence_rows = 0;
     for (const ArmReport& arm : report.arms) {
         const auto count = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
         const Evidence& e = arm.evidence;
         const std::int64_t steps = e.steps;
-        // A block: NEES, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by step; NCI and I2.
-        evidence_rows += count(e.blocks) * (2 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
+        // A group: NEES, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by step; NCI and I2.
+        evidence_rows += count(e.groups) * (2 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
                          count(e.bias) * steps + steps + 2;
     }
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6 * (4 + 2) + evidence_rows);

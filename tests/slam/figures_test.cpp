@@ -39,7 +39,7 @@ void check_mean(const Summary& ours, double theirs, double their_error) {
 
 double block_ratio(const ScenarioResults& results, std::size_t arm, const std::string& name) {
     for (const GroupEvidence& b : evidence_of(results, results.arms[arm]).blocks)
-        if (b.block == name) return b.run.mean;
+        if (b.name == name) return b.run.mean;
     FAIL("no block " << name);
     return 0;
 }

@@ -1,5 +1,5 @@
 // The interval at which a study stops covers the truth as often as it says, early stopping included.
-// Replications with fixed seeds; each one runs the production's looks and decisions.
+// Replications with fixed seeds; each one runs the production's analyses and decisions.
 
 #include "catch.hpp"
 #include "matched.hpp"
@@ -110,10 +110,10 @@ TEST_CASE("stopping: the engine's own intervals cover, where the truth is known 
     int missed[2] = {0, 0}, beyond_the_first = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         Study study = new_study({resolved(matched)}, seed);
-        const InterimAnalysis look = run_until(study, rule, {0, 1, {}});
-        REQUIRE(look.met);
-        for (std::size_t g = 0; g < 2; ++g) missed[g] += std::abs(look.states[g].mean - 1) > look.states[g].half_width;
-        beyond_the_first += look.number > 1;
+        const InterimAnalysis analysis = run_until(study, rule, {0, 1, {}});
+        REQUIRE(analysis.met);
+        for (std::size_t g = 0; g < 2; ++g) missed[g] += std::abs(analysis.states[g].mean - 1) > analysis.states[g].half_width;
+        beyond_the_first += analysis.number > 1;
     }
     CAPTURE(missed[0], missed[1], beyond_the_first);
     CHECK(missed[0] <= most_missed(seeds));

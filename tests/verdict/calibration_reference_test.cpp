@@ -57,24 +57,24 @@ void check_accuracy(const Accuracy& accuracy, const Json& expected) {
 TEST_CASE("calibration: NEES, coverage and accuracy of NumPy's draws are what SciPy computes from their values") {
     const Evidence found = evidence();
     CHECK(found.trials == trials);
-    REQUIRE(found.blocks.size() == expected()["blocks"].size());
-    for (std::size_t b = 0; b < found.blocks.size(); ++b) {
-        const GroupEvidence& block = found.blocks[b];
-        const Json& theirs = expected()["blocks"][b];
-        CAPTURE(block.block);
-        CHECK(block.block == theirs["block"]);
-        CHECK(block.dimension == theirs["dimension"]);
-        check_moments(block.run, theirs["run"]);
-        check_agrees(over_steps95(block), theirs["interval"]);
-        for (std::size_t k = 0; k < steps; ++k) check_moments(block.step[k], theirs["step"][k]);
-        check_banded(block.anees, theirs["anees"]);
-        check_list(block.variance_ratio, theirs["variance_ratio"]);
+    REQUIRE(found.groups.size() == expected()["groups"].size());
+    for (std::size_t b = 0; b < found.groups.size(); ++b) {
+        const GroupEvidence& group = found.groups[b];
+        const Json& theirs = expected()["groups"][b];
+        CAPTURE(group.name);
+        CHECK(group.name == theirs["group"]);
+        CHECK(group.dimension == theirs["dimension"]);
+        check_moments(group.run, theirs["run"]);
+        check_agrees(over_steps95(group), theirs["interval"]);
+        for (std::size_t k = 0; k < steps; ++k) check_moments(group.step[k], theirs["step"][k]);
+        check_banded(group.anees, theirs["anees"]);
+        check_list(group.variance_ratio, theirs["variance_ratio"]);
         for (std::size_t level = 0; level < coverage_level_count; ++level) {
-            check_list(block.coverage[level].share, theirs["coverage"][level]["share"]);
-            check_intervals(block.coverage[level].interval, theirs["coverage"][level]["interval"]);
-            check_agrees(block.coverage[level].over_steps, number(theirs["coverage"][level]["over_steps"]));
+            check_list(group.coverage[level].share, theirs["coverage"][level]["share"]);
+            check_intervals(group.coverage[level].interval, theirs["coverage"][level]["interval"]);
+            check_agrees(group.coverage[level].over_steps, number(theirs["coverage"][level]["over_steps"]));
         }
-        check_accuracy(block.accuracy, theirs["accuracy"]);
+        check_accuracy(group.accuracy, theirs["accuracy"]);
     }
 }
 
@@ -116,23 +116,23 @@ TEST_CASE("calibration: bias, distribution and credibility of NumPy's draws are 
     REQUIRE(found.bias.size() == n);
     for (std::size_t j = 0; j < n; ++j)
         for (std::size_t k = 0; k < steps; ++k) check_moments(found.bias[j].step[k], expected()["bias"][j]["step"][k]);
-    const Json& shape = expected()["shape"];
-    CHECK_FALSE(found.shape.exact);
-    check_list(found.shape.distance, shape["cell_distance"]);
-    check_list(found.shape.p, shape["cell_p"]);
+    const Json& distribution = expected()["distribution"];
+    CHECK_FALSE(found.distribution.exact);
+    check_list(found.distribution.distance, distribution["cell_distance"]);
+    check_list(found.distribution.p, distribution["cell_p"]);
     const Json& credibility = expected()["credibility"];
     for (std::size_t k = 0; k < steps; ++k) {
         CHECK(found.credibility.step[k].count == trials);
         check_agrees(found.credibility.step[k].nci, number(credibility["nci_by_step"][k]));
         check_agrees(found.credibility.step[k].inclination, number(credibility["inclination_by_step"][k]));
-        CHECK(shape["distance"][k] >= shape["cell_distance"][k]);
-        CHECK(shape["distance"][k] <= shape["cell_distance"][k].get<double>() + 1.0 / distribution_cells);
+        CHECK(distribution["distance"][k] >= distribution["cell_distance"][k]);
+        CHECK(distribution["distance"][k] <= distribution["cell_distance"][k].get<double>() + 1.0 / distribution_cells);
     }
     check_agrees(found.credibility.nci, number(credibility["nci"]));
     check_agrees(found.credibility.inclination, number(credibility["inclination"]));
     ScenarioResults exact = results(1);
-    exact.arms.front().distribution_distance = numbers(shape["distance"]);
-    check_list(evidence_of(exact, exact.arms.front()).shape.p, shape["p"]);
+    exact.arms.front().distribution_distance = numbers(distribution["distance"]);
+    check_list(evidence_of(exact, exact.arms.front()).distribution.p, distribution["p"]);
 }
 
 TEST_CASE("calibration: NumPy's draws are called what they are, with their interval") {
@@ -145,11 +145,11 @@ TEST_CASE("calibration: NumPy's draws are called what they are, with their inter
         CHECK(judged.verdict == (claimed < 1 ? Verdict::optimistic : Verdict::pessimistic));
         REQUIRE_FALSE(judged.findings.empty());
         const Finding& finding = judged.findings.front();
-        const Json& whole = expected()["blocks"][0];
+        const Json& whole = expected()["groups"][0];
         CHECK(finding.where == "all");
         CHECK(finding.when == "over all steps");
         check_agrees(finding.value * claimed, number(whole["run"]["mean"]));
-        const double level = level_of_group(levels::run, 0, static_cast<int>(expected()["blocks"].size())) / 2,
+        const double level = level_of_group(levels::run, 0, static_cast<int>(expected()["groups"].size())) / 2,
                      mean = number(whole["run"]["mean"]), half = t_quantile(2 * level, trials - 1.0) * number(whole["run"]["se"]);
         check_agrees(finding.interval.low * claimed, mean - half);
         // Trials of three sigma, as rare as can be where none was seen.

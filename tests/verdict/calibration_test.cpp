@@ -48,20 +48,20 @@ double least_shape_level() {
 void examine_groups(const Evidence& evidence, Calibration& calibration) {
     static const double coverage_level[] = {wilson_level(0.5), wilson_level(0.9), wilson_level(0.95),
                                             wilson_level(0.99)};
-    for (const GroupEvidence& block : evidence.blocks) {
-        const std::string of = " of " + block.block;
-        const BandedRatio& anees = block.anees;
+    for (const GroupEvidence& group : evidence.groups) {
+        const std::string of = " of " + group.name;
+        const BandedRatio& anees = group.anees;
         calibration.exactly("ANEES at a step" + of, 0.05, misses(anees.band[middle], anees.ratio[middle]));
         calibration.exactly("joint band of ANEES at a step" + of, 0.05 / steps,
                             misses(anees.simultaneous_band[middle], anees.ratio[middle]));
         // Steps are correlated: fewer replications have one outside, but as many steps are outside.
         calibration.at_most("joint band of ANEES" + of, 0.05, anees.outside_simultaneous > 0);
         calibration.on_average("steps outside the joint band of ANEES" + of, 0.05, anees.outside_simultaneous);
-        calibration.on_average("var(NEES) / (2 dim)" + of, 1, block.variance_ratio[middle]);
+        calibration.on_average("var(NEES) / (2 dim)" + of, 1, group.variance_ratio[middle]);
         calibration.between("interval over the steps" + of, least_t_level, most_t_level,
-                            misses(over_steps95(block), 1));
-        for (std::size_t level = 0; level < block.coverage.size(); ++level) {
-            const Coverage& coverage = block.coverage[level];
+                            misses(over_steps95(group), 1));
+        for (std::size_t level = 0; level < group.coverage.size(); ++level) {
+            const Coverage& coverage = group.coverage[level];
             calibration.exactly("coverage at level " + std::to_string(level) + of, coverage_level[level],
                                 misses(coverage.interval[middle], coverage.level));
         }
@@ -69,9 +69,9 @@ void examine_groups(const Evidence& evidence, Calibration& calibration) {
 }
 
 void examine_accuracy(const Evidence& evidence, double least_level, Calibration& calibration) {
-    for (const GroupEvidence& block : evidence.blocks)
-        calibration.between("RMSE over predicted of " + block.block, least_level, most_t_level,
-                            misses(block.accuracy.ratio_ci95, 1));
+    for (const GroupEvidence& group : evidence.groups)
+        calibration.between("RMSE over predicted of " + group.name, least_level, most_t_level,
+                            misses(group.accuracy.ratio_ci95, 1));
 }
 
 /// Innovations are independent from step to step: so are the NIS, and the correlations of different lags, in the limit.
@@ -108,7 +108,7 @@ void examine_bias(const Evidence& evidence, Calibration& calibration) {
 
 void examine_distribution(const Evidence& evidence, Calibration& calibration) {
     static const double least = least_shape_level();
-    calibration.between("shape", least, 0.05, evidence.shape.p[middle] < 0.05);
+    calibration.between("shape", least, 0.05, evidence.distribution.p[middle] < 0.05);
 }
 
 /// False findings. At a margin of 0 the matched filter stands on both edges: the level is that of the verdict for a
@@ -130,7 +130,7 @@ void look_at_verdict(const Evidence& evidence, Calibration& calibration) {
 TEST_CASE("calibration: on the matched linear scenario every test rejects at its level", "[long]") {
     Calibration calibration;
     replicate(matched_linear(), trials, 2000, [&](const Evidence& evidence) {
-        REQUIRE(evidence.blocks.size() == 6);
+        REQUIRE(evidence.groups.size() == 6);
         REQUIRE(evidence.nis.size() == 3);
         REQUIRE(evidence.whiteness.size() == 10);
         REQUIRE(evidence.bias.size() == 8);

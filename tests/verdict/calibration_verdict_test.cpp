@@ -30,19 +30,19 @@ Verdicts verdicts(const DeformableSettings& scenario, std::int64_t trials) {
         std::map<std::string, int> found;
         for (const Finding& finding : judged.findings) found[finding.what + " " + finding.where] = 1;
         for (const auto& [finding, one] : found) result.found[finding] += one;
-        for (const GroupEvidence& block : evidence.blocks) {
-            sums[block.block].first += block.run.mean;
-            sums[block.block].second += block.run.mean * block.run.mean;
+        for (const GroupEvidence& group : evidence.groups) {
+            sums[group.name].first += group.run.mean;
+            sums[group.name].second += group.run.mean * group.run.mean;
         }
     });
-    for (const auto& [block, sum] : sums) result.ratio[block] = moments_from_sums(seeds, sum.first, sum.second);
+    for (const auto& [group, sum] : sums) result.ratio[group] = moments_from_sums(seeds, sum.first, sum.second);
     return result;
 }
 
 /// Four standard errors of the difference: a false alarm in 16,000.
-void check_ratio(const Verdicts& verdicts, const std::string& block, double theirs, double their_error) {
-    const Moments& ours = verdicts.ratio.at(block);
-    INFO(block << ": " << ours.mean << " +- " << ours.standard_error << ", theirs " << theirs << " +- " << their_error);
+void check_ratio(const Verdicts& verdicts, const std::string& group, double theirs, double their_error) {
+    const Moments& ours = verdicts.ratio.at(group);
+    INFO(group << ": " << ours.mean << " +- " << ours.standard_error << ", theirs " << theirs << " +- " << their_error);
     CHECK(std::abs(ours.mean - theirs) < 4 * std::hypot(ours.standard_error, their_error));
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("calibration: a covariance 1.1 times too large is pessimistic, 0.9 of 
         Verdicts v = verdicts(s, 2000);
         CHECK(v.count[factor > 1 ? "pessimistic" : "optimistic"] ==
               seeds);  // at 700 trials: 49 and 50; at 400: 42 and 48
-        for (const char* block : {"all", "pose", "features", "feature_0"}) check_ratio(v, block, 1 / factor, 0);
+        for (const char* group : {"all", "pose", "features", "feature_0"}) check_ratio(v, group, 1 / factor, 0);
     }
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("calibration: the matched filter is consistent for 4000 trials, but fo
     Verdicts v = verdicts(matched_linear(), 4000);
     CHECK(v.count["consistent"] >= 43);
     CHECK(v.count["consistent"] + v.count["undecided"] == seeds);
-    for (const char* block : {"all", "pose", "features", "feature_0"}) check_ratio(v, block, 1, 0);
+    for (const char* group : {"all", "pose", "features", "feature_0"}) check_ratio(v, group, 1, 0);
 }
 
 TEST_CASE("calibration: what all steps say counts as soon as their corrected interval is beyond the margin", "[long]") {
@@ -118,7 +118,7 @@ TEST_CASE("calibration: what all steps say counts as soon as their corrected int
     s.filter.covariance = 0.9;
     Evidence evidence;
     replicate(s, 4000, 1, [&](const Evidence& one) { evidence = one; });
-    const Moments& run = evidence.blocks.front().run;
+    const Moments& run = evidence.groups.front().run;
     const double level = level_of_group(levels::run, 0, 6) / 2;  // of the whole state, one-sided
     const double half = t_quantile(2 * level, run.count - 1) * run.standard_error;
     const auto found = [&](double margin) {

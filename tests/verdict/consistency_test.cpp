@@ -27,10 +27,10 @@ Consistency verdict_of(const DeformableSettings& scenario, std::int64_t trials, 
     return judge(evidence_of_first_arm(simulated(scenario, trials)), margin);
 }
 
-double ratio(const Evidence& evidence, const std::string& block) {
-    for (const GroupEvidence& b : evidence.blocks)
-        if (b.block == block) return b.run.mean;
-    FAIL("no block " << block);
+double ratio(const Evidence& evidence, const std::string& group) {
+    for (const GroupEvidence& b : evidence.groups)
+        if (b.name == group) return b.run.mean;
+    FAIL("no group " << group);
     return 0;
 }
 

@@ -81,13 +81,13 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
     const int used = static_cast<int>(trials) - bad - ended(arm, Status::non_finite);
     CHECK(evidence.trials == used);
     for (std::size_t k = 0; k < 5; ++k) {
-        CHECK(evidence.blocks.front().anees.degrees[k] == 9.0 * used);
+        CHECK(evidence.groups.front().anees.degrees[k] == 9.0 * used);
         CHECK(counted_cells(arm, k) == used);
         CHECK(evidence.credibility.step[k].count == used);
     }
     // Both add up the same NEES, rounded otherwise.
     const double mean = mean_ratio(arm, [](Status status) { return !failed(status); });
-    CHECK(evidence.blocks.front().run.mean == Approx(mean).epsilon(1e-12));
+    CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
 TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a normal of its mean and deviation") {
@@ -122,11 +122,11 @@ TEST_CASE("mistakes: diverged trials stay in all of the evidence, and are counte
     const Evidence evidence = evidence_of(results, arm);
     CHECK(evidence.trials == diverged + completed);
     for (std::size_t k = 0; k < 19; ++k) {
-        CHECK(evidence.blocks.front().step[k].count == diverged + completed);
+        CHECK(evidence.groups.front().step[k].count == diverged + completed);
         CHECK(counted_cells(arm, k) == diverged + completed);
     }
     const double mean = mean_ratio(arm, [](Status status) { return !failed(status); });
-    CHECK(evidence.blocks.front().run.mean == Approx(mean).epsilon(1e-12));
+    CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
 TEST_CASE("mistakes: an analysis uses its own values, not the widest or narrowest analysis so far") {

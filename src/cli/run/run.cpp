@@ -32,7 +32,7 @@ const Command& run_command() {
          set_option(),
          sweep_option(),
          {"until", "METRIC=HALFWIDTH",
-          "stop at the first look (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
+          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
           "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
           "all must be met",
           true},

@@ -110,9 +110,9 @@ public:
     EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
 
     std::string text() {
-        for (const GroupEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const GroupEvidence& group : arm_.evidence.groups) add_group(group);
         for (const ChartEvidence& chart : arm_.evidence.charts) {
-            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
+            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.name;
             add_moments(name, chart.run);
             for (std::size_t k = 0; k < chart.step.size(); ++k)
                 add_moments(name + ":" + std::to_string(k + 1), chart.step[k]);
@@ -127,7 +127,7 @@ public:
         for (const BiasEvidence& bias : arm_.evidence.bias)
             for (std::size_t k = 0; k < bias.step.size(); ++k)
                 add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
-        add_steps("distance_from_chi_square", arm_.evidence.shape.distance, {});
+        add_steps("distance_from_chi_square", arm_.evidence.distribution.distance, {});
         add("nci", arm_.evidence.credibility.nci, nan, none);
         add("inclination", arm_.evidence.credibility.inclination, nan, none);
         return text_;
@@ -148,14 +148,14 @@ private:
         for (std::size_t k = 0; k < values.size(); ++k)
             add(column + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
     }
-    void add_block(const GroupEvidence& block) {
-        add_moments("nees_per_dimension:" + block.block, block.run);
-        for (std::size_t k = 0; k < block.step.size(); ++k)
-            add_moments("nees_per_dimension:" + block.block + ":" + std::to_string(k + 1), block.step[k]);
-        add("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95);
-        for (const Coverage& level : block.coverage)
-            add_steps("coverage_" + to_text(level.level) + ":" + block.block, level.share, level.interval);
-        add_steps("variance_ratio:" + block.block, block.variance_ratio, {});
+    void add_group(const GroupEvidence& group) {
+        add_moments("nees_per_dimension:" + group.name, group.run);
+        for (std::size_t k = 0; k < group.step.size(); ++k)
+            add_moments("nees_per_dimension:" + group.name + ":" + std::to_string(k + 1), group.step[k]);
+        add("rmse_ratio:" + group.name, group.accuracy.ratio, nan, group.accuracy.ratio_ci95);
+        for (const Coverage& level : group.coverage)
+            add_steps("coverage_" + to_text(level.level) + ":" + group.name, level.share, level.interval);
+        add_steps("variance_ratio:" + group.name, group.variance_ratio, {});
     }
 
     const ArmReport& arm_;
@@ -174,7 +174,7 @@ std::string report_json(const Report& report) {
 std::string report_csv(const Report& report) {
     const SweepColumns sweep(report);
     std::string text =
-        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
+        "scenario,arm,trials,failed,name,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
         "published,percentile,verdict" + sweep.heads() + ",failed_trials\n";
     for (const ArmReport& arm : report.arms) {
         const std::string end =

@@ -99,37 +99,34 @@ Html direction_charts(const Part& part) {
 }
 
 Html direction_tables(const Part& part) {
-    HtmlTable table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
+    Table table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
                     {"arm, group", "direction", "ratio", "interval, corrected"});
-    HtmlTable spectrum(part.scenario.name + ": all directions of the whole state",
+    Table spectrum(part.scenario.name + ": all directions of the whole state",
                        {"arm", "ratios", "every direction within, 95 %", "from these trials"});
     for (const ArmReport* arm : part.arms) {
         const DirectionsFound& found = arm->consistency.directions;
         for (const auto* all : {&found.largest, &found.smallest})
             for (const DirectionOfGroup& one : *all)
-                table.row(escaped(arm->arm + ", " + one.group),
-                          {escaped(one.name), escaped(short_number(one.ratio)),
-                           escaped(short_number(one.interval.low) + " to " + short_number(one.interval.high))});
+                table.row(arm->arm + ", " + one.group, {one.name, short_cell(one.ratio), range_cell(one.interval)});
         if (found.spectrum.empty()) continue;
-        std::vector<std::string> ratios;
-        for (const double ratio : found.spectrum) ratios.push_back(short_number(ratio));
-        spectrum.row(escaped(arm->arm), {escaped(joined(ratios)), escaped(short_number(found.range.low) + " to " + short_number(found.range.high)),
-                                         count_html(found.trials)});
+        Cell ratios;
+        for (const double ratio : found.spectrum) ratios = ratios + (ratios.pieces().empty() ? "" : ", ") + short_cell(ratio);
+        spectrum.row(arm->arm, {ratios, range_cell(found.range), count_cell(found.trials)});
     }
-    return folded("Directions, with their intervals", spectrum.html() + table.html());
+    return folded("Directions, with their intervals", html_of(spectrum) + html_of(table));
 }
 
 Html worst_trials_table(const Part& part) {
-    HtmlTable table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
+    Table table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
     Html shares;
     for (const ArmReport* arm : part.arms) {
         const WorstTrials& worst = arm->evidence.worst;
         for (const WorstTrial& one : worst.trials)
-            table.row(escaped(arm->arm + ", " + std::to_string(one.trial)), {escaped(short_number(one.nees_ratio)), count_html(one.step)});
+            table.row(arm->arm + ", " + std::to_string(one.trial), {short_cell(one.nees_ratio), count_cell(one.step)});
         if (!worst.trials.empty())
             shares += element("p", escaped(arm->arm + ": they have a share of " + short_number(worst.share) + " of NEES.")) + "\n"_html;
     }
-    return folded("Trials with the largest NEES", table.html() + shares);
+    return folded("Trials with the largest NEES", html_of(table) + shares);
 }
 
 }  // namespace credence::page

@@ -1,4 +1,4 @@
-#include "units.hpp"
+#include "targets.hpp"
 
 #include <algorithm>
 

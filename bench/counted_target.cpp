@@ -1,7 +1,7 @@
 // The engine's own source, compiled once more for one trial at a time, so that only useful operations are counted: with
 // a single lane, work for unseen features is skipped.
 
-#include "counted_unit.hpp"
+#include "counted_target.hpp"
 
 #include <credence/detail/lane.hpp>
 
