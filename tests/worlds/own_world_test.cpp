@@ -141,7 +141,7 @@ TEST_CASE("own world: the filter that knows its model is consistent, the calm on
     CHECK(report.arms[1].consistency.verdict == Verdict::optimistic);
     const Evidence &kf = report.arms[0].evidence, &calm = report.arms[1].evidence;
     REQUIRE(kf.groups.size() == 3);
-    CHECK(kf.groups[2].block == "velocity");
+    CHECK(kf.groups[2].name == "velocity");
     // Means of 4000 trials, each over 29 correlated steps: five standard errors.
     for (const GroupEvidence& group : kf.groups) CHECK(std::abs(group.run.mean - 1) < 5 * group.run.standard_error);
     CHECK(calm.groups[2].run.mean > 2 * calm.groups[1].run.mean / 1.5);
