@@ -61,6 +61,7 @@ Json ratios_json(const Ratios& of) {
 
 Json block_json(const GroupEvidence& block) {
     Json json = ratios_json(block);
+    json["rounding"] = block.rounding;
     json["variance_ratio"] = block.variance_ratio;
     json["coverage"] = each_json(block.coverage, coverage_json);
     json["accuracy"] = accuracy_json(block.accuracy);

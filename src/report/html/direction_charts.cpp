@@ -88,6 +88,13 @@ Html ellipse_chart(const Part& part, std::size_t i) {
                  svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
 }
 
+/// `0.70711 x, -0.70711 y`
+std::string shares_text(const std::vector<Loading>& loadings) {
+    std::vector<std::string> shares;
+    for (const Loading& one : loadings) shares.push_back(short_number(one.weight) + " " + one.component);
+    return joined(shares);
+}
+
 }  // namespace
 
 Html direction_charts(const Part& part) {
@@ -100,7 +107,7 @@ Html direction_charts(const Part& part) {
 
 Html direction_tables(const Part& part) {
     HtmlTable table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
-                    {"arm, group", "direction", "ratio", "interval, corrected"});
+                    {"arm, group", "direction", "ratio", "interval, corrected", "shares of the components, in sigmas"});
     HtmlTable spectrum(part.scenario.name + ": all directions of the whole state",
                        {"arm", "ratios", "every direction within, 95 %", "from these trials"});
     for (const ArmReport* arm : part.arms) {
@@ -109,7 +116,8 @@ Html direction_tables(const Part& part) {
             for (const DirectionOfGroup& one : *all)
                 table.row(escaped(arm->arm + ", " + one.group),
                           {escaped(one.name), escaped(short_number(one.ratio)),
-                           escaped(short_number(one.interval.low) + " to " + short_number(one.interval.high))});
+                           escaped(short_number(one.interval.low) + " to " + short_number(one.interval.high)),
+                           escaped(shares_text(one.loadings))});
         if (found.spectrum.empty()) continue;
         std::vector<std::string> ratios;
         for (const double ratio : found.spectrum) ratios.push_back(short_number(ratio));

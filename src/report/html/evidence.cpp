@@ -32,7 +32,7 @@ Html blocks_table(const Part& part) {
     HtmlTable table(
         part.scenario.name + ": blocks of the state, over all steps, and how many steps are outside their bands",
         {"block", "dimension", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band", "var/2dim",
-         "RMSE", "RMSE/sigma", "95 %"});
+         "RMSE", "RMSE/sigma", "95 %", "bound on NEES' rounding"});
     return by_arm(part, table, [](const Evidence& evidence, HtmlTable& rows) {
         for (const GroupEvidence* block : shown_blocks(evidence)) {
             const Interval over_steps = over_steps95(*block);
@@ -46,7 +46,7 @@ Html blocks_table(const Part& part) {
                  escaped(of_steps(block->anees.outside, block->anees.observed)),
                  escaped(number(mean_of(block->variance_ratio), 2)), number_html(block->accuracy.over_steps, 4),
                  number_html(block->accuracy.ratio, ratio_digits),
-                 interval_html(block->accuracy.ratio_ci95, ratio_digits)});
+                 interval_html(block->accuracy.ratio_ci95, ratio_digits), number_html_as(block->rounding, short_number(block->rounding))});
         }
     });
 }

@@ -71,9 +71,18 @@ HtmlTable findings_table(const std::string& caption, const std::vector<Finding>&
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
         table.row(escaped(finding.what),
-                  {escaped(finding.where), escaped(finding.when), number_html_within(finding.value, half),
+                  {escaped(finding.where), escaped(when_text(finding)), number_html_within(finding.value, half),
                    interval_html(finding.interval, decimals_for(half))});
     }
+    return table;
+}
+
+HtmlTable suspicions_table(const ArmReport& arm) {
+    HtmlTable table(arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
+                    {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
+    for (const Suspicion& one : arm.consistency.suspicions)
+        table.row(escaped(one.what), {escaped(one.where + ", " + one.measure), escaped(short_number(one.value)), count_html(one.trials.value),
+                                      count_html(one.trials.low) + " to "_html + count_html(one.trials.high)});
     return table;
 }
 
@@ -93,7 +102,8 @@ Html arm_findings(const ArmReport& arm) {
            (all.size() <= most
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
-                         table));
+                         table)) +
+           (arm.consistency.suspicions.empty() ? Html() : suspicions_table(arm).html());
 }
 
 }  // namespace
