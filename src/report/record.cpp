@@ -1,14 +1,12 @@
 // The report of a record: that of a study, and what only a record can be asked.
 
+#include <algorithm>
+#include <cmath>
 #include <credence/report.hpp>
-
 #include <credence/text.hpp>
 
 #include "report/format.hpp"
 #include "verdict/judgement.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace credence {
 
@@ -17,11 +15,13 @@ namespace {
 /// A covariance that is singular at the start makes every trial fail there.
 void hint_at_known_start(const Record& record, Consistency& verdict) {
     const auto at_start = [](const RecordTrouble& trouble) {
-        return trouble.step == 0 && trouble.status == Status::covariance_not_positive_definite && trouble.what == "covariance is singular";
+        return trouble.step == 0 && trouble.status == Status::covariance_not_positive_definite &&
+               trouble.what == "covariance is singular";
     };
     if (verdict.verdict == Verdict::failed && std::ranges::all_of(record.troubles, at_start))
-        verdict.hints.push_back("the covariance is singular at the first step: where the start is known exactly (P0 = 0), begin the "
-                                "record one step later, or make the known components NaN at that step");
+        verdict.hints.push_back(
+            "the covariance is singular at the first step: where the start is known exactly (P0 = 0), begin the "
+            "record one step later, or make the known components NaN at that step");
 }
 
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
@@ -31,7 +31,8 @@ void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vec
     for (const GroupEvidence& group : evidence.blocks)
         if (!(group.run.count > 0) && !is_rounded(group, limits)) absent.push_back(group.block);
     if (!absent.empty())
-        sentences.push_back("No trial has all components of " + joined(absent) + " at a step: the verdict is of the others.");
+        sentences.push_back("No trial has all components of " + joined(absent) +
+                            " at a step: the verdict is of the others.");
 }
 
 std::string nees_text(const GroupEvidence& state) { return with_interval(state.run.mean, over_steps95(state)); }
@@ -51,9 +52,10 @@ void try_other_chart(const Record& record, ArmReport& arm) {
         arm.evidence.charts.push_back({other.chart, group.block, group.dimension, group.run, group.step, group.anees});
     const GroupEvidence &own = arm.evidence.blocks.front(), &theirs = evidence.blocks.front();
     const bool nearer = std::abs(std::log(theirs.run.mean)) < std::abs(std::log(own.run.mean)) / 2;
-    verdict.hints.push_back("NEES/dim of " + own.block + " is " + nees_text(own) + " with the error in the chart `" + record.chart +
-                            "`, and " + nees_text(theirs) + " in the chart `" + other.chart + "`" +
-                            (nearer ? ": does the covariance belong to the latter?" : ": the chart is not what is wrong"));
+    verdict.hints.push_back(
+        "NEES/dim of " + own.block + " is " + nees_text(own) + " with the error in the chart `" + record.chart +
+        "`, and " + nees_text(theirs) + " in the chart `" + other.chart + "`" +
+        (nearer ? ": does the covariance belong to the latter?" : ": the chart is not what is wrong"));
 }
 
 }  // namespace

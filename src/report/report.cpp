@@ -1,15 +1,13 @@
-#include <credence/report.hpp>
-
-#include "statistics/bootstrap.hpp"
+#include <algorithm>
+#include <cmath>
 #include <credence/error.hpp>
+#include <credence/report.hpp>
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"
 #include "report/words.hpp"
+#include "statistics/bootstrap.hpp"
 #include "verdict/judgement.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace credence {
 
@@ -76,7 +74,8 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
     report.diverged = report.evidence.diverged;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));
-    if (!report.evidence.blocks.empty() && is_rounded(report.evidence.blocks.front(), limits)) leave_out_nees(report.columns);
+    if (!report.evidence.blocks.empty() && is_rounded(report.evidence.blocks.front(), limits))
+        leave_out_nees(report.columns);
     return report;
 }
 

@@ -38,8 +38,9 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
               [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
-        parts.push_back(directions ? worst[i].where + ", " + worst[i].when + ": " + number(worst[i].value, 2) + " times P"
-                                   : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+        parts.push_back(directions
+                            ? worst[i].where + ", " + worst[i].when + ": " + number(worst[i].value, 2) + " times P"
+                            : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
     if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
     return parts;
 }
@@ -63,8 +64,9 @@ std::string suspicion_text(const Suspicion& suspicion) {
     const std::string too = suspicion.about == Subject::bias ? "beyond the margin"
                             : suspicion.what == "optimistic" ? "too large"
                                                              : "too small";
-    return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) + " and not shown to be " + too + ": " +
-           number(suspicion.trials.value, 0) + " trials would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
+    return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) +
+           " and not shown to be " + too + ": " + number(suspicion.trials.value, 0) +
+           " trials would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
            number(suspicion.trials.high, 0) + ")";
 }
 
@@ -75,7 +77,8 @@ std::vector<std::string> suspicion_texts(std::vector<Suspicion> suspicions) {
               [](const Suspicion& a, const Suspicion& b) { return a.trials.value < b.trials.value; });
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i) texts.push_back(suspicion_text(suspicions[i]));
-    if (suspicions.size() > most) texts.push_back(std::to_string(suspicions.size() - most) + " more look wrong and are not shown to be");
+    if (suspicions.size() > most)
+        texts.push_back(std::to_string(suspicions.size() - most) + " more look wrong and are not shown to be");
     return texts;
 }
 

@@ -33,8 +33,8 @@ TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
     if (!evidence.moments || evidence.blocks.empty() || !evidence.joint) return {};
     const std::vector<int> state = uncertain_components(evidence, evidence.blocks.front().components);
     constexpr std::uint64_t seed = 1;  // the same advice for the same trials
-    const std::optional<Advice> advice = trials_for_consistent(first_trials(evidence), state, seed,
-                                                               {limits.margin, limits.direction, limits.bias});
+    const std::optional<Advice> advice =
+        trials_for_consistent(first_trials(evidence), state, seed, {limits.margin, limits.direction, limits.bias});
     if (!advice) return {};
     return {to_two_digits(advice->range.low), to_two_digits(advice->trials), to_two_digits(advice->range.high)};
 }

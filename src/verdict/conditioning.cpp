@@ -2,16 +2,15 @@
 
 #include "statistics/conditioning.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <credence/detail/exact_sum.hpp>
+#include <vector>
 
 #include "base/nan.hpp"
 #include "statistics/trial_moments.hpp"
 #include "verdict/evidence_parts.hpp"
 #include "verdict/judgement.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 namespace credence {
 
@@ -26,7 +25,8 @@ Eigen::MatrixXd sum_of_covariances(const TrialMoments& moments) {
         for (std::size_t place = 0; place < sums.size(); ++place)
             if (const double value = moments.C(i)[place]; !std::isnan(value)) sums[place].add(value);
     Eigen::VectorXd rounded(triangle_size(n));
-    for (Eigen::Index place = 0; place < rounded.size(); ++place) rounded[place] = sums[static_cast<std::size_t>(place)].rounded();
+    for (Eigen::Index place = 0; place < rounded.size(); ++place)
+        rounded[place] = sums[static_cast<std::size_t>(place)].rounded();
     return symmetric(rounded, n);
 }
 

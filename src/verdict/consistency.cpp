@@ -44,7 +44,8 @@ private:
         const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
         const auto groups = static_cast<int>(evidence_.blocks.size());
         const double level = level_of_group(levels::run, place_, groups) / 2;
-        const MeanClaim claim = claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps), level, margin());
+        const MeanClaim claim =
+            claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps), level, margin());
         if (claim.above || claim.below)
             judgement_.add(claim.above ? Side::above : Side::below,
                            {Subject::size, "", group_.block, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
@@ -53,7 +54,9 @@ private:
         const std::string what = "NEES/dim of " + group_.block;
         const Acceptance acceptance = accept_mean(sample, margin());
         if (claim.tails)
-            judgement_.not_shown(what + " looks too small, but rare large errors that were not seen could explain it" + tail_text(), true);
+            judgement_.not_shown(
+                what + " looks too small, but rare large errors that were not seen could explain it" + tail_text(),
+                true);
         judgement_.accept(acceptance, what + (acceptance == Acceptance::tails ? tail_text() : ""));
     }
 
@@ -87,7 +90,8 @@ private:
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                judgement_.add(side, {Subject::step, "", group_.block, steps_text(steps.steps), steps.value, steps.interval, "NEES/dim"});
+                judgement_.add(side, {Subject::step, "", group_.block, steps_text(steps.steps), steps.value,
+                                      steps.interval, "NEES/dim"});
     }
 
     const Evidence& evidence_;
@@ -191,7 +195,8 @@ const std::string& verdict_name(Verdict verdict) {
 }
 
 const std::string& subject_name(Subject subject) {
-    static const std::string names[] = {"size", "step", "direction", "bias", "innovations", "whiteness", "distribution"};
+    static const std::string names[] = {"size",        "step",      "direction",   "bias",
+                                        "innovations", "whiteness", "distribution"};
     return names[static_cast<int>(subject)];
 }
 

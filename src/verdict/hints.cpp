@@ -33,8 +33,10 @@ void hint_at_chart(const Evidence& evidence, Consistency& verdict) {
     if (spectrum.size() < 2 || !(std::abs(size - 1) < 0.03)) return;
     if (!(spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)) return;
     verdict.chart_doubted = true;
-    verdict.hints.push_back(with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error "
-                                        "in the chart and frame of P, and is a correlation missing?", size));
+    verdict.hints.push_back(
+        with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error "
+                    "in the chart and frame of P, and is a correlation missing?",
+                    size));
 }
 
 /// Errors of an angle beyond half a turn.

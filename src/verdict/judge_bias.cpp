@@ -32,7 +32,8 @@ void judge_bias(const Evidence& evidence, Judgement& judgement) {
         const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
                                               judgement.limits().bias);
         if (claim.finding)
-            judgement.add_bias({Subject::bias, "", bias.component, worst_step(bias), claim.value, claim.interval, "mean error/sigma"});
+            judgement.add_bias(
+                {Subject::bias, "", bias.component, worst_step(bias), claim.value, claim.interval, "mean error/sigma"});
         else if (!claim.known_exactly)
             judge_suspicion(bias, static_cast<int>(evidence.bias.size()), judgement);
         judgement.accept(claim.accepted ? Acceptance::shown : Acceptance::more_trials, "bias of " + bias.component);

@@ -42,7 +42,8 @@ std::vector<double> spectrum_of(const FoldSums& sums) {
 /// The loadings of a direction with the names of components.
 std::vector<Loading> loadings_of(const Direction& direction, const std::vector<BiasEvidence>& components) {
     std::vector<Loading> loadings;
-    for (const DirectionEntry& entry : direction.entries) loadings.push_back({component_name(entry.component, components), entry.weight});
+    for (const DirectionEntry& entry : direction.entries)
+        loadings.push_back({component_name(entry.component, components), entry.weight});
     return loadings;
 }
 
@@ -53,8 +54,8 @@ void leave_out_directions(const Evidence& evidence, Judgement& judgement) {
     why = "directions need " + std::to_string(static_cast<int>(direction_trials)) + " trials";
     if (!evidence.moments) why = "directions are not in this file";
     if (size > largest_moment_state)
-        why = "directions are computed for states of up to " + std::to_string(largest_moment_state) + " components, and this has " +
-              std::to_string(size);
+        why = "directions are computed for states of up to " + std::to_string(largest_moment_state) +
+              " components, and this has " + std::to_string(size);
     judgement.not_shown(why, evidence.moments != nullptr);
 }
 
@@ -72,10 +73,12 @@ void judge_group(const Evidence& evidence, const GroupEvidence& group, const Gro
                        loadings_of(direction, evidence.bias)});
         const std::string &name = all.back().name, measure = "squared error over P's";
         if (direction.finding)
-            return judgement.add(side, {Subject::direction, "", group.block, name, direction.ratio.mean, direction.bounds, measure});
+            return judgement.add(
+                side, {Subject::direction, "", group.block, name, direction.ratio.mean, direction.bounds, measure});
         const std::optional<Suspicion> looks = suspicion_of(direction.ratio, level, judgement.limits().margin);
         if (looks && looks->what == credence::name_of(side))
-            judgement.suspect({Subject::direction, looks->what, group.block + ", " + name, looks->value, measure, looks->trials});
+            judgement.suspect(
+                {Subject::direction, looks->what, group.block + ", " + name, looks->value, measure, looks->trials});
     };
     add(Side::above, found.largest, judgement.directions.largest);
     add(Side::below, found.smallest, judgement.directions.smallest);
@@ -83,14 +86,17 @@ void judge_group(const Evidence& evidence, const GroupEvidence& group, const Gro
 
 void accept_state(const Evidence& evidence, const GroupMoments& state, const FoldSums& sums, Judgement& judgement) {
     if (sums.trials() < direction_trials)
-        return judgement.not_shown("directions need " + std::to_string(static_cast<int>(direction_trials)) +
-                                       " trials in which every two components are in the state together, and there are " +
-                                       std::to_string(static_cast<int>(sums.trials())), true);
+        return judgement.not_shown(
+            "directions need " + std::to_string(static_cast<int>(direction_trials)) +
+                " trials in which every two components are in the state together, and there are " +
+                std::to_string(static_cast<int>(sums.trials())),
+            true);
     const DirectionsAccepted accepted = accept_directions(state, sums, limits_of(evidence, judgement));
     judgement.directions.range = accepted.bounds;
     if (accepted.left_out > 0)
         judgement.not_shown("conditioning: P cannot be told from singular in " + std::to_string(accepted.left_out) +
-                                   (accepted.left_out == 1 ? " direction" : " directions"), false);
+                                (accepted.left_out == 1 ? " direction" : " directions"),
+                            false);
     judgement.accept(accepted.acceptance, "directions");
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 // The verdict while its parts are judged: findings against consistency, and what was or was not shown for it.
 
-#include "statistics/directions.hpp"
-#include "statistics/mean_bounds.hpp"
-#include "verdict/consistency_parts.hpp"
-
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "statistics/directions.hpp"
+#include "statistics/mean_bounds.hpp"
+#include "verdict/consistency_parts.hpp"
 
 namespace credence {
 
@@ -49,8 +49,8 @@ double to_two_digits(double trials);
 std::optional<Suspicion> suspicion_of(const PositiveSample& sample, double level, double margin);
 std::optional<Suspicion> suspicion_of_bias(const Moments& z, double level, double margin);
 
-/// Those of these components that some trial has and that are not known exactly: the others have no error to be too large
-/// or too small.
+/// Those of these components that some trial has and that are not known exactly: the others have no error to be too
+/// large or too small.
 std::vector<int> uncertain_components(const Evidence& evidence, const std::vector<int>& components);
 
 /// Directions of every group of two or more components.

@@ -1,11 +1,11 @@
 // What looks wrong and is not shown to be: how many trials would show it.
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/nan.hpp"
 #include "statistics/advice.hpp"
 #include "verdict/judgement.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace credence {
 
@@ -13,8 +13,9 @@ namespace {
 
 constexpr double suspected = 0.05;  ///< the level of a suspicion, one-sided and uncorrected
 
-/// `trials` of a mean that is so far away, for the mean and for the two ends of its interval. Nothing for too few trials to
-/// know the spread, and where the number is no more than the study has: then something else withholds the finding.
+/// `trials` of a mean that is so far away, for the mean and for the two ends of its interval. Nothing for too few
+/// trials to know the spread, and where the number is no more than the study has: then something else withholds the
+/// finding.
 template <class Trials>
 std::optional<TrialsNeeded> needed(const Trials& trials, double half_width, double count) {
     if (count < advice_trials) return std::nullopt;

@@ -1,10 +1,10 @@
-// What `judge` says beside a verdict: the other chart, a start that is known exactly, groups that no trial has, what looks
-// wrong and is not shown, and what rounding forbids.
+// What `judge` says beside a verdict: the other chart, a start that is known exactly, groups that no trial has, what
+// looks wrong and is not shown, and what rounding forbids.
+
+#include <cmath>
 
 #include "program.hpp"
 #include "record_support.hpp"
-
-#include <cmath>
 
 using namespace credence;
 using namespace credence::test;
@@ -28,7 +28,8 @@ void write_poses(const std::string& path, const std::string& chart) {
         const Eigen::Vector3d e(sigma[0] * normal(random), sigma[1] * normal(random), sigma[2] * normal(random));
         // Exp of e, applied from the left: about the origin of the world.
         const double s = std::sin(e[2]) / e[2], c = (1 - std::cos(e[2])) / e[2];
-        const Eigen::Vector2d moved = Eigen::Rotation2Dd(e[2]) * Eigen::Vector2d(x, y) + Eigen::Vector2d(s * e[0] - c * e[1], c * e[0] + s * e[1]);
+        const Eigen::Vector2d moved = Eigen::Rotation2Dd(e[2]) * Eigen::Vector2d(x, y) +
+                                      Eigen::Vector2d(s * e[0] - c * e[1], c * e[0] + s * e[1]);
         truth.insert(truth.end(), {x, y, angle});
         estimate.insert(estimate.end(), {moved.x(), moved.y(), angle + e[2]});
         for (int a = 0; a < 3; ++a)
@@ -56,10 +57,12 @@ TEST_CASE("judge: where errors are too large on a manifold, NEES of the other ch
     CHECK(wrong["other_charts"][0]["block"] == "all");
     CHECK(wrong["other_charts"][0]["nees_ratio"].get<double>() == Approx(1).margin(0.05));  // 2,000 steps: 4 sigma
     const std::string hint = wrong["hints"].back();
-    CHECK_THAT(hint, Contains("in the chart `local`, and ") && Contains("in the chart `global`: does the covariance belong to the latter?"));
+    CHECK_THAT(hint, Contains("in the chart `local`, and ") &&
+                         Contains("in the chart `global`: does the covariance belong to the latter?"));
     write_poses(here.path("r.h5"), "global");
     const Json right = judged(here);
-    CHECK(right["blocks"][0]["nees_ratio"] == wrong["other_charts"][0]["nees_ratio"]);  // the same numbers, to the last bit
+    CHECK(right["blocks"][0]["nees_ratio"] ==
+          wrong["other_charts"][0]["nees_ratio"]);  // the same numbers, to the last bit
     CHECK(right["verdict"] == "undecided");
     CHECK_FALSE(right.contains("other_charts"));  // not tried where nothing is too large
     CHECK(right["hints"].empty());
@@ -76,7 +79,8 @@ TEST_CASE("judge: where errors are too large in either chart, the chart is not b
     CHECK_THAT(both["hints"].back().get<std::string>(), Contains("the chart is not what is wrong"));
 }
 
-TEST_CASE("judge: errors of the right size and wrong directions are asked for their frame, without a manifold as well") {
+TEST_CASE(
+    "judge: errors of the right size and wrong directions are asked for their frame, without a manifold as well") {
     const Workplace here;
     DrawnRecord drawn(300, 8, 2);
     std::mt19937_64 random(6);
@@ -108,7 +112,8 @@ TEST_CASE("judge: errors of an angle that were not wrapped are named") {
     };
     const Json unwrapped = write(6.283);
     REQUIRE_FALSE(unwrapped["hints"].empty());
-    CHECK_THAT(unwrapped["hints"][0].get<std::string>(), Contains("errors of heading reach") && Contains("were angles wrapped to half a turn?"));
+    CHECK_THAT(unwrapped["hints"][0].get<std::string>(),
+               Contains("errors of heading reach") && Contains("were angles wrapped to half a turn?"));
     CHECK(write(0)["hints"].empty());
 }
 
@@ -146,7 +151,8 @@ TEST_CASE("judge: a component that no trial has is named, and keeps the others f
     const Json without = write(true), with = write(false);
     CHECK(with["verdict"] == "consistent");
     CHECK(without["verdict"] == "consistent");
-    CHECK_THAT(without["not_judged"][0].get<std::string>(), Contains("No trial has all components of landmark at a step"));
+    CHECK_THAT(without["not_judged"][0].get<std::string>(),
+               Contains("No trial has all components of landmark at a step"));
     CHECK_FALSE(with.contains("not_judged"));
 }
 
@@ -158,8 +164,10 @@ TEST_CASE("judge: of components that no trial has together, the reason says why 
     write_file(here.path("r.h5"), [&](const Handle& root) { write_drawn(root, drawn); });
     const Json apart = judged(here);
     CHECK(apart["verdict"] == "undecided");
-    CHECK_THAT(apart["reason"].get<std::string>(),
-               Contains("directions need 200 trials in which every two components are in the state together, and there are 0"));
+    CHECK_THAT(
+        apart["reason"].get<std::string>(),
+        Contains(
+            "directions need 200 trials in which every two components are in the state together, and there are 0"));
 }
 
 TEST_CASE("judge: what looks wrong and is not shown comes with the number of trials that would show it") {
@@ -180,7 +188,8 @@ TEST_CASE("judge: what looks wrong and is not shown comes with the number of tri
     CHECK(first["trials"].get<double>() > 300);
     CHECK(first["trials_range"][0].get<double>() < first["trials"].get<double>());
     CHECK(first["trials_range"][1].get<double>() > first["trials"].get<double>());
-    CHECK_THAT(small["reason"].get<std::string>(), Contains("and not shown to be too small: ") && Contains(" trials would show it if it stays ("));
+    CHECK_THAT(small["reason"].get<std::string>(),
+               Contains("and not shown to be too small: ") && Contains(" trials would show it if it stays ("));
     CHECK(judged(here, "--margin 15%")["suspicions"].empty());  // nothing looks wrong
     CHECK(write(0.6)["verdict"] == "pessimistic");
     CHECK(judged(here)["suspicions"].empty());  // it is shown
@@ -210,8 +219,9 @@ TEST_CASE("judge: covariances in singles are judged to the accuracy of their typ
     CHECK(write(0.0, 1 - 1e-5)["verdict"] == "consistent");
     const Json coarse = write(0.0f, 1 - 1e-5);
     CHECK(coarse["verdict"] == "undecided");
-    CHECK_THAT(coarse["reason"].get<std::string>(), Contains("conditioning: NEES of all is left out, because rounding alone may change it by 2.4 %") &&
-                                                        Contains("cannot be told from singular in 1 direction"));
+    CHECK_THAT(coarse["reason"].get<std::string>(),
+               Contains("conditioning: NEES of all is left out, because rounding alone may change it by 2.4 %") &&
+                   Contains("cannot be told from singular in 1 direction"));
     CHECK(write(0.0f, 1 - 1e-3)["verdict"] == "consistent");
 }
 

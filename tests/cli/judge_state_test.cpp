@@ -1,11 +1,11 @@
-// Metamorphic tests of `judge` on a tracker: the order in which a state is written, and the axes of its positions, change
-// no verdict.
-
-#include "program.hpp"
-#include "record_support.hpp"
+// Metamorphic tests of `judge` on a tracker: the order in which a state is written, and the axes of its positions,
+// change no verdict.
 
 #include <cmath>
 #include <map>
+
+#include "program.hpp"
+#include "record_support.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -88,8 +88,10 @@ struct Said {
     Said(const Workplace& here, const std::string& record) {
         const Json arm = Json::parse(here.credence("judge " + record + " --quiet --margin 10% --format json").out)[0];
         verdict = arm["verdict"];
-        for (const Json& group : arm["blocks"]) numbers["NEES of " + group["block"].get<std::string>()] = group["nees_ratio"];
-        for (const Json& bias : arm["bias"]) numbers["bias of " + bias["component"].get<std::string>()] = bias["mean"][3];
+        for (const Json& group : arm["blocks"])
+            numbers["NEES of " + group["block"].get<std::string>()] = group["nees_ratio"];
+        for (const Json& bias : arm["bias"])
+            numbers["bias of " + bias["component"].get<std::string>()] = bias["mean"][3];
         for (const Json& finding : arm["findings"]) add(finding);
         for (const char* end : {"largest", "smallest"})
             for (const Json& direction : arm["directions"][end]) add_direction(end, direction);
@@ -97,13 +99,15 @@ struct Said {
     void add(const Json& finding) {
         // The name of a direction lists its components in their order.
         const std::string when = finding["about"] == "direction" ? "" : finding["when"].get<std::string>();
-        numbers[finding["text"].get<std::string>().substr(0, 10) + finding["where"].get<std::string>() + when] = finding["value"];
+        numbers[finding["text"].get<std::string>().substr(0, 10) + finding["where"].get<std::string>() + when] =
+            finding["value"];
     }
     void add_direction(const std::string& end, const Json& direction) {
         const std::string name = end + " direction of " + direction["group"].get<std::string>();
         numbers[name] = direction["ratio"];
         for (const auto& [component, weight] : direction["loadings"].items())
-            numbers[name + ", " + component] = std::abs(weight.get<double>());  // of two equal ones either is the largest
+            numbers[name + ", " + component] =
+                std::abs(weight.get<double>());  // of two equal ones either is the largest
     }
 };
 

@@ -1,15 +1,13 @@
 // The report has the values of the study.
 
-#include "catch.hpp"
-#include "study_support.hpp"
-
+#include <cmath>
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
-
 #include <nlohmann/json.hpp>
 
-#include <cmath>
+#include "catch.hpp"
+#include "study_support.hpp"
 
 using namespace credence;
 using Catch::Contains;
@@ -107,15 +105,17 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
         for (const auto* list : {&directions.largest, &directions.smallest})
             for (const DirectionOfGroup& one : *list) direction_rows += 1 + count(one.loadings);
         if (arm.failed_trials() < 100) CHECK(direction_rows > 20);
-        // A block: NEES, its rounding, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by step; NCI and I2.
+        // A block: NEES, its rounding, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by
+        // step; NCI and I2.
         evidence_rows += count(e.blocks) * (3 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
                          count(e.bias) * steps + steps + 2 + direction_rows;
     }
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6 * (4 + 2) + evidence_rows);
     const DirectionOfGroup& largest = report.arms[1].consistency.directions.largest.front();
-    CHECK_THAT(csv, Contains(",direction_largest:all,1," + to_text(largest.ratio) + ",," + to_text(largest.interval.low) + "," +
-                             to_text(largest.interval.high) + ","));
-    CHECK_THAT(csv, Contains(",direction_largest:all:" + largest.loadings[0].component + ",1," + to_text(largest.loadings[0].weight)));
+    CHECK_THAT(csv, Contains(",direction_largest:all,1," + to_text(largest.ratio) + ",," +
+                             to_text(largest.interval.low) + "," + to_text(largest.interval.high) + ","));
+    CHECK_THAT(csv, Contains(",direction_largest:all:" + largest.loadings[0].component + ",1," +
+                             to_text(largest.loadings[0].weight)));
     const Json same = arms[1]["directions"]["largest"][0];
     CHECK(same["loadings"][largest.loadings[0].component] == largest.loadings[0].weight);
     CHECK(same["level"] == largest.level);

@@ -38,7 +38,8 @@ double nees(const MatrixXd& P, const VectorXd& e) {
 
 }  // namespace
 
-TEST_CASE("conditioning: rounding a covariance to singles changes NEES by no more than the bound, and by a good part of it") {
+TEST_CASE(
+    "conditioning: rounding a covariance to singles changes NEES by no more than the bound, and by a good part of it") {
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
     for (const double smallest : {1e-1, 1e-2, 1e-3, 1e-4}) {
@@ -56,11 +57,13 @@ TEST_CASE("conditioning: rounding a covariance to singles changes NEES by no mor
     }
 }
 
-TEST_CASE("conditioning: units change no bound, a component without variance none, and a singular P has no finite one") {
+TEST_CASE(
+    "conditioning: units change no bound, a component without variance none, and a singular P has no finite one") {
     std::mt19937_64 random(4);
     const MatrixXd P = nearly_singular(random, 4, 1e-6);
     const Eigen::Vector4d units(1e6, 1, 1e-6, 30);
-    const double bound = rounding_bound(P, single), in_units = rounding_bound(units.asDiagonal() * P * units.asDiagonal(), single);
+    const double bound = rounding_bound(P, single),
+                 in_units = rounding_bound(units.asDiagonal() * P * units.asDiagonal(), single);
     CHECK(std::abs(in_units / bound - 1) < 1e-6);  // the products are rounded: 1e-16 over the eigenvalue
     MatrixXd larger = MatrixXd::Zero(5, 5);
     larger.topLeftCorner(4, 4) = P;

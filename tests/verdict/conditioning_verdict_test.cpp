@@ -1,14 +1,12 @@
 // What rounding may have changed is left out, and the verdict says why.
 
+#include <cmath>
+#include <credence/report.hpp>
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "matched.hpp"
 #include "of_scenarios.hpp"
-
-#include <credence/report.hpp>
-
-#include <nlohmann/json.hpp>
-
-#include <cmath>
 
 using namespace credence;
 using namespace credence::test;
@@ -67,5 +65,6 @@ TEST_CASE("conditioning: what is left out is nothing in JSON, and no number in t
     CHECK(json["blocks"][1]["nees_ratio"].is_number());
     CHECK_THAT(report_text(report), Contains("conditioning: NEES of all") && !Contains("nan"));
     CHECK_THAT(report_html(report, {"r.h5", {}, "test"}), Contains("conditioning: NEES of all") && !Contains(">nan"));
-    CHECK_THAT(report_csv(report), Contains(",nees_per_dimension:all,1,,,,,") && Contains(",nees_rounding:features,1,0."));
+    CHECK_THAT(report_csv(report),
+               Contains(",nees_per_dimension:all,1,,,,,") && Contains(",nees_rounding:features,1,0."));
 }

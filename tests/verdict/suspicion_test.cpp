@@ -1,12 +1,11 @@
 // What looks wrong and is not shown, and the number of trials that would show it.
 
-#include "catch.hpp"
-
-#include "statistics/advice.hpp"
-#include "verdict/judgement.hpp"
-
 #include <cmath>
 #include <random>
+
+#include "catch.hpp"
+#include "statistics/advice.hpp"
+#include "verdict/judgement.hpp"
 
 using namespace credence;
 
@@ -29,13 +28,13 @@ PositiveSample drawn(std::mt19937_64& random, int trials, double mean, double sd
 
 TEST_CASE("suspicion: only between the plain and the corrected bound, on either side") {
     const double deviation = 1, se = deviation / 20;  // of 400 trials
-    const auto at = [&](double standard_errors) {  // beyond the margin
+    const auto at = [&](double standard_errors) {     // beyond the margin
         return PositiveSample{400, 1 + margin + standard_errors * se, deviation, 4};
     };
     CHECK_FALSE(suspicion_of(at(1.6), level, margin));
     CHECK(suspicion_of(at(1.7), level, margin)->what == "optimistic");
     CHECK(suspicion_of(at(2.4), level, margin)->what == "optimistic");
-    CHECK_FALSE(suspicion_of(at(2.5), level, margin));  // it is shown
+    CHECK_FALSE(suspicion_of(at(2.5), level, margin));          // it is shown
     CHECK_FALSE(suspicion_of({29, 1.5, 1, 4}, level, margin));  // too few to know the spread
     // Where something is too small, rare large errors that were not seen withhold the finding for longer.
     const PositiveSample small{400, 0.8, deviation, 4};
@@ -62,8 +61,9 @@ TEST_CASE("suspicion: the number is that of the mean, and its range that of the 
     CHECK(looks->trials.value == two_digits(std::pow(wide / 0.14, 2)));
     CHECK(looks->trials.low == two_digits(std::pow(wide / (0.14 + half), 2)));
     CHECK(looks->trials.high == two_digits(std::pow(wide / (0.14 - half), 2)));
-    CHECK_FALSE(suspicion_of_bias({200, 0.15, 0.9, 0.9 / std::sqrt(200.0)}, 1e-4, 0.1));  // its interval reaches the margin
-    CHECK_FALSE(suspicion_of_bias({200, 0.5, 0.9, 0.9 / std::sqrt(200.0)}, 1e-4, 0.1));   // it is shown
+    CHECK_FALSE(
+        suspicion_of_bias({200, 0.15, 0.9, 0.9 / std::sqrt(200.0)}, 1e-4, 0.1));  // its interval reaches the margin
+    CHECK_FALSE(suspicion_of_bias({200, 0.5, 0.9, 0.9 / std::sqrt(200.0)}, 1e-4, 0.1));  // it is shown
 }
 
 TEST_CASE("suspicion: the range holds the number that the true mean needs") {

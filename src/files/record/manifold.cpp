@@ -98,7 +98,8 @@ Manifold Manifold::read(const hdf5::Handle& root) {
 }
 
 bool Manifold::has_charts() const {
-    return std::ranges::any_of(factors_, [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
+    return std::ranges::any_of(factors_,
+                               [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
 }
 
 void Manifold::error(const double* truth, const double* estimate, double* error) const {

@@ -67,7 +67,9 @@ Record read_in_chart(const std::string& path, const std::function<void(const Pro
                                Record record = read_record(file, path, progress);
                                if (!has_charts) return record;
                                record.chart = manifold->chart() == ErrorChart::local ? "local" : "global";
-                               record.in_other_chart = [path, other_chart] { return read_in_chart(path, {}, !other_chart); };
+                               record.in_other_chart = [path, other_chart] {
+                                   return read_in_chart(path, {}, !other_chart);
+                               };
                                return record;
                            });
 }

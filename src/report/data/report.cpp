@@ -38,8 +38,13 @@ Json figure_json(const ColumnReport& column) {
 Json findings_json(const std::vector<Finding>& findings) {
     Json json = Json::array();
     for (const Finding& finding : findings)
-        json.push_back({{"what", finding.what}, {"about", subject_name(finding.about)}, {"where", finding.where}, {"when", when_text(finding)},
-                        {"measure", finding.measure}, {"value", finding.value}, {"interval", interval_json(finding.interval)},
+        json.push_back({{"what", finding.what},
+                        {"about", subject_name(finding.about)},
+                        {"where", finding.where},
+                        {"when", when_text(finding)},
+                        {"measure", finding.measure},
+                        {"value", finding.value},
+                        {"interval", interval_json(finding.interval)},
                         {"text", sentence(finding)}});
     return json;
 }
@@ -47,8 +52,13 @@ Json findings_json(const std::vector<Finding>& findings) {
 Json suspicions_json(const std::vector<Suspicion>& suspicions) {
     Json json = Json::array();
     for (const Suspicion& one : suspicions)
-        json.push_back({{"what", one.what}, {"about", subject_name(one.about)}, {"where", one.where}, {"measure", one.measure},
-                        {"value", one.value}, {"trials", one.trials.value}, {"trials_range", {one.trials.low, one.trials.high}}});
+        json.push_back({{"what", one.what},
+                        {"about", subject_name(one.about)},
+                        {"where", one.where},
+                        {"measure", one.measure},
+                        {"value", one.value},
+                        {"trials", one.trials.value},
+                        {"trials_range", {one.trials.low, one.trials.high}}});
     return json;
 }
 
@@ -64,8 +74,12 @@ Json directions_json(const DirectionsFound& directions) {
     const auto list = [](const std::vector<DirectionOfGroup>& all) {
         Json json = Json::array();
         for (const DirectionOfGroup& one : all)
-            json.push_back({{"group", one.group}, {"direction", one.name}, {"ratio", one.ratio}, {"interval", interval_json(one.interval)},
-                            {"level", one.level}, {"loadings", loadings_json(one.loadings)}});
+            json.push_back({{"group", one.group},
+                            {"direction", one.name},
+                            {"ratio", one.ratio},
+                            {"interval", interval_json(one.interval)},
+                            {"level", one.level},
+                            {"loadings", loadings_json(one.loadings)}});
         return json;
     };
     return {{"trials", directions.trials}, {"range95", interval_json(directions.range)}, {"spectrum", directions.spectrum},
@@ -143,9 +157,12 @@ public:
         for (const BiasEvidence& bias : arm_.evidence.bias)
             for (std::size_t k = 0; k < bias.step.size(); ++k)
                 add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
-        for (const DirectionOfGroup& one : arm_.consistency.directions.largest) add_direction("direction_largest:", one);
-        for (const DirectionOfGroup& one : arm_.consistency.directions.smallest) add_direction("direction_smallest:", one);
-        for (const DirectionOfGroup& one : arm_.consistency.directions.largest) add("direction_level:" + one.group, one.level, nan, none);
+        for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
+            add_direction("direction_largest:", one);
+        for (const DirectionOfGroup& one : arm_.consistency.directions.smallest)
+            add_direction("direction_smallest:", one);
+        for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
+            add("direction_level:" + one.group, one.level, nan, none);
         add_steps("direction_spectrum", arm_.consistency.directions.spectrum, {});
         add_steps("distance_from_chi_square", arm_.evidence.shape.distance, {});
         add("nci", arm_.evidence.credibility.nci, nan, none);
@@ -171,7 +188,8 @@ private:
     /// The ratio with its corrected interval, and a row for each component's share.
     void add_direction(const std::string& name, const DirectionOfGroup& direction) {
         add(name + direction.group, direction.ratio, nan, direction.interval);
-        for (const Loading& one : direction.loadings) add(name + direction.group + ":" + one.component, one.weight, nan, none);
+        for (const Loading& one : direction.loadings)
+            add(name + direction.group + ":" + one.component, one.weight, nan, none);
     }
     void add_block(const GroupEvidence& block) {
         add_moments("nees_per_dimension:" + block.block, block.run);

@@ -46,7 +46,8 @@ Html blocks_table(const Part& part) {
                  escaped(of_steps(block->anees.outside, block->anees.observed)),
                  escaped(number(mean_of(block->variance_ratio), 2)), number_html(block->accuracy.over_steps, 4),
                  number_html(block->accuracy.ratio, ratio_digits),
-                 interval_html(block->accuracy.ratio_ci95, ratio_digits), number_html_as(block->rounding, short_number(block->rounding))});
+                 interval_html(block->accuracy.ratio_ci95, ratio_digits),
+                 number_html_as(block->rounding, short_number(block->rounding))});
         }
     });
 }

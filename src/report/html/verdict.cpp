@@ -78,10 +78,12 @@ HtmlTable findings_table(const std::string& caption, const std::vector<Finding>&
 }
 
 HtmlTable suspicions_table(const ArmReport& arm) {
-    HtmlTable table(arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
-                    {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
+    HtmlTable table(
+        arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
+        {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
     for (const Suspicion& one : arm.consistency.suspicions)
-        table.row(escaped(one.what), {escaped(one.where + ", " + one.measure), escaped(short_number(one.value)), count_html(one.trials.value),
+        table.row(escaped(one.what), {escaped(one.where + ", " + one.measure), escaped(short_number(one.value)),
+                                      count_html(one.trials.value),
                                       count_html(one.trials.low) + " to "_html + count_html(one.trials.high)});
     return table;
 }
@@ -97,8 +99,7 @@ Html arm_findings(const ArmReport& arm) {
     const Html table =
         findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all)
             .html();
-    return element("h4", escaped(arm.arm) + " "_html + badge(arm)) + "\n"_html + element("ul", lines) +
-           "\n"_html +
+    return element("h4", escaped(arm.arm) + " "_html + badge(arm)) + "\n"_html + element("ul", lines) + "\n"_html +
            (all.size() <= most
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
