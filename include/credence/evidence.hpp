@@ -6,6 +6,7 @@
 #include <credence/results.hpp>
 #include <credence/statistics.hpp>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ struct GroupEvidence {
     std::vector<Coverage> coverage;
     std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
     Accuracy accuracy;
+    /// Bound on what rounding may have done to NEES, as a share of it [statistics/conditioning.hpp]; 0 where unknown.
+    double rounding = 0;
 };
 
 /// NEES of a component group with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown
@@ -134,6 +137,7 @@ struct Evidence {
     CredibilityEvidence credibility;
     WorstTrials worst;
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
+    double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
     std::int64_t failed_trials() const { return left_out + diverged; }

@@ -37,6 +37,8 @@ struct Record {
     bool has_innovations = false;
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
+    std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
+    std::function<Record()> in_other_chart{};  ///< reads the record again, with its errors in the other chart; else empty
 };
 
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of

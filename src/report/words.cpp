@@ -17,17 +17,16 @@ namespace {
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
-    return finding.what == "biased" || finding.what == "correlated" ? std::abs(finding.value) : std::abs(std::log(finding.value));
+    const bool about_0 = finding.about == Subject::bias || finding.about == Subject::whiteness;
+    return about_0 ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
-
-bool is_direction(const Finding& finding) { return finding.when.starts_with("direction "); }
 
 /// The findings of one kind: each group or component at its worst, the farthest off first.
 std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what, bool directions) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
-        if (finding.what != what || is_direction(finding) != directions) continue;
+        if (finding.what != what || (finding.about == Subject::direction) != directions) continue;
         const auto same =
             std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
         if (same == worst.end())
@@ -39,8 +38,9 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
               [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
-        parts.push_back(directions ? worst[i].where + ", " + worst[i].when.substr(10) + ": " + number(worst[i].value, 2) + " times P"
-                                   : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+        parts.push_back(directions
+                            ? worst[i].where + ", " + worst[i].when + ": " + number(worst[i].value, 2) + " times P"
+                            : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
     if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
     return parts;
 }
@@ -59,6 +59,29 @@ std::string needed_text(const TrialsNeeded& needed) {
            number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
 }
 
+/// `NEES/dim of all is 0.91 and not shown to be too small: 2500 trials would show it if it stays (1500 to 6200)`
+std::string suspicion_text(const Suspicion& suspicion) {
+    const std::string too = suspicion.about == Subject::bias ? "beyond the margin"
+                            : suspicion.what == "optimistic" ? "too large"
+                                                             : "too small";
+    return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) +
+           " and not shown to be " + too + ": " + number(suspicion.trials.value, 0) +
+           " trials would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
+           number(suspicion.trials.high, 0) + ")";
+}
+
+/// The suspicions, those that need the fewest trials first.
+std::vector<std::string> suspicion_texts(std::vector<Suspicion> suspicions) {
+    constexpr std::size_t most = 3;
+    std::sort(suspicions.begin(), suspicions.end(),
+              [](const Suspicion& a, const Suspicion& b) { return a.trials.value < b.trials.value; });
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i) texts.push_back(suspicion_text(suspicions[i]));
+    if (suspicions.size() > most)
+        texts.push_back(std::to_string(suspicions.size() - most) + " more look wrong and are not shown to be");
+    return texts;
+}
+
 /// The reasons why an arm is undecided, and whether there are any data.
 std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
@@ -68,6 +91,7 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
         return {arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
                                          : "the innovations of one trial do not decide: give more trials or steps"};
     std::vector<std::string> reasons = verdict.reasons;
+    std::ranges::copy(suspicion_texts(verdict.suspicions), std::back_inserter(reasons));
     if (const std::string text = needed_text(verdict.trials_needed); !text.empty()) reasons.push_back(text);
     return reasons;
 }

@@ -225,6 +225,8 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     evidence.worst = worst_trials(results, arm);
     add_largest_errors(results, arm, evidence.bias);
     evidence.moments = trial_moments(results, arm, evidence.groups);
+    evidence.epsilon = results.epsilon;
+    add_rounding(evidence);
     return evidence;
 }
 

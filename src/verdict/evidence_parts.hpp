@@ -20,4 +20,7 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
 /// The group and chart of the series f of role nees_in_chart.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
+/// Sets what rounding may have done to each group's NEES.
+void add_rounding(Evidence& evidence);
+
 }  // namespace credence

@@ -72,10 +72,19 @@ TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file
     CHECK(here.credence("report credence.h5").exit_code == 0);
     CHECK(here.credence("report credence.h5 >/dev/full").exit_code == 1);
     CHECK(here.credence("show >/dev/full").exit_code == 1);
-    const Outcome rows = here.shell("grep -c '^ekf-straight-constant,' t.csv");
+    const auto count = [&](const std::string& pattern) {
+        return std::stoi(here.shell("grep -c '" + pattern + "' t.csv").out);
+    };
+    const int rows = count("^ekf-straight-constant,"), of_directions = count(",direction_");
     // 2 arms and their pair, 6 figures each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9
     // components.
-    CHECK(rows.out == std::to_string(18 + 2 * (8 * (2 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2)) + "\n");
+    CHECK(rows - of_directions == 18 + 2 * (8 * (3 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2));
+    // Directions of the 7 groups of two components or more, and those of all 9 components; shares are as many as
+    // matter.
+    for (const char* name : {"direction_largest:[^:,]*,", "direction_smallest:[^:,]*,", "direction_level:"})
+        CHECK(count(std::string(",") + name) == 2 * 7);
+    CHECK(count(",direction_spectrum:") == 2 * 9);
+    CHECK(count(",direction_largest:all:") > 2);
 }
 
 TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives",

@@ -34,6 +34,8 @@ public:
     explicit RecordFile(const hdf5::Handle& root, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
     const RecordShape& shape() const { return layout_.shape; }
+    /// Of truth and estimate, where they lie on a manifold.
+    std::optional<Manifold>& manifold() { return layout_.data.manifold; }
 
     /// The part that starts at a trial and step, as large as allowed, but at least one step.
     RecordPart part_at(std::int64_t trial, int step) const;

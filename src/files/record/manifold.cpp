@@ -97,6 +97,11 @@ Manifold Manifold::read(const hdf5::Handle& root) {
     return manifold;
 }
 
+bool Manifold::has_charts() const {
+    return std::ranges::any_of(factors_,
+                               [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
+}
+
 void Manifold::error(const double* truth, const double* estimate, double* error) const {
     for (const Factor& factor : factors_) {
         double sum = 0;  // NaN or infinite where a coordinate is

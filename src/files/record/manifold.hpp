@@ -21,6 +21,11 @@ public:
     int coordinates() const { return coordinates_; }  ///< q, of a truth and of an estimate
     int dimension() const { return dimension_; }      ///< n, of the error
 
+    ErrorChart chart() const { return chart_; }
+    /// Whether the error differs between the charts: angles and numbers alone have but one.
+    bool has_charts() const;
+    void take_other_chart() { chart_ = chart_ == ErrorChart::local ? ErrorChart::global : ErrorChart::local; }
+
     /// Writes the error [n]. In a factor of the product where a coordinate is not finite, all of it is so: NaN, or
     /// infinite.
     void error(const double* truth, const double* estimate, double* error) const;

@@ -52,12 +52,32 @@ Record read_record(const RecordFile& file, const std::string& path,
     return totals.finish();
 }
 
-Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
+namespace {
+
+Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, bool other_chart) {
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name parts of the state in the attribute `blocks`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const hdf5::Handle& root) { return read_record(RecordFile(root), path, progress); });
+                           [&](const hdf5::Handle& root) {
+                               RecordFile file(root);
+                               std::optional<Manifold>& manifold = file.manifold();
+                               const bool has_charts = manifold && manifold->has_charts();
+                               if (has_charts && other_chart) manifold->take_other_chart();
+                               Record record = read_record(file, path, progress);
+                               if (!has_charts) return record;
+                               record.chart = manifold->chart() == ErrorChart::local ? "local" : "global";
+                               record.in_other_chart = [path, other_chart] {
+                                   return read_in_chart(path, {}, !other_chart);
+                               };
+                               return record;
+                           });
+}
+
+}  // namespace
+
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
+    return read_in_chart(path, progress, false);
 }
 
 }  // namespace credence

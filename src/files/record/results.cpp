@@ -106,6 +106,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.scenario.groups = shape.groups;
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
+    results.epsilon = std::max(results.epsilon, shape.covariance_epsilon);
     results.arms.push_back(empty_arm(results));
     return results;
 }

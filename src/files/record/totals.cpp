@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< limit on the NEES values, and on the cells
 constexpr std::size_t most_troubles = 20;
+constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: where rounding may do more, NIS is left out
 
 std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
@@ -95,6 +96,10 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
     if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
         note(step, Status::diverged, beyond);
+    if (judge_.innovation_rounding() > accuracy_of_nis) {
+        judge_.leave_out_innovation(values, products_.now.data());
+        ++innovations_left_out_;
+    }
     judge_.forget_unknown(values);
     set_dimension(k);
     present_.push_back(k);
@@ -240,6 +245,9 @@ void RecordTotals::add_distribution() {
 }
 
 Record RecordTotals::finish() {
+    if (innovations_left_out_ > 0)
+        record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
+                                             " steps are left out: their covariance cannot be inverted to 0.5 %.");
     if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
         arm().distribution_distance[k] = shape_.version == 1 ? chi_square_distance(std::move(nees_[k]), shape_.n)

@@ -57,6 +57,7 @@ private:
     PresenceChecker presence_;                   ///< of version 2
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
+    std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
     std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
     std::vector<double> bounds_by_dimension_;    ///< [n + 1, levels] the same of a state of that dimension; 0: not known yet

@@ -61,6 +61,7 @@ Json ratios_json(const Ratios& of) {
 
 Json group_json(const GroupEvidence& group) {
     Json json = ratios_json(group);
+    json["rounding"] = group.rounding;
     json["variance_ratio"] = group.variance_ratio;
     json["coverage"] = each_json(group.coverage, coverage_json);
     json["accuracy"] = accuracy_json(group.accuracy);

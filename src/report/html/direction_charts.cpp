@@ -88,6 +88,13 @@ Html ellipse_chart(const Part& part, std::size_t i) {
                  svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
 }
 
+/// `0.70711 x, -0.70711 y`
+std::string shares_text(const std::vector<Loading>& loadings) {
+    std::vector<std::string> shares;
+    for (const Loading& one : loadings) shares.push_back(short_number(one.weight) + " " + one.component);
+    return joined(shares);
+}
+
 }  // namespace
 
 Html direction_charts(const Part& part) {
@@ -99,15 +106,17 @@ Html direction_charts(const Part& part) {
 }
 
 Html direction_tables(const Part& part) {
-    Table table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
-                    {"arm, group", "direction", "ratio", "interval, corrected"});
+    Table table(
+        part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
+        {"arm, group", "direction", "ratio", "interval, corrected", "shares of the components, in sigmas"});
     Table spectrum(part.scenario.name + ": all directions of the whole state",
                        {"arm", "ratios", "every direction within, 95 %", "from these trials"});
     for (const ArmReport* arm : part.arms) {
         const DirectionsFound& found = arm->consistency.directions;
         for (const auto* all : {&found.largest, &found.smallest})
             for (const DirectionOfGroup& one : *all)
-                table.row(arm->arm + ", " + one.group, {one.name, short_cell(one.ratio), range_cell(one.interval)});
+                table.row(arm->arm + ", " + one.group, {one.name, short_cell(one.ratio), range_cell(one.interval),
+                                                        shares_text(one.loadings)});
         if (found.spectrum.empty()) continue;
         Cell ratios;
         for (const double ratio : found.spectrum) ratios = ratios + (ratios.pieces().empty() ? "" : ", ") + short_cell(ratio);

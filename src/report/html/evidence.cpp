@@ -32,7 +32,7 @@ Html groups_table(const Part& part) {
     Table table(
         part.scenario.name + ": groups of the state, over all steps, and how many steps are outside their bands",
         {"group", "dimension", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band", "var/2dim",
-         "RMSE", "RMSE/sigma", "95 %"});
+         "RMSE", "RMSE/sigma", "95 %", "bound on NEES' rounding"});
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const GroupEvidence* group : shown_groups(evidence)) {
             const Interval over_steps = over_steps95(*group);
@@ -46,7 +46,8 @@ Html groups_table(const Part& part) {
                  of_steps(group->anees.outside, group->anees.observed),
                  number_cell(mean_of(group->variance_ratio), 2), number_cell(group->accuracy.over_steps, 4),
                  number_cell(group->accuracy.ratio, ratio_digits),
-                 interval_cell(group->accuracy.ratio_ci95, ratio_digits)});
+                 interval_cell(group->accuracy.ratio_ci95, ratio_digits),
+                 count_cell(group->rounding)});
         }
     });
 }

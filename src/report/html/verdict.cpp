@@ -51,9 +51,19 @@ Table findings_table(const std::string& caption, const std::vector<Finding>& fin
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
         table.row(finding.what,
-                  {finding.where, finding.when, number_cell_within(finding.value, half),
+                  {finding.where, when_text(finding), number_cell_within(finding.value, half),
                    interval_cell(finding.interval, decimals_for(half))});
     }
+    return table;
+}
+
+Table suspicions_table(const ArmReport& arm) {
+    Table table(
+        arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
+        {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
+    for (const Suspicion& one : arm.consistency.suspicions)
+        table.row(one.what, {one.where + ", " + one.measure, short_cell(one.value), count_cell(one.trials.value),
+                             count_cell(one.trials.low) + " to " + count_cell(one.trials.high)});
     return table;
 }
 
@@ -67,12 +77,12 @@ Html arm_findings(const ArmReport& arm) {
     all.insert(all.end(), verdict.cautions.begin(), verdict.cautions.end());
     const Html table = html_of(
         findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all));
-    return element("h4", escaped(arm.arm) + " "_html + html_of(verdict_cell(arm))) + "\n"_html + element("ul", lines) +
-           "\n"_html +
+    return element("h4", escaped(arm.arm) + " "_html + html_of(verdict_cell(arm))) + "\n"_html + element("ul", lines) + "\n"_html +
            (all.size() <= most
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
-                         table));
+                         table)) +
+           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm)));
 }
 
 }  // namespace
