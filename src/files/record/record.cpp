@@ -1,6 +1,7 @@
+#include <credence/error.hpp>
 #include <credence/record.hpp>
 
-#include "files/record/file.hpp"
+#include "files/record/reader.hpp"
 #include "files/record/totals.hpp"
 
 #include <chrono>
@@ -30,17 +31,17 @@ void add_part(const RecordPart& part, const RecordValues& values, RecordTotals& 
 
 }  // namespace
 
-Record read_record(const RecordFile& file, const std::string& path,
-                         const std::function<void(const Progress&)>& progress) {
+Record read_record(const RecordReader& reader, const std::string& path,
+                   const std::function<void(const Progress&)>& progress) {
     const auto start = std::chrono::steady_clock::now();
-    const RecordShape& shape = file.shape();
+    const RecordShape& shape = reader.shape();
     RecordTotals totals(shape, path);
     RecordValues values;
     for (std::int64_t trial = 0; trial < shape.trials;) {
         std::int64_t trials = 1;
         for (int step = 0; step < shape.steps;) {
-            const RecordPart part = file.part_at(trial, step);
-            file.read(part, values);
+            const RecordPart part = reader.part_at(trial, step);
+            reader.read(part, values);
             add_part(part, values, totals);
             step += part.steps;
             trials = part.trials;
@@ -57,7 +58,19 @@ Record read_record(const std::string& path, const std::function<void(const Progr
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name parts of the state in the attribute `blocks`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const hdf5::Handle& root) { return read_record(RecordFile(root), path, progress); });
+                           [&](const hdf5::Handle& root) {
+                               return read_record(RecordReader(FileSource(root)), path, progress);
+                           });
+}
+
+Record read_record(const RecordArrays& arrays, const std::string& name,
+                   const std::function<void(const Progress&)>& progress) {
+    constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;  // the arrays are in memory: a part fits a cache
+    try {
+        return read_record(RecordReader(ArraySource(arrays), part_numbers), name, progress);
+    } catch (const hdf5::Error& error) {
+        throw InputError(error.what() + (". " + error.remedy()) + ".");
+    }
 }
 
 }  // namespace credence
