@@ -26,9 +26,17 @@ auto alone(const Work& work) {
     return work();
 }
 
-/// Calls the listener, on whatever thread.
-inline void tell(const Listener& listener, const Progress& progress) {
-    if (listener) (*listener)(progress.done, progress.total);
-}
+/// Whether Python is to hear of progress: ten times a second, and of the end. Its lock may take a while to get.
+class Due {
+public:
+    bool operator()(const Progress& now) {
+        if (now.seconds < next_ && now.done < now.total) return false;
+        next_ = now.seconds + 0.1;
+        return true;
+    }
+
+private:
+    double next_ = 0;
+};
 
 }  // namespace credence::python

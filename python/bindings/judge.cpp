@@ -60,10 +60,11 @@ Limits limits_of(const Options& options) {
 template <class Read>
 Judgement judgement(const std::string& name, const Options& options, const Listener& listener, const Read& read) {
     const Limits limits = limits_of(options);
-    const auto progress = [&](const Progress& now) {
+    const auto progress = [&, due = Due()](const Progress& now) mutable {
+        if (!due(now)) return;
         const nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
-        tell(listener, now);
+        if (listener) (*listener)(now.done, now.total);
     };
     return alone([&] { return Judgement{make_record_report(read(progress), name, limits), name}; });
 }

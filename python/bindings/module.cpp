@@ -42,10 +42,11 @@ private:
 class Listening {
 public:
     explicit Listening(const Listener& listener) {
-        cli::listen_to_progress([&listener](const Progress& now) {
+        cli::listen_to_progress([&listener, due = Due()](const Progress& now) mutable {
+            if (!listener || !due(now)) return;
             const nb::gil_scoped_acquire held;
             try {
-                tell(listener, now);
+                (*listener)(now.done, now.total);
             } catch (nb::python_error& error) {
                 error.discard_as_unraisable("credence: progress");  // no exception may leave a thread of a run
             }
@@ -59,6 +60,7 @@ public:
 /// Runs a command line. Returns its exit code, and what it would have printed on the standard output and error stream.
 std::tuple<int, std::string, std::string> command(const std::vector<std::string>& words, const Listener& listener) {
     return alone([&] {
+        cli::Interrupt::keep_process();
         const Captured out(std::cout), err(std::cerr);
         const Listening listening(listener);
         cli::check_process(words);
@@ -81,10 +83,7 @@ int run_program(const std::vector<nb::bytes>& arguments) {
 NB_MODULE(_core, module) {
     nb::exception<InputError>(module, "InputError", PyExc_ValueError);
     nb::exception<Failure>(module, "Failure", PyExc_RuntimeError);
-    module.def("command", [](const std::vector<std::string>& words, const Listener& listener) {
-        cli::Interrupt::keep_process();
-        return command(words, listener);
-    }, nb::arg("words"), nb::arg("progress").none());
+    module.def("command", command, nb::arg("words"), nb::arg("progress").none());
     module.def("program", run_program, nb::arg("arguments"));
     bind_judge(module);
 }

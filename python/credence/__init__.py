@@ -15,21 +15,29 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
     from credence.judging import Verdict, assert_consistent, judge
+    from credence.pictures import animate, plot
     from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
-    from credence.study import Study, open
+    from credence.study import Arm, Scenario, Study, open
+    from credence.trajectory import Trajectory, open_trajectories
 
 _homes = {
+    "Arm": "study",
     "Comparison": "program",
     "Failure": "_core",
     "InputError": "_core",
     "Interrupted": "program",
     "Report": "program",
+    "Scenario": "study",
     "Study": "study",
+    "Trajectory": "trajectory",
     "Verdict": "judging",
+    "animate": "pictures",
     "assert_consistent": "judging",
     "compare": "program",
     "judge": "judging",
     "open": "study",
+    "open_trajectories": "trajectory",
+    "plot": "pictures",
     "replay": "program",
     "report": "program",
     "resume": "program",
@@ -38,17 +46,23 @@ _homes = {
 }
 
 __all__ = [
+    "Arm",
     "Comparison",
     "Failure",
     "InputError",
     "Interrupted",
     "Report",
+    "Scenario",
     "Study",
+    "Trajectory",
     "Verdict",
+    "animate",
     "assert_consistent",
     "compare",
     "judge",
     "open",
+    "open_trajectories",
+    "plot",
     "replay",
     "report",
     "resume",

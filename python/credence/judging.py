@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 from credence import _core
 from credence._calls import errors_of_arguments, framed, progress_bar
@@ -232,12 +232,21 @@ def judge(
         )
 
 
-def assert_consistent(error: object = None, covariance: object = None, **arguments: Any) -> None:
+P = ParamSpec("P")
+
+
+def _with_arguments_of(_: Callable[P, object]) -> Callable[[Callable[..., None]], Callable[P, None]]:
+    """Let type checkers know that a function takes the arguments of another."""
+    return lambda function: function
+
+
+@_with_arguments_of(judge)
+def assert_consistent(*arguments: Any, **named: Any) -> None:
     """Raise AssertionError with the text of the report unless the verdict is ``consistent``.
 
     It takes the arguments of `judge`.
     """
     __tracebackhide__ = True  # pytest then shows the line that asserts
-    verdict = judge(error, covariance, **arguments)
+    verdict = judge(*arguments, **named)
     if not verdict.is_consistent:
         raise AssertionError(f"the filter is not shown to be consistent\n\n{verdict}")

@@ -18,6 +18,7 @@ from credence._calls import errors_of_arguments, framed, progress_bar, said
 
 if TYPE_CHECKING:
     from credence.study import Study
+    from credence.trajectory import Trajectory
 
     File = str | os.PathLike[str]
     Settings = Mapping[str, object]
@@ -115,9 +116,9 @@ def _finish(words: list[str], output: str, progress: bool | None, folder: str | 
     try:
         code, _, err = _command(words, progress)
         study = open_study(output)
-    except BaseException:
+    except _core.InputError:  # nothing was run; after a failure the folder has what was done
         if folder is not None:
-            shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(folder)
         raise
     if folder is not None:
         weakref.finalize(study, shutil.rmtree, folder, ignore_errors=True)
@@ -243,7 +244,7 @@ def replay(
     set: Settings | None = None,
     output: File | None = None,
     overwrite: bool = False,
-) -> list[dict[str, Any]]:
+) -> list[Trajectory]:
     """Run one trial again, pose by pose: of a study, or of a scenario file on recorded noise.
 
     Parameters
@@ -259,21 +260,29 @@ def replay(
     set : dict
         Values of keys in place of the scenario's.
     output : path
-        Where to write the trajectory: truth, estimates, covariances, innovations.
+        The trajectory file. Without it the file is temporary.
     overwrite : bool
         Whether `output` may replace a file.
 
     Returns
     -------
-    list of dict
-        The columns of the trial, for each arm: what ``credence replay --format json`` prints.
+    list of Trajectory
+        The trial under the arm; on recorded noise, under each arm.
+
+    Raises
+    ------
+    InputError
+        A ValueError: there is no such trial, or the output cannot be written.
+    Failure
+        The trial differs from the study's.
     """
-    words = _option_words(
-        format="json", scenario=scenario, arm=arm, trial=trial, noise=noise, output=output, overwrite=overwrite
-    )
-    _, out, _ = _command(["replay", _path_of(study), *words, *_setting_words(set, None)])
-    trajectories: list[dict[str, Any]] = json.loads(out)
-    return trajectories
+    from credence.trajectory import open_trajectories
+
+    words = _option_words(scenario=scenario, arm=arm, trial=trial, noise=noise, overwrite=overwrite)
+    with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+        path = os.path.join(folder, "trial.h5") if output is None else os.fspath(output)
+        _command(["replay", _path_of(study), *words, *_setting_words(set, None), f"--output={path}"])
+        return open_trajectories(path)  # the open file outlives its name
 
 
 class Printed:

@@ -31,8 +31,12 @@ def with_innovations(rng):
     innovation_covariance = covariances(rng, 3)
     innovation = drawn(rng, innovation_covariance)
     innovation[rng.random(innovation.shape) < 0.2] = np.nan
-    return {**joint(rng), "innovation": innovation, "innovation_covariance": innovation_covariance,
-            "row_groups": {"gps": [0, 2], "baro": [1]}}
+    return {
+        **joint(rng),
+        "innovation": innovation,
+        "innovation_covariance": innovation_covariance,
+        "row_groups": {"gps": [0, 2], "baro": [1]},
+    }
 
 
 def variances(rng):
@@ -55,13 +59,20 @@ def of_groups(rng):
     pose = record["covariance"][..., :2, :2]
     velocity = record["covariance"][..., 2:, 2:]
     nees = np.einsum("...i,...ij,...j", record["error"][..., 2:], np.linalg.inv(velocity), record["error"][..., 2:])
-    return {"error": record["error"], "groups": {"pose": [0, 1], "velocity": [2, 3]}, "group_covariance": {"pose": pose},
-            "group_nees": {"velocity": nees}}
+    return {
+        "error": record["error"],
+        "groups": {"pose": [0, 1], "velocity": [2, 3]},
+        "group_covariance": {"pose": pose},
+        "group_nees": {"velocity": nees},
+    }
 
 
 def nees_alone(rng):
-    return {"nees": rng.chisquare(4, (TRIALS, STEPS)), "group_nees": {"pose": rng.chisquare(3, (TRIALS, STEPS))},
-            "dimension": {"all": 4, "pose": 3}}
+    return {
+        "nees": rng.chisquare(4, (TRIALS, STEPS)),
+        "group_nees": {"pose": rng.chisquare(3, (TRIALS, STEPS))},
+        "dimension": {"all": 4, "pose": 3},
+    }
 
 
 def quaternions(rng):
@@ -70,18 +81,31 @@ def quaternions(rng):
 
 
 def poses(rng, order, chart):
-    truth = np.concatenate([rng.normal(size=(TRIALS, STEPS, 3)), quaternions(rng), rng.normal(size=(TRIALS, STEPS, 2))], -1)
+    truth = np.concatenate(
+        [rng.normal(size=(TRIALS, STEPS, 3)), quaternions(rng), rng.normal(size=(TRIALS, STEPS, 2))], -1
+    )
     estimate = truth + 0.01 * rng.normal(size=truth.shape)
     estimate[..., 3:7] /= np.linalg.norm(estimate[..., 3:7], axis=-1, keepdims=True)
-    return {"truth": truth, "estimate": estimate, "manifold": "SE3 x R2", "chart": chart, "quaternion": order,
-            "covariance": 1e-4 * covariances(rng, 8)}
+    return {
+        "truth": truth,
+        "estimate": estimate,
+        "manifold": "SE3 x R2",
+        "chart": chart,
+        "quaternion": order,
+        "covariance": 1e-4 * covariances(rng, 8),
+    }
 
 
 def planar(rng):
     truth = rng.normal(size=(TRIALS, STEPS, 4))
     covariance = 1e-3 * covariances(rng, 4)
-    return {"truth": truth, "estimate": truth + drawn(rng, covariance), "covariance": covariance,
-            "manifold": "SE2 x SO2", "chart": "global"}
+    return {
+        "truth": truth,
+        "estimate": truth + drawn(rng, covariance),
+        "covariance": covariance,
+        "manifold": "SE2 x SO2",
+        "chart": "global",
+    }
 
 
 def troubled(rng):
@@ -147,8 +171,11 @@ def write(path, record):
                     file[f"group/{name}/{key.removeprefix('group_')}"] = array
             elif key != "dimension":
                 file.attrs[key] = value
-        dimensions = record.get("dimension") or {name: len(members) for name, members in (groups or {}).items()} \
-            if isinstance(groups, Mapping) or "dimension" in record else {}
+        dimensions = (
+            record.get("dimension") or {name: len(members) for name, members in (groups or {}).items()}
+            if isinstance(groups, Mapping) or "dimension" in record
+            else {}
+        )
         for name, dimension in dimensions.items():
             nees = "nees" if name == "all" else f"group/{name}/nees"
             if nees in file:

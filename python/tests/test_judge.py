@@ -38,8 +38,14 @@ def test_the_page_is_that_of_the_program(tmp_path, program):
     path = records.write(tmp_path / "joint.h5", CORPUS["joint"])
     verdict = credence.judge(**CORPUS["joint"], name=str(path))
     assert verdict.html == program("judge", path, "--format", "html", "--quiet")[1]
-    assert verdict.html.replace("&", "&amp;").replace('"', "&quot;").replace("<", "&lt;").replace(">", "&gt;").replace(
-        "'", "&#x27;") in verdict._repr_html_()
+    assert (
+        verdict.html.replace("&", "&amp;")
+        .replace('"', "&quot;")
+        .replace("<", "&lt;")
+        .replace(">", "&gt;")
+        .replace("'", "&#x27;")
+        in verdict._repr_html_()
+    )
 
 
 def test_margins_are_those_of_the_program(tmp_path, program):
@@ -113,11 +119,23 @@ def test_no_copy_of_the_arrays_is_made():
     ("arguments", "message"),
     [
         ({"covariance": np.zeros((3, 2, 2, 3))}, "covariance: does not fit: it is [3, 2, 2, 3] and error [3, 2, 2]."),
-        ({"covariance": np.array([[[[1, 0.5], [0, 1]]] * 2] * 3)}, "covariance: trial 0, step 0 (both counted from 0) is not"),
-        ({"covariance": np.ones((3, 2, 2, 2)), "groups": {"pose": [0, 2]}}, "groups: `pose 0 2` goes beyond the 2 components"),
+        (
+            {"covariance": np.array([[[[1, 0.5], [0, 1]]] * 2] * 3)},
+            "covariance: trial 0, step 0 (both counted from 0) is not",
+        ),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "groups": {"pose": [0, 2]}},
+            "groups: `pose 0 2` goes beyond the 2 components",
+        ),
         ({"covariance": np.ones((3, 2, 2, 2)), "margin": 2}, "invalid margin=2 (must be between 0 and 100 %"),
-        ({"covariance": np.ones((3, 2, 2, 2)), "margin_direction": 0.01}, "invalid margin_direction=0.01 (less than the margin"),
-        ({"covariance": np.ones((3, 2, 2, 2)), "innovation": np.ones((3, 2, 1))}, "innovation_covariance: is missing, but"),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "margin_direction": 0.01},
+            "invalid margin_direction=0.01 (less than the margin",
+        ),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "innovation": np.ones((3, 2, 1))},
+            "innovation_covariance: is missing, but",
+        ),
         ({}, "covariance: is missing."),
     ],
 )

@@ -41,10 +41,27 @@ def contents(path):
 
 
 def test_run_writes_what_the_program_writes(scenario, tmp_path, program):
-    assert program("run", scenario, "--trials=600", "--seed=3", "--set=noise.heading=0.02",
-                   "--sweep=sensor.sigma=0.1,0.2", "-o", tmp_path / "program.h5")[0] == 0
-    study = credence.run(scenario, trials=600, seed=3, set={"noise.heading": 0.02}, sweep={"sensor.sigma": [0.1, 0.2]},
-                         output=tmp_path / "package.h5")
+    assert (
+        program(
+            "run",
+            scenario,
+            "--trials=600",
+            "--seed=3",
+            "--set=noise.heading=0.02",
+            "--sweep=sensor.sigma=0.1,0.2",
+            "-o",
+            tmp_path / "program.h5",
+        )[0]
+        == 0
+    )
+    study = credence.run(
+        scenario,
+        trials=600,
+        seed=3,
+        set={"noise.heading": 0.02},
+        sweep={"sensor.sigma": [0.1, 0.2]},
+        output=tmp_path / "package.h5",
+    )
     assert study.complete
     theirs, ours = contents(tmp_path / "program.h5"), contents(tmp_path / "package.h5")
     assert len(ours) > 100
@@ -82,15 +99,23 @@ def test_compare_report_and_replay_say_what_the_program_says(scenario, tmp_path,
     assert comparison.json == json.loads(program("compare", path, "--arms=greedy,fixed", "--format=json")[1])
     assert str(comparison) == program("compare", path, "--arms=greedy,fixed")[1]
     assert comparison.html.startswith("<!")
-    assert credence.report(path, margin=0.2).json == json.loads(program("report", path, "--margin=0.2", "--format=json")[1])
-    replayed = credence.replay(study, scenario="small", arm="fixed", trial=17, output=tmp_path / "trial.h5")
-    printed = program("replay", path, "--scenario=small", "--arm=fixed", "--trial=17", "--format=json")[1]
-    assert replayed == json.loads(printed)
-    assert (tmp_path / "trial.h5").exists()
+    assert credence.report(path, margin=0.2).json == json.loads(
+        program("report", path, "--margin=0.2", "--format=json")[1]
+    )
+    (trial,) = credence.replay(study, scenario="small", arm="fixed", trial=17)
+    (printed,) = json.loads(
+        program("replay", path, "--scenario=small", "--arm=fixed", "--trial=17", "--format=json")[1]
+    )
+    assert trial.columns["trace_P"] == printed["trace_P"]
+    assert trial.trial == 17
+    with pytest.raises(credence.InputError, match="invalid trial=256"):
+        credence.replay(study, scenario="small", arm="fixed", trial=256)
 
 
 def test_show_resolves_a_scenario(scenario, program):
-    assert credence.show(scenario, set={"noise.heading": 0.5}) == program("show", scenario, "--set=noise.heading=0.5")[1]
+    assert (
+        credence.show(scenario, set={"noise.heading": 0.5}) == program("show", scenario, "--set=noise.heading=0.5")[1]
+    )
     assert credence.show() == program("show")[1]
 
 
@@ -127,16 +152,26 @@ def test_ctrl_c_keeps_what_is_done(tmp_path):
             print(stopped)
             print(stopped.study.complete, stopped.study.trials)
     """
-    done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, check=True,
-                          cwd=tmp_path, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=tmp_path,
+        timeout=120,
+    )
     first, second = done.stdout.splitlines()
     assert first.startswith("credence run: stopped by SIGINT with ")
     assert second == "False 100000000"
 
 
 def test_ctrl_c_stops_the_program_as_ever(scenario, tmp_path):
-    run = subprocess.Popen([sys.executable, "-m", "credence", "run", scenario, "--trials=100000000", "--keep=aggregates",
-                            "--force"], cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    run = subprocess.Popen(
+        [sys.executable, "-m", "credence", "run", scenario, "--trials=100000000", "--keep=aggregates", "--force"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     while not (tmp_path / "credence.h5.journal").exists():
         time.sleep(0.01)
         assert run.poll() is None
@@ -174,12 +209,15 @@ def _in_a_folder_of_its_own(tmp_path, monkeypatch):
 def test_the_module_is_the_program(program):
     done = subprocess.run([sys.executable, "-m", "credence", "--version"], capture_output=True, text=True, check=True)
     assert done.stdout == program("--version")[1]
-    wrong = subprocess.run([sys.executable, "-m", "credence", "judge", "missing.h5"], capture_output=True, text=True, check=False)
+    wrong = subprocess.run(
+        [sys.executable, "-m", "credence", "judge", "missing.h5"], capture_output=True, text=True, check=False
+    )
     assert (wrong.returncode, wrong.stderr) == (2, program("judge", "missing.h5")[2])
 
 
 def test_importing_is_quick_and_lazy():
-    script = "import sys, credence; print([m for m in ('numpy', 'h5py', 'matplotlib', 'credence._core') if m in sys.modules])"
+    heavy = ["numpy", "h5py", "matplotlib", "credence._core"]
+    script = f"import sys, credence; print([name for name in {heavy} if name in sys.modules])"
     times = []
     for _ in range(3):
         start = time.perf_counter()
