@@ -9,6 +9,7 @@
 
 using namespace credence;
 using namespace credence::test;
+using Catch::Matchers::Contains;
 
 namespace {
 
