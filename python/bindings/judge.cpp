@@ -42,7 +42,8 @@ struct Judgement {
 RecordArray described(const std::string& path, const Array& array, double epsilon) {
     RecordArray described{path, array.data(), RecordArray::Type::real64, {}, {}, epsilon};
     if (array.dtype() == nb::dtype<float>()) described.type = RecordArray::Type::real32;
-    else if (array.dtype() != nb::dtype<double>()) throw nb::type_error((path + " holds neither float64 nor float32").c_str());
+    else if (array.dtype() != nb::dtype<double>())
+        throw nb::type_error((path + " holds neither float64 nor float32").c_str());
     for (std::size_t axis = 0; axis < array.ndim(); ++axis) {
         described.extents.push_back(static_cast<std::int64_t>(array.shape(axis)));
         described.strides.push_back(array.stride(axis));

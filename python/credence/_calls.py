@@ -14,13 +14,17 @@ from credence import _core
 
 
 def said(message: str) -> str:
-    """Return a message of the program with its options and places in files as the names of arguments."""
-    message = re.sub(r"(?<![\w`-])--([a-z]+(?:-[a-z]+)*)", lambda option: option[1].replace("-", "_"), message)
-    return re.sub(r"(?<![\w./])/@?(?=[a-z])", "", message)
+    """Return a message of the program with its options as the names of arguments."""
+    return re.sub(r"(?<![\w`-])--([a-z]+(?:-[a-z]+)*)", lambda option: option[1].replace("-", "_"), message)
+
+
+def said_of_arrays(message: str) -> str:
+    """Return the same with the places of a record, such as ``/error`` and ``/@groups``, as the names of arguments."""
+    return re.sub(r"(?<![\w./])/@?(?=[a-z])", "", said(message))
 
 
 @contextlib.contextmanager
-def errors_of_arguments() -> Iterator[None]:
+def errors_of_arguments(said: Callable[[str], str] = said) -> Iterator[None]:
     """Raise the program's errors with the names of arguments."""
     try:
         yield

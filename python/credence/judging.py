@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from credence import _core
-from credence._calls import errors_of_arguments, framed, progress_bar
+from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
 
 if TYPE_CHECKING:
     import numpy as np
@@ -215,21 +215,15 @@ def judge(
     }
     given_arrays = {path: array for path, array in arrays.items() if array is not None}
     given_texts = {key: text for key, text in texts.items() if text is not None}
-    with errors_of_arguments(), progress_bar(progress) as bar:
-        if isinstance(error, (str, os.PathLike)):
-            if len(given_arrays) > 1 or given_texts:
-                raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
+    if isinstance(error, (str, os.PathLike)):
+        if len(given_arrays) > 1 or given_texts:
+            raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
+        with errors_of_arguments(), progress_bar(progress) as bar:
             return Verdict(_core.judge_file(os.fspath(error), given_options, bar))
-        return Verdict(
-            _core.judge(
-                {path: _array(array) for path, array in given_arrays.items()},
-                given_texts,
-                _dimensions(dimension, groups, nees is not None, own["nees"]),
-                given_options,
-                name,
-                bar,
-            )
-        )
+    taken = {path: _array(array) for path, array in given_arrays.items()}
+    dimensions = _dimensions(dimension, groups, nees is not None, own["nees"])
+    with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
+        return Verdict(_core.judge(taken, given_texts, dimensions, given_options, name, bar))
 
 
 P = ParamSpec("P")

@@ -2,10 +2,9 @@
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
+#include <limits>
 
 #include "record_support.hpp"
-
-#include <limits>
 
 using namespace credence;
 using namespace credence::test;
@@ -22,10 +21,16 @@ struct Laid {
     std::vector<T> values;
     RecordArray array;
 
-    Laid(const std::string& path, const hdf5::Extents& extents, const std::vector<double>& plain, std::int64_t spread = 1)
+    Laid(const std::string& path, const hdf5::Extents& extents, const std::vector<double>& plain,
+         std::int64_t spread = 1)
         : values(plain.size() * static_cast<std::size_t>(spread), T(-7)) {
-        for (std::size_t i = 0; i < plain.size(); ++i) values[i * static_cast<std::size_t>(spread)] = static_cast<T>(plain[i]);
-        array = {path, values.data(), sizeof(T) == 4 ? RecordArray::Type::real32 : RecordArray::Type::real64, {}, {},
+        for (std::size_t i = 0; i < plain.size(); ++i)
+            values[i * static_cast<std::size_t>(spread)] = static_cast<T>(plain[i]);
+        array = {path,
+                 values.data(),
+                 sizeof(T) == 4 ? RecordArray::Type::real32 : RecordArray::Type::real64,
+                 {},
+                 {},
                  static_cast<double>(std::numeric_limits<T>::epsilon())};
         std::int64_t stride = spread;
         for (auto extent = extents.rbegin(); extent != extents.rend(); ++extent) {
@@ -51,8 +56,8 @@ TEST_CASE("record: arrays of doubles with any strides, and their attributes, are
             covariance("covariance", extents_of(drawn, {3, 3}), flat(drawn.covariance)),
             innovation("innovation", extents_of(drawn, {2}), flat(drawn.innovation)),
             S("innovation_covariance", extents_of(drawn, {2, 2}), flat(drawn.innovation_covariance), spread);
-        const RecordArrays arrays{{error.array, covariance.array, innovation.array, S.array},
-                                  {{"groups", groups}, {"row_groups", rows}}, {}};
+        const RecordArrays arrays{
+            {error.array, covariance.array, innovation.array, S.array}, {{"groups", groups}, {"row_groups", rows}}, {}};
         CHECK(said(read_record(arrays, "record.h5")) == file);
     }
 }
@@ -60,7 +65,8 @@ TEST_CASE("record: arrays of doubles with any strides, and their attributes, are
 TEST_CASE("record: arrays of singles, and of NEES with their dimension, are read as from a file") {
     const DrawnRecord drawn(50, 4, 2);
     const hdf5::Extents vectors = extents_of(drawn, {2}), matrices = extents_of(drawn, {2, 2});
-    const Laid<float> error("error", vectors, flat(drawn.error)), covariance("covariance", matrices, flat(drawn.covariance));
+    const Laid<float> error("error", vectors, flat(drawn.error)),
+        covariance("covariance", matrices, flat(drawn.covariance));
     CHECK(said(read_record({{error.array, covariance.array}, {}, {}}, "record.h5")) ==
           said(read_written([&](const Handle& root) {
               write_values<float>(root, "error", vectors, flat(drawn.error));
@@ -68,9 +74,11 @@ TEST_CASE("record: arrays of singles, and of NEES with their dimension, are read
           })));
 
     std::vector<double> values;
-    for (std::size_t i = 0; i < drawn.error.size(); ++i) values.push_back(plain_nees(drawn.error[i], drawn.covariance[i], {0, 1}));
+    for (std::size_t i = 0; i < drawn.error.size(); ++i)
+        values.push_back(plain_nees(drawn.error[i], drawn.covariance[i], {0, 1}));
     const Laid<double> nees("nees", extents_of(drawn, {}), values);
-    CHECK(said(read_record({{nees.array}, {}, {{"nees", 2}}}, "record.h5")) == said(read_written([&](const Handle& root) {
+    CHECK(said(read_record({{nees.array}, {}, {{"nees", 2}}}, "record.h5")) ==
+          said(read_written([&](const Handle& root) {
               write_values(root, "nees", extents_of(drawn, {}), values);
               const Handle dataset(H5Dopen2(root.id(), "nees", H5P_DEFAULT), H5Dclose, "nees", "no dataset");
               hdf5::write_number<std::int32_t>(dataset, "dimension", 2);
@@ -84,5 +92,6 @@ TEST_CASE("record: arrays that do not fit are refused by their names") {
     CHECK_THROWS_WITH(read_record({{error.array, covariance.array}, {}, {}}, "record"),
                       Contains("/covariance: does not fit: it is [2, 4, 3, 2] and /error [2, 4, 3]. Write error as"));
     CHECK_THROWS_AS(read_record({{error.array}, {}, {}}, "record"), InputError);
-    CHECK_THROWS_WITH(read_record({{error.array, scalar.array}, {}, {}}, "record"), Contains("/covariance: has no extents"));
+    CHECK_THROWS_WITH(read_record({{error.array, scalar.array}, {}, {}}, "record"),
+                      Contains("/covariance: has no extents"));
 }

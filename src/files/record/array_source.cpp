@@ -1,9 +1,9 @@
 // A record in arrays in memory, of doubles or singles with any strides.
 
-#include "files/record/source.hpp"
-
 #include <algorithm>
 #include <set>
+
+#include "files/record/source.hpp"
 
 namespace credence {
 
@@ -24,15 +24,18 @@ double* copy(const T* from, const std::int64_t* strides, const hsize_t* count, s
 class ArrayDataset : public RecordDataset {
 public:
     explicit ArrayDataset(const RecordArray& array)
-        : RecordDataset(record_place(array.path), Extents(array.extents.begin(), array.extents.end()), array.epsilon, 1),
+        : RecordDataset(record_place(array.path), Extents(array.extents.begin(), array.extents.end()), array.epsilon,
+                        1),
           array_(array) {}
 
     void read(const Extents& first, const Extents& count, std::vector<double>& values) const override {
         std::int64_t start = 0;
         for (std::size_t axis = 0; axis < first.size(); ++axis)
             start += static_cast<std::int64_t>(first[axis]) * array_.strides[axis];
-        if (array_.type == RecordArray::Type::real64) read_from(static_cast<const double*>(array_.data) + start, count, values);
-        else read_from(static_cast<const float*>(array_.data) + start, count, values);
+        if (array_.type == RecordArray::Type::real64)
+            read_from(static_cast<const double*>(array_.data) + start, count, values);
+        else
+            read_from(static_cast<const float*>(array_.data) + start, count, values);
     }
 
 private:

@@ -1,10 +1,9 @@
 // A record in an HDF5 file.
 
+#include <algorithm>
 #include <credence/error.hpp>
 
 #include "files/record/source.hpp"
-
-#include <algorithm>
 
 namespace credence {
 
@@ -61,7 +60,8 @@ std::string record_attribute_place(const std::string& name, const std::string& p
 }
 
 bool FileSource::has(const std::string& path) const {
-    return at_path(root_, path, [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
+    return at_path(root_, path,
+                   [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
 }
 
 DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
@@ -88,12 +88,13 @@ std::string FileSource::text(const std::string& name) const { return hdf5::read_
 
 std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
     const std::string place = record_attribute_place(name, path);
-    const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                           place, "HDF5 cannot open it");
+    const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, place, "HDF5 cannot open it");
     const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
     const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
     const H5T_class_t kind = H5Tget_class(type.id());
-    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1) return std::nullopt;
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
+        return std::nullopt;
     double number = 0;
     hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
     return number;

@@ -88,8 +88,10 @@ RecordLayout open_version_2(const RecordSource& source) {
     open_innovations(source, layout.data);
     PlacedExtents leading = open_errors(source, layout.data);
     layout.shape.has_errors = !leading.extents.empty();
-    if (layout.shape.has_errors) open_states(source, leading, layout);
-    else leading = open_nees_alone(source, layout);
+    if (layout.shape.has_errors)
+        open_states(source, leading, layout);
+    else
+        leading = open_nees_alone(source, layout);
     add_innovations(source, leading, layout);
     add_steps(source, layout.shape);
     check_time(source, layout.shape);

@@ -1,10 +1,10 @@
 // NEES in place of covariances.
 
-#include "files/record/groups.hpp"
-#include "files/record/layout_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "files/record/groups.hpp"
+#include "files/record/layout_parts.hpp"
 
 namespace credence {
 
@@ -22,7 +22,8 @@ int open_nees(const RecordSource& source, const std::string& path, std::size_t b
     if (!source.has_attribute(name, path))
         throw Error(place, "is missing", "Write the number of components of " + record_place(path));
     const double dimension = source.number(name, path).value_or(0);
-    if (!(dimension >= 1 && dimension <= static_cast<double>(largest_record_state) && dimension == std::nearbyint(dimension)))
+    if (!(dimension >= 1 && dimension <= static_cast<double>(largest_record_state) &&
+          dimension == std::nearbyint(dimension)))
         throw Error(place, "is no number of components", "Write a whole number from 1 to 1000");
     return static_cast<int>(dimension);
 }
@@ -43,8 +44,10 @@ void open_named(const RecordSource& source, RecordLayout& layout) {
         shape.groups.push_back({name, 0, 0});
     }
     set_sources(GroupSource::nees, layout);
-    if (source.has("nees")) shape.groups[0].count = open_nees(source, "nees", 0, layout);
-    else shape.sources[0] = GroupSource::nothing;
+    if (source.has("nees"))
+        shape.groups[0].count = open_nees(source, "nees", 0, layout);
+    else
+        shape.sources[0] = GroupSource::nothing;
     for (std::size_t b = 1; b < shape.groups.size(); ++b)
         shape.groups[b].count = open_nees(source, "group/" + shape.groups[b].name + "/nees", b, layout);
 }

@@ -1,11 +1,11 @@
 #pragma once
 // The parts of open_record. All functions throw hdf5::Error.
 
-#include "files/record/extents.hpp"
-#include "files/record/layout.hpp"
-
 #include <string>
 #include <vector>
+
+#include "files/record/extents.hpp"
+#include "files/record/layout.hpp"
 
 namespace credence {
 
@@ -28,8 +28,8 @@ int open_nees(const RecordSource& source, const std::string& path, std::size_t b
 PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data);
 /// A record of version 2 with errors.
 void open_states(const RecordSource& source, const PlacedExtents& error, RecordLayout& layout);
-/// One of NEES alone: /nees, and /group/NAME/nees of groups that need not be named elsewhere. Returns the extents that an
-/// error of one component would have.
+/// One of NEES alone: /nees, and /group/NAME/nees of groups that need not be named elsewhere. Returns the extents that
+/// an error of one component would have.
 PlacedExtents open_nees_alone(const RecordSource& source, RecordLayout& layout);
 
 }  // namespace credence

@@ -1,9 +1,9 @@
 // The datasets of a record of version 2 that has errors.
 
+#include <algorithm>
+
 #include "files/record/groups.hpp"
 #include "files/record/layout_parts.hpp"
-
-#include <algorithm>
 
 namespace credence {
 
@@ -58,7 +58,8 @@ void open_nees_beside(const RecordSource& source, const std::string& path, const
     const int dimension = open_nees(source, path, b, layout), count = shape.groups[b].count;
     require_same_steps(error, *layout.data.own[b], error.extents.size() - 1, "Write it as [trial, step]");
     if (dimension != count)
-        throw Error(record_place(path), std::string("has another dimension than ") + (b == 0 ? "the error" : "its group"),
+        throw Error(record_place(path),
+                    std::string("has another dimension than ") + (b == 0 ? "the error" : "its group"),
                     "Write " + std::to_string(count));
     shape.sources[b] = GroupSource::nees;
 }
@@ -83,8 +84,10 @@ void open_group(const RecordSource& source, const PlacedExtents& error, const st
     if (covariance == nees)
         throw Error(place, covariance ? "has a covariance and a NEES" : "has neither `covariance` nor `nees`",
                     "Write one of them");
-    if (nees) open_nees_beside(source, path + "/nees", error, b, layout);
-    else open_group_covariance(source, error, b, layout);
+    if (nees)
+        open_nees_beside(source, path + "/nees", error, b, layout);
+    else
+        open_group_covariance(source, error, b, layout);
 }
 
 void require_something(const RecordShape& shape) {
@@ -103,7 +106,8 @@ void require_something(const RecordShape& shape) {
 PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data) {
     if (source.has("error")) {
         if (source.has("estimate"))
-            throw Error(record_place("estimate"), "is there, and `error` too", "Write `error`, or `truth` and `estimate`");
+            throw Error(record_place("estimate"), "is there, and `error` too",
+                        "Write `error`, or `truth` and `estimate`");
         data.error = source.open("error");
         return placed(*data.error);
     }
@@ -130,7 +134,8 @@ void open_states(const RecordSource& source, const PlacedExtents& error, RecordL
                                         : GroupSource::joint,
                 layout);
     if (source.has("nees")) {
-        if (shape.has_joint()) throw Error(record_place("nees"), "is there, and a joint covariance too", "Write one of them");
+        if (shape.has_joint())
+            throw Error(record_place("nees"), "is there, and a joint covariance too", "Write one of them");
         open_nees_beside(source, "nees", error, 0, layout);
     }
     for (const std::string& name : source.names_in("group")) open_group(source, error, name, layout);

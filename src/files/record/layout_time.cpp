@@ -1,11 +1,10 @@
 // The datasets of a record that say how long each run is, and when its steps are.
 
+#include <cmath>
 #include <credence/text.hpp>
+#include <limits>
 
 #include "files/record/layout_parts.hpp"
-
-#include <cmath>
-#include <limits>
 
 namespace credence {
 
@@ -19,16 +18,18 @@ void add_steps(const RecordSource& source, RecordShape& shape) {
     const Extents& extents = dataset->extents();
     const Extents all{static_cast<hsize_t>(shape.trials)};
     if (extents != all)
-        throw Error(dataset->place(), "does not fit: it is " + extents_text(extents) + ", and there are " +
-                                          std::to_string(shape.trials) + " trials",
+        throw Error(dataset->place(),
+                    "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(shape.trials) +
+                        " trials",
                     "Write it as [trial], the number of steps of each");
     std::vector<double> values(static_cast<std::size_t>(shape.trials));
     dataset->read({0}, all, values);
     for (const double value : values) {
         if (!(value >= 1 && value <= shape.steps && value == std::nearbyint(value)))
-            throw Error(dataset->place(),
-                        "trial " + std::to_string(shape.declared.size()) + " (counted from 0) has " + to_text(value) + " steps",
-                        "Write whole numbers from 1 to " + std::to_string(shape.steps) + ", the steps of the file");
+            throw Error(
+                dataset->place(),
+                "trial " + std::to_string(shape.declared.size()) + " (counted from 0) has " + to_text(value) + " steps",
+                "Write whole numbers from 1 to " + std::to_string(shape.steps) + ", the steps of the file");
         shape.declared.push_back(static_cast<int>(value));
     }
 }
@@ -59,8 +60,9 @@ void check_time(const RecordSource& source, const RecordShape& shape) {
     const hsize_t trials = static_cast<hsize_t>(shape.trials), steps = static_cast<hsize_t>(shape.steps);
     const bool common = extents == Extents{steps};
     if (!common && extents != Extents{trials, steps})
-        throw Error(dataset->place(), "does not fit: it is " + extents_text(extents) + ", and there are " +
-                                          std::to_string(trials) + " trials and " + std::to_string(steps) + " steps",
+        throw Error(dataset->place(),
+                    "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(trials) +
+                        " trials and " + std::to_string(steps) + " steps",
                     "Write it as [step], or as [trial, step]");
     std::vector<double> times(steps);
     for (hsize_t trial = 0; trial < (common ? 1 : trials); ++trial) {

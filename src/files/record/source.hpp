@@ -1,14 +1,13 @@
 #pragma once
 // Where a record is read from: a file, or arrays in memory. Its datasets and attributes have the names of the file.
 
-#include "files/hdf5/slab.hpp"
-
 #include <credence/record.hpp>
-
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "files/hdf5/slab.hpp"
 
 namespace credence {
 
@@ -41,8 +40,8 @@ private:
 };
 using DatasetPointer = std::unique_ptr<RecordDataset>;
 
-/// The datasets and attributes of a record. Paths are such as `error` and `group/pose/nees`, and the empty one is that of
-/// the root. All functions throw hdf5::Error.
+/// The datasets and attributes of a record. Paths are such as `error` and `group/pose/nees`, and the empty one is that
+/// of the root. All functions throw hdf5::Error.
 class RecordSource {
 public:
     virtual ~RecordSource() = default;
