@@ -118,6 +118,22 @@ TEST_CASE("cli: resume starts where there is nothing, ends at once where all is 
     check_refused(here.credence(run + "--set noise.walk=0.31"), "noise.walk is 0.3 there and 0.31 here");
 }
 
+TEST_CASE("cli: resume without a scenario goes on with the study of the file, or of the journal of a run that was killed") {
+    const Workplace here;
+    const std::string run = "run " + seed_scenario("ekf-straight-constant") + " --seed 7 --set noise.walk=0.25 --quiet ";
+    REQUIRE(here.credence(run + "--trials 700 -o whole.h5").exit_code == 0);
+    REQUIRE(here.credence(run + "--trials 300 -o grown.h5").exit_code == 0);
+    REQUIRE(here.credence("run --resume --trials 700 --quiet -o grown.h5").exit_code == 0);
+    CHECK(here.shell("h5diff --exclude-path /run whole.h5 grown.h5").exit_code == 0);
+
+    CHECK(here.shell("timeout -s KILL 2 " CREDENCE_PROGRAM " " + run + "--trials 1e8 --keep aggregates -o killed.h5").exit_code != 0);
+    REQUIRE(here.shell("test -e killed.h5.journal -a ! -e killed.h5").exit_code == 0);
+    CHECK_THAT(here.credence("run --resume --dry-run -o killed.h5").out, Contains("scenarios: 1, trials of each: "));
+
+    check_refused(here.credence("run --resume --seed 7 -o grown.h5"), "--seed needs a scenario");
+    check_refused(here.credence("run --resume -o nothing.h5"), "nothing.h5: the file: cannot be found");
+}
+
 TEST_CASE("cli: a file that exists is kept unless --overwrite is given") {
     const Workplace here;
     here.write("credence.h5", "precious");

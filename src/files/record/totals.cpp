@@ -34,8 +34,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
-    for (const ComponentGroup& block : shape.groups)
-        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    for (const ComponentGroup& group : shape.groups)
+        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
     if (shape.version == 1) return;
     for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
@@ -174,7 +174,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
         if (shape_.has_errors) {
             row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
-            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
+            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
         row[RecordColumn::nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;

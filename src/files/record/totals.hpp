@@ -3,7 +3,7 @@
 
 #include <credence/record.hpp>
 
-#include "files/record/file.hpp"
+#include "files/record/reader.hpp"
 #include "files/record/presence.hpp"
 #include "worlds/own/step.hpp"
 #include "files/record/row_products.hpp"
@@ -74,7 +74,7 @@ private:
 };
 
 /// Reads a whole record, part by part. The result does not depend on the size of the parts.
-Record read_record(const RecordFile& file, const std::string& path,
-                         const std::function<void(const Progress&)>& progress = {});
+Record read_record(const RecordReader& reader, const std::string& path,
+                   const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

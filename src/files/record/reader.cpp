@@ -1,4 +1,4 @@
-#include "files/record/file.hpp"
+#include "files/record/reader.hpp"
 
 #include "base/nan.hpp"
 
@@ -9,19 +9,18 @@ namespace credence {
 
 using hdf5::Error;
 using hdf5::Extents;
-using hdf5::RealDataset;
 
-RecordFile::RecordFile(const hdf5::Handle& root, std::int64_t part_numbers)
-    : layout_(open_record(root)), part_numbers_(part_numbers) {
+RecordReader::RecordReader(const RecordSource& source, std::int64_t part_numbers)
+    : layout_(open_record(source)), part_numbers_(part_numbers) {
     const RecordDatasets& data = layout_.data;
-    for (const std::optional<RealDataset>* dataset :
+    for (const DatasetPointer* dataset :
          {&data.error, &data.truth, &data.estimate, &data.covariance, &data.innovation, &data.innovation_covariance})
         add_size(*dataset);
-    for (const std::optional<RealDataset>& dataset : data.own) add_size(dataset);
+    for (const DatasetPointer& dataset : data.own) add_size(dataset);
     if (layout_.shape.declared.empty()) layout_.shape.longest = longest_trial();
 }
 
-void RecordFile::add_size(const std::optional<RealDataset>& dataset) {
+void RecordReader::add_size(const DatasetPointer& dataset) {
     if (!dataset) return;
     std::int64_t size = 1;
     for (std::size_t axis = layout_.single ? 1 : 2; axis < dataset->extents().size(); ++axis)
@@ -30,18 +29,18 @@ void RecordFile::add_size(const std::optional<RealDataset>& dataset) {
 }
 
 /// The datasets whose numbers say that a step exists: errors, or NEES where there are none.
-std::vector<const RealDataset*> RecordFile::leading() const {
+std::vector<const RecordDataset*> RecordReader::leading() const {
     const RecordDatasets& data = layout_.data;
     if (data.error) return {&*data.error};
     if (data.estimate) return {&*data.estimate};
-    std::vector<const RealDataset*> all;
-    for (const std::optional<RealDataset>& nees : data.own)
+    std::vector<const RecordDataset*> all;
+    for (const DatasetPointer& nees : data.own)
         if (nees) all.push_back(&*nees);
     return all;
 }
 
 /// Only the errors are read, and usually only the first trial: the search ends at a trial that has all steps.
-int RecordFile::longest_trial() const {
+int RecordReader::longest_trial() const {
     const RecordShape& shape = layout_.shape;
     int longest = 0;
     std::vector<double> values;
@@ -49,7 +48,7 @@ int RecordFile::longest_trial() const {
         std::int64_t trials = 1;
         for (int step = 0; step < shape.steps;) {
             const RecordPart part = part_at(trial, step);
-            for (const RealDataset* dataset : leading()) longest = std::max(longest, last_step(*dataset, part, values));
+            for (const RecordDataset* dataset : leading()) longest = std::max(longest, last_step(*dataset, part, values));
             step += part.steps;
             trials = part.trials;
         }
@@ -59,7 +58,7 @@ int RecordFile::longest_trial() const {
 }
 
 /// The number of steps, counted from the first of all, up to the last one that some trial of the part has.
-int RecordFile::last_step(const RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const {
+int RecordReader::last_step(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const {
     read(dataset, part, values);
     const auto steps = static_cast<std::size_t>(part.steps),
                n = values.size() / (static_cast<std::size_t>(part.trials) * steps);
@@ -69,20 +68,20 @@ int RecordFile::last_step(const RealDataset& dataset, const RecordPart& part, st
     return last;
 }
 
-RecordPart RecordFile::part_at(std::int64_t trial, int step) const {
+RecordPart RecordReader::part_at(std::int64_t trial, int step) const {
     const std::int64_t of_step = step_numbers_;
     const RecordShape& shape = layout_.shape;
     const auto steps = static_cast<int>(std::clamp<std::int64_t>(part_numbers_ / of_step, 1, shape.steps - step));
     if (step > 0 || steps < shape.steps) return {trial, 1, step, steps};
     std::int64_t trials = std::max<std::int64_t>(part_numbers_ / (of_step * steps), 1);
     // Whole chunks are read, so that each is decompressed once.
-    const RealDataset& largest = layout_.data.covariance ? *layout_.data.covariance : *leading().front();
-    const auto together = layout_.single ? 1 : static_cast<std::int64_t>(largest.chunk()[0]);
+    const RecordDataset& largest = layout_.data.covariance ? *layout_.data.covariance : *leading().front();
+    const auto together = layout_.single ? 1 : static_cast<std::int64_t>(largest.chunk());
     if (trials > together) trials -= trials % together;
     return {trial, std::min(trials, shape.trials - trial), 0, steps};
 }
 
-void RecordFile::read(const RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const {
+void RecordReader::read(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const {
     Extents first(dataset.extents().size(), 0), count = dataset.extents();
     const std::size_t axis = layout_.single ? 0 : 1;
     first[axis] = static_cast<hsize_t>(part.first_step);
@@ -97,9 +96,9 @@ void RecordFile::read(const RealDataset& dataset, const RecordPart& part, std::v
     dataset.read(first, count, values);
 }
 
-void RecordFile::read(const RecordPart& part, RecordValues& values) const {
+void RecordReader::read(const RecordPart& part, RecordValues& values) const {
     const RecordDatasets& data = layout_.data;
-    const auto read_if = [&](const std::optional<RealDataset>& dataset, std::vector<double>& to) {
+    const auto read_if = [&](const DatasetPointer& dataset, std::vector<double>& to) {
         if (dataset) read(*dataset, part, to);
     };
     read_if(data.error, values.error);
@@ -112,7 +111,7 @@ void RecordFile::read(const RecordPart& part, RecordValues& values) const {
 }
 
 /// Forms the errors of a part from truth and estimate.
-void RecordFile::read_manifold(const RecordPart& part, RecordValues& values) const {
+void RecordReader::read_manifold(const RecordPart& part, RecordValues& values) const {
     const Manifold& manifold = *layout_.data.manifold;
     read(*layout_.data.truth, part, values.truth);
     read(*layout_.data.estimate, part, values.estimate);
@@ -128,7 +127,7 @@ void RecordFile::read_manifold(const RecordPart& part, RecordValues& values) con
         }
 }
 
-void RecordFile::require_quaternions(const RealDataset& dataset, std::int64_t trial, int step,
+void RecordReader::require_quaternions(const RecordDataset& dataset, std::int64_t trial, int step,
                                      const double* coordinates) const {
     const int wrong = layout_.data.manifold->wrong_quaternion(coordinates);
     if (wrong < 0) return;

@@ -5,7 +5,6 @@
 #include "worlds/own/step.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +27,10 @@ struct RecordValues {
 };
 
 /// All functions throw hdf5::Error.
-class RecordFile {
+class RecordReader {
 public:
     /// `part_numbers`: how many numbers are read at once, 64 MiB of doubles by default.
-    explicit RecordFile(const hdf5::Handle& root, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
+    explicit RecordReader(const RecordSource& source, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
     const RecordShape& shape() const { return layout_.shape; }
     /// Of truth and estimate, where they lie on a manifold.
@@ -42,14 +41,14 @@ public:
     void read(const RecordPart& part, RecordValues& values) const;
 
 private:
-    void read(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
+    void read(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
     void read_manifold(const RecordPart& part, RecordValues& values) const;
-    void require_quaternions(const hdf5::RealDataset& dataset, std::int64_t trial, int step,
+    void require_quaternions(const RecordDataset& dataset, std::int64_t trial, int step,
                              const double* coordinates) const;
-    void add_size(const std::optional<hdf5::RealDataset>& dataset);
-    std::vector<const hdf5::RealDataset*> leading() const;
+    void add_size(const DatasetPointer& dataset);
+    std::vector<const RecordDataset*> leading() const;
     int longest_trial() const;
-    int last_step(const hdf5::RealDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
+    int last_step(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
 
     RecordLayout layout_;
     std::int64_t part_numbers_;
