@@ -1,296 +1,402 @@
-"""Reads the files that credence writes, with h5py; docs/results-format.md says what is in them.
+"""Results files as numpy arrays. Nothing is read from the disk until it is asked for.
 
-    import credence_results as results
+    study = credence.open("study.h5")
+    arm = study["kf-circle-constant", "greedy.kf"]      # of a study of one scenario: study["greedy.kf"]
+    arm.trace_P                                         # [trial], NaN for trials without a result
+    arm.nees                                            # [step], the mean over the trials
+    arm.per_step("nees").standard_error                 # [step]
+    arm.mean("trace_P", minus=study["kf-circle-constant", "fixed.kf"]).interval()
 
-    with results.open_file("study.h5") as file:
-        for scenario, arm, group in results.arms(file):
-            trace = results.column(group, "trace_P")          # one number a trial
-            nees = results.per_step(group, "nees")            # one mean a step, with its 95 % interval
-            print(scenario, arm, trace.mean(), results.units(group, "trace_P"), nees.mean / nees.dimension)
-
-Needs h5py, NumPy and SciPy. The variables stay what they are: `group["trace_P"]` is the plain h5py dataset.
+docs/results-format.md says what is in a file. `arm.group` is the plain h5py group.
 """
+
+from __future__ import annotations
+
 import configparser
-import fractions
-import pathlib
-from typing import NamedTuple
+import html
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, overload
 
 import h5py
 import numpy as np
-from scipy import stats
 
-SCHEMA_VERSIONS = 2, 3
-STUDY, TRAJECTORIES = "credence results", "credence trajectories"
+from . import means
+from ._file import TRAJECTORIES, Array, Description, FloatArray, Source, Variables, described, open_hdf5, stem, text
+from .means import Means
 
-
-class Means(NamedTuple):
-    """Means over the counted trials, with standard errors and two-sided intervals; dimension is that of their block."""
-    mean: np.ndarray
-    standard_error: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    dimension: int
-
-
-def open_file(path, kinds=(STUDY, TRAJECTORIES)):
-    """The open file. Raises ValueError where it is none of credence's, or of another schema version."""
-    if not pathlib.Path(path).is_file():
-        raise ValueError(f"there is no file {path}. Give one that credence wrote.")
-    if not h5py.is_hdf5(path):
-        raise ValueError(f"{path} is no HDF5 file. Give one that credence wrote.")
-    file = h5py.File(path, "r")
-    kind, version = file.attrs.get("format"), file.attrs.get("schema_version")
-    kind = kind.decode() if isinstance(kind, bytes) else kind
-    if kind not in kinds:
-        file.close()
-        raise ValueError(f"{path} is none of {', '.join(kinds)} (format={kind}). Give one.")
-    if version not in SCHEMA_VERSIONS:
-        file.close()
-        raise ValueError(f"{path} has schema version {version}, none of {SCHEMA_VERSIONS}. "
-                         "Take the analysis folder of the credence that wrote it.")
-    return file
-
-
-def text(thing, name):
-    """A text attribute; empty text is one null character in HDF5."""
-    value = thing.attrs[name]
-    return (value.decode() if isinstance(value, bytes) else str(value)).rstrip("\0")
-
-
-def kind(file):
-    """STUDY or TRAJECTORIES."""
-    return text(file, "format")
-
-
-def scenarios(file):
-    """(name, group) of each scenario, in the order of the study, which h5py keeps for file["/"] only."""
-    return [(name, group) for name, group in file["/"].items() if name != "run"]
-
-
-def arms(file):
-    """(scenario, arm, group) of each arm."""
-    return [(scenario, arm, group) for scenario, groups in scenarios(file) for arm, group in groups.items()]
-
-
-class Grid(NamedTuple):
-    """The grid that --sweep made of a scenario: `coordinates` {key: its values}, numbers where all are, along the axes of
-    `names`, the scenarios at the points; an empty text where there is none."""
-    of: str
-    coordinates: dict
-    names: np.ndarray
-
-
-def place(scenario_group):
-    """(of, {key: value}) of a scenario that is a point of a grid; None of another one."""
-    if "sweep_of" not in scenario_group.attrs:
-        return None
-    values = {key: scenario_group.attrs[f"sweep.{key}"] for key in text(scenario_group, "sweep_keys").split()}
-    texts = {key: text(scenario_group, f"sweep.{key}") if isinstance(value, (bytes, str)) else float(value)
-             for key, value in values.items()}
-    return text(scenario_group, "sweep_of"), texts
-
-
-def grids(file):
-    """Every Grid of a study, numbers rising and texts in the order of the study."""
-    found = {}
-    for name, group in scenarios(file):
-        if (point := place(group)) is not None:
-            found.setdefault((point[0], tuple(point[1])), {})[name] = tuple(point[1].values())
-    return [_grid(of, keys, points) for (of, keys), points in found.items()]
-
-
-def _grid(of, keys, points):
-    axes = []
-    for values in zip(*points.values()):
-        numbers = not any(isinstance(value, str) for value in values)
-        axes.append(sorted(set(values)) if numbers else list(dict.fromkeys(map(_as_text, values))))
-    names = np.full([len(axis) for axis in axes], "", dtype=object)
-    for name, values in points.items():
-        names[tuple(axis.index(value if value in axis else _as_text(value)) for axis, value in zip(axes, values))] = name
-    return Grid(of, {key: np.array(axis) for key, axis in zip(keys, axes)}, names)
-
-
-def _as_text(value):
-    return value if isinstance(value, str) else f"{value:g}"
-
-
-def over_grid(file, grid, figure):
-    """`figure(scenario group)`, a number or an array of them, at every point of a grid, along its axes and then its own;
-    NaN where the grid has no scenario or figure(...) is None."""
-    values = {name: figure(file[name]) for name in grid.names.flat if name}
-    shape = next((np.shape(value) for value in values.values() if value is not None), ())
-    missing = np.full(shape, np.nan)
-    points = [missing if values.get(name) is None else values[name] for name in grid.names.flat]
-    return np.reshape(np.array(points, dtype=float), grid.names.shape + shape)
-
-
-def mean_with_interval(arm, name, minus=None):
-    """[mean, low, high] of a figure of a trial, with Student's interval, or of its differences to another arm."""
-    means = trial_means(arm, name, minus)
-    return np.array([means.mean, means.low, means.high])
-
-
-def as_dataset(file, grid, columns=("trace_P", "pose_error", "squared_error", "nees_ratio", "nis_ratio")):
-    """The grid as an xarray.Dataset: COLUMN, COLUMN_low and COLUMN_high over the swept keys and the arms, of those columns
-    that the world has. Needs xarray."""
+if TYPE_CHECKING:
     import xarray
 
-    first = next(iter(file[next(name for name in grid.names.flat if name)].values()))
-    columns = [name for name in columns if has_column(first, name)]
-    arm_names = list(dict.fromkeys(arm for name in grid.names.flat if name for arm in file[name]))
-    variables = {}
-    for name in columns:
-        values = over_grid(file, grid, lambda group, name=name: np.array(
-            [mean_with_interval(group[arm], name) if arm in group else np.full(3, np.nan) for arm in arm_names]))
-        for number, suffix in enumerate(("", "_low", "_high")):
-            variables[name + suffix] = ([*grid.coordinates, "arm"], values[..., number])
-    return xarray.Dataset(variables, coords={**grid.coordinates, "arm": arm_names}, attrs={"sweep_of": grid.of})
+    from .grid import Grid
+
+__all__ = ["Arm", "Means", "Scenario", "Study", "open"]
+
+SHOWN = 40  # arms of a study that its table in a notebook shows
 
 
-def setting(scenario_group, section, key):
-    """A key of the scenario, as text; empty where its world has none of that name."""
-    parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
-    parser.optionxform = str
-    parser.read_string(text(scenario_group, "scenario"))
-    return parser.get(section, key, fallback="")
+class Arm(Variables):
+    """One arm of a scenario: an array for each column [trial] and each series [step], by key or as an attribute.
+
+    A series is its mean over the counted trials. Whatever else the file has is there under its own name, such as
+    ``detailed_nees`` [detailed_trial, step] and ``detailed_error`` [detailed_trial, step, component].
+    """
+
+    @property
+    def scenario(self) -> Scenario:
+        return Scenario(self.group.parent)
+
+    @property
+    def keeps_trials(self) -> bool:
+        """Whether the file has columns: it has totals instead of a study that keeps aggregates."""
+        return "keep" not in self.group.file.attrs
+
+    @property
+    def columns(self) -> dict[str, Description]:
+        """The columns, one number a trial, with unit and meaning; also where only their totals are kept."""
+        if self.keeps_trials:
+            known = ("status", "status_pose")
+            return {name: described(self.group[name]) for name, dimensions in self.dimensions.items()
+                    if dimensions == ["trial"] and name not in known}
+        units = text(self.group["column"], "column_units").split(", ")
+        return {name: Description(unit, name) for name, unit in zip(self.words("column", "column_names"), units)}
+
+    @property
+    def series(self) -> dict[str, Description]:
+        """The series, one number a step, with unit and meaning."""
+        ends = "_run_square_total"
+        names = (name.removesuffix(ends) for name in self.group if name.endswith(ends))
+        return {name: described(self.group[f"{name}_total"]) for name in names}
+
+    def series_of(self, role: str) -> dict[str, str]:
+        """{component group or kind of rows: series} of a role: ``nees``, ``nis``, ``squared_error``, ``variance``, … .
+        The whole state is called ``all``."""
+        totals = {name: self.group[f"{name}_total"] for name in self.series}
+        return {text(total, "part_of"): name for name, total in totals.items() if text(total, "role") == role}
+
+    @property
+    def trials(self) -> int:
+        """Trials that are there, failed ones too."""
+        return int(self.group["trial"].size) if self.keeps_trials else int(self.group["status_count"][:].sum())
+
+    @property
+    def counted_trials(self) -> int:
+        """Trials that have numbers, over which the means run: all but those with a covariance that is not positive
+        definite or with values that are not finite."""
+        return int(self.group.attrs["counted_trials"])
+
+    @property
+    def ended(self) -> dict[str, int]:
+        """{how they ended: trials}, such as ``completed`` and ``diverged``."""
+        status = self.group["status" if self.keeps_trials else "status_code"]
+        codes = status.attrs["flag_values"].tolist()
+        counts = [np.sum(status[:] == code) for code in codes] if self.keeps_trials else self.group["status_count"][:]
+        return dict(zip(text(status, "flag_meanings").split(), map(int, counts)))
+
+    @property
+    def failed_trials(self) -> int:
+        """Trials that did not complete, those that diverged too; a verdict counts them so."""
+        return self.trials - self.ended["completed"]
+
+    def read(self, name: str, selection: Any = ()) -> Array:
+        if f"{name}_total" not in self.group or name in self.group:
+            return super().read(name, selection)
+        total = self.group[f"{name}_total"]
+        values = total[:] if total.ndim == 1 else total[..., 0]
+        mean: Array = np.asarray((values / self.counted_trials if self.counted_trials else values * np.nan)[selection])
+        return mean
+
+    def describe(self, name: str) -> Description:
+        """Unit and meaning of a column, a series or another variable."""
+        if name in self.group:
+            return super().describe(name)
+        if f"{name}_total" in self.group:
+            return described(self.group[f"{name}_total"])
+        return self.columns[name] if name in self.columns else super().describe(name)
+
+    def mean(self, name: str, minus: Arm | None = None) -> Means:
+        """The mean of a column, or of its differences trial by trial to another arm of the same scenario.
+
+        Parameters
+        ----------
+        name : str
+            A column, such as ``trace_P``.
+        minus : Arm, optional
+            The arm that is subtracted; a trial that has no value in one of the arms is left out.
+
+        Returns
+        -------
+        Means
+            One number, in the column's unit; also of files that keep aggregates, from their exact totals.
+        """
+        units = self.describe(name).units
+        if self.keeps_trials:
+            values = self._numbers(name)
+            return means.of_values(values - minus._numbers(name) if minus else values, units)
+        column = self._place("column", "column_names", name)
+        if minus is None:
+            return self._exact("column", column, units)
+        if self.name == minus.name:
+            raise ValueError(f"invalid minus={minus.name} (an arm less itself is 0). Name two arms.")
+        if "subtracted_arm" in self and minus.name in self.words("subtracted_arm", "arm_names"):
+            return self._exact("difference", (self._place("subtracted_arm", "arm_names", minus.name), column), units)
+        return -minus.mean(name, minus=self)
+
+    def per_step(self, name: str) -> Means:
+        """The mean of a series over the counted trials at each step [step], in the series' unit. The standard error is
+        NaN for series of integers, whose squares are not kept."""
+        total, squares = self._total(f"{name}_total"), f"{name}_square_total"
+        square_total = self._total(squares) if squares in self else np.full_like(total, np.nan)
+        return means.of_totals(total, square_total, self.counted_trials, self.dimension(name),
+                               self.describe(name).units)
+
+    def over_steps(self, name: str) -> Means:
+        """The mean of a series over trials and steps. Its standard error takes one number a trial, because steps are
+        correlated."""
+        total, squares = self._total(f"{name}_total").sum(), self._total(f"{name}_run_square_total")
+        whole = means.of_totals(np.asarray(total), np.asarray(squares), self.counted_trials, self.dimension(name),
+                                self.describe(name).units)
+        return whole.over(self.group["step"].size)
+
+    def dimension(self, name: str) -> int:
+        """Components of the group that a series belongs to; 1 for a series without a dimension."""
+        return int(self.group[f"{name}_total"].attrs.get("dimension", 1))
+
+    def degrees(self, name: str) -> FloatArray:
+        """[step] degrees of freedom of the chi-square that the total of a NEES or NIS follows if the filter is
+        consistent."""
+        attributes, steps = self.group[f"{name}_total"].attrs, self.group["step"].size
+        if "dimension" in attributes:
+            return np.full(steps, float(self.counted_trials * self.dimension(name)))
+        rows = text(self.group[f"{name}_total"], "rows")
+        more: FloatArray = np.full(steps, float(attributes["more_rows"]) * self.counted_trials)
+        return more + self._total(f"{rows}_total") if rows else more
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The arm as an xarray.Dataset: columns [trial], series [step] with SERIES_standard_error, the detailed
+        variables, each with its unit. Needs xarray; reads all of these."""
+        from .grid import arm_to_xarray
+
+        return arm_to_xarray(self)
+
+    def _total(self, name: str) -> FloatArray:
+        variable = self.group[name]
+        return np.asarray(variable[:] if variable.dtype.kind == "i" else variable[..., 0], np.float64)
+
+    def _numbers(self, name: str) -> FloatArray:
+        return self.read(name).astype(np.float64)
+
+    def _exact(self, of: str, place: Any, units: str) -> Means:
+        return means.of_exact_totals(self.group[f"{of}_total"][place], self.group[f"{of}_square_total"][place],
+                                     int(self.group[f"{of}_count"][place]), units)
+
+    def _place(self, variable: str, attribute: str, name: str) -> int:
+        names = self.words(variable, attribute)
+        if name not in names:
+            raise KeyError(f"{self.group.name} has no {name}. It has {', '.join(names)}")
+        return names.index(name)
+
+    def _missing(self, name: str) -> str:
+        if not self.keeps_trials and name in (*self.columns, "trial", "status", "status_pose"):
+            return (f"{self.group.name} has no {name} of single trials, because the study keeps aggregates. Take "
+                    f"arm.mean({name!r}), or run the study with --keep trials")
+        return f"{self.group.name} has no {name}. It has {', '.join([*self.columns, *self.series])}"
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or f"{name}_total" in self.group
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self.series
+        yield from self.group
+
+    def __repr__(self) -> str:
+        kept = "" if self.keeps_trials else ", aggregates"
+        return f"<credence.Arm {self.group.name[1:]}: {self.trials:,} trials, {self.failed_trials:,} failed{kept}>"
 
 
-def published(scenario_group, column_name):
-    """{arm: value} of the published single run, where the scenario names one."""
-    if column_name not in ("trace_P", "unseen", "pose_error"):
-        return {}
-    pairs = [pair.split() for pair in setting(scenario_group, "published", column_name).split(",") if pair.strip()]
-    return {arm: float(value) for arm, value in pairs}
+class Scenario:
+    """A scenario of a study: its arms by name, in the study's order."""
+
+    def __init__(self, group: h5py.Group) -> None:
+        #: The plain h5py group.
+        self.group = group
+        self.name = stem(group)
+
+    @property
+    def arms(self) -> dict[str, Arm]:
+        return {name: Arm(group) for name, group in self.group.items()}
+
+    @property
+    def text(self) -> str:
+        """The scenario as resolved: an INI text that ``credence.run`` reads."""
+        return text(self.group, "scenario")
+
+    def setting(self, name: str) -> str:
+        """A key such as ``noise.heading``, as text; empty where the world has none of that name."""
+        parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
+        parser.optionxform = str  # type: ignore[assignment,method-assign]
+        parser.read_string(self.text)
+        return parser.get(*name.split(".", 1), fallback="")
+
+    def published(self, column: str) -> dict[str, float]:
+        """{arm: value of the column in the published single run}, where the scenario names one."""
+        pairs = [pair.split() for pair in self.setting(f"published.{column}").split(",") if pair.strip()]
+        return {pair[0]: float(pair[1]) for pair in pairs if len(pair) == 2}
+
+    @property
+    def sweep(self) -> tuple[str, dict[str, float | str]] | None:
+        """(scenario that was swept, {key: value here}) of a point of a grid; None of another scenario."""
+        if "sweep_of" not in self.group.attrs:
+            return None
+        values = {key: self.group.attrs[f"sweep.{key}"] for key in text(self.group, "sweep_keys").split()}
+        return text(self.group, "sweep_of"), {
+            key: text(self.group, f"sweep.{key}") if isinstance(value, bytes | str) else float(value)
+            for key, value in values.items()}
+
+    def __getitem__(self, arm: str) -> Arm:
+        if arm not in self.group:
+            raise KeyError(f"{self.name} has no arm {arm}. It has {', '.join(self.group)}")
+        return Arm(self.group[arm])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.group)
+
+    def __len__(self) -> int:
+        return len(self.group)
+
+    def __repr__(self) -> str:
+        return "\n".join([f"<credence.Scenario {self.name}>", *(f"  {arm!r}" for arm in self.arms.values())])
 
 
-def keeps_trials(thing):
-    """Whether the file of a group has a number for each trial: not that of a study run with --keep aggregates."""
-    return "keep" not in thing.file.attrs
+class Study:
+    """A results file. ``study["scenario", "arm"]`` is an Arm and ``study["scenario"]`` a Scenario; in a study of one
+    scenario ``study["arm"]`` is an Arm, too. Close it, or use it in a `with` statement, to let go of the file."""
+
+    def __init__(self, file: h5py.File) -> None:
+        #: The plain h5py file.
+        self.file = file
+
+    @property
+    def scenarios(self) -> dict[str, Scenario]:
+        """The scenarios in the study's order, which h5py keeps for file["/"] only."""
+        return {name: Scenario(group) for name, group in self.file["/"].items() if name != "run"}
+
+    @property
+    def arms(self) -> list[Arm]:
+        """All arms of all scenarios."""
+        return [arm for scenario in self.scenarios.values() for arm in scenario.arms.values()]
+
+    @property
+    def trials(self) -> int:
+        """Trials of each scenario that were asked for."""
+        return int(self.file.attrs["trials"])
+
+    @property
+    def complete(self) -> bool:
+        """Whether all of them were run; otherwise it is a part of a study, or an interrupted run."""
+        return bool(self.file.attrs["complete"])
+
+    @property
+    def seed(self) -> int:
+        return int(text(self.file, "root_seed_text"))
+
+    @property
+    def path(self) -> str:
+        return str(self.file.filename)
+
+    @property
+    def grids(self) -> list[Grid]:
+        """The grids that sweeps made (docs/sweep.md), as arrays of scenarios with coordinates."""
+        from .grid import grids_of
+
+        return grids_of(self)
+
+    def to_xarray(self) -> xarray.DataTree:
+        """The study as an xarray.DataTree: a node for each scenario, and in it one for each arm. It reads the file.
+        Needs xarray 2024.10 or later; Arm.to_xarray works with any."""
+        from .grid import study_to_xarray
+
+        return study_to_xarray(self)
+
+    def close(self) -> None:
+        self.file.close()
+
+    @overload
+    def __getitem__(self, name: tuple[str, str]) -> Arm: ...
+    @overload
+    def __getitem__(self, name: str) -> Any: ...
+    def __getitem__(self, name: str | tuple[str, str]) -> Any:
+        if isinstance(name, tuple):
+            return self[name[0]][name[1]]
+        scenarios = self.scenarios
+        if name in scenarios:
+            return scenarios[name]
+        if len(scenarios) == 1:
+            return next(iter(scenarios.values()))[name]
+        raise KeyError(f"the study has no scenario {name}. It has {', '.join(scenarios)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.scenarios)
+
+    def __len__(self) -> int:
+        return len(self.scenarios)
+
+    def __enter__(self) -> Study:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _state(self) -> str:
+        kept = ", aggregates" if "keep" in self.file.attrs else ""
+        return f"{self.trials:,} trials, seed {self.seed}, {'complete' if self.complete else 'not complete'}{kept}"
+
+    def __repr__(self) -> str:
+        if not self.file:
+            return "<credence.Study, closed>"
+        shown = [f"  {arm!r}" for arm in self.arms[:SHOWN]]
+        return "\n".join([f"<credence.Study {self.path}: {self._state()}>", *shown, *self._rest()])
+
+    def _repr_html_(self) -> str:
+        if not self.file:
+            return html.escape(repr(self))
+        rows = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in _row(arm)) + "</tr>"
+                       for arm in self.arms[:SHOWN])
+        heads = "".join(f"<th>{head}</th>" for head in ("scenario", "arm", "trials", "failed", "NEES / n"))
+        rest = "".join(f"<p>{line}</p>" for line in self._rest())
+        return (f"<p><b>{html.escape(self.path)}</b>: {self._state()}</p><table><thead><tr>{heads}</tr></thead>"
+                f"<tbody>{rows}</tbody></table>{rest}")
+
+    def _rest(self) -> list[str]:
+        more = len(self.arms) - SHOWN
+        return [f"and {more} arms more"] if more > 0 else []
 
 
-def trials(arm):
-    """Trials that are there, failed ones too."""
-    return arm["trial"].size if keeps_trials(arm) else int(arm["status_count"][:].sum())
+def _row(arm: Arm) -> tuple[str, ...]:
+    ratio = arm.over_steps("nees") if "nees" in arm.series else None
+    shown = f"{float(ratio.mean) / ratio.dimension:.3f}" if ratio and arm.counted_trials else "\N{EN DASH}"
+    trials = f"{arm.trials:,}" if arm.trials else "not run yet"
+    return stem(arm.group.parent), arm.name, trials, f"{arm.failed_trials:,}", shown
 
 
-def column(arm, name):
-    """A number for each trial as double; NaN where the variable has its fill value, as for failed trials. Raises
-    ValueError where the file keeps no trials."""
-    if not keeps_trials(arm):
-        raise ValueError(f"{arm.file.filename} keeps aggregates: it has no {name} of single trials. Take trial_means, or "
-                         "run the study with --keep trials.")
-    values = arm[name][:].astype(float)
-    if "_FillValue" in arm[name].attrs:
-        values[values == arm[name].attrs["_FillValue"][0]] = np.nan
-    return values
+def open(source: Source) -> Study:
+    """Opens a results file; nothing but its header is read.
 
+    Parameters
+    ----------
+    source : path or binary file
+        What ``credence run -o`` wrote, of schema version 2 or 3; or an open file, such as io.BytesIO.
 
-def has_column(arm, name):
-    """Whether the world of an arm has that column, with a number for each trial or as a total."""
-    return name in (arm if keeps_trials(arm) else text(arm["column"], "column_names").split())
+    Returns
+    -------
+    Study
 
-
-def units(arm, name):
-    """The units of a variable, or of a figure of a trial; `1` without a dimension."""
-    if name not in arm and not keeps_trials(arm):
-        return text(arm["column"], "column_units").split(", ")[_place(arm["column"], "column_names", name)]
-    return text(arm[name], "units")
-
-
-def flags(variable):
-    """{value: meaning} of a variable that holds codes."""
-    return dict(zip(variable.attrs["flag_values"].tolist(), text(variable, "flag_meanings").split()))
-
-
-def figures(arm, role):
-    """Figures of that role, such as `nees`: those with totals over the trials, in the file's order."""
-    ends = "_run_square_total"
-    return [text(v, "figure") for name, v in arm.items() if name.endswith(ends) and text(v, "role") == role]
-
-
-def total(arm, name):
-    """A total as double: part 0 is all of it but what rounding left."""
-    variable = arm[name]
-    return variable[:].astype(float) if variable.dtype.kind == "i" else variable[..., 0]
-
-
-def _means(totals, square_totals, trials, dimension, level):
-    mean = totals / trials
-    spread = np.maximum(square_totals / trials - mean**2, 0)
-    error = np.sqrt(spread / (trials - 1)) if trials > 1 else np.full_like(mean, np.nan)
-    half = stats.t.ppf(0.5 + level / 2, max(trials - 1, 1)) * error
-    return Means(mean, error, mean - half, mean + half, dimension)
-
-
-def _place(variable, attribute, name):
-    names = text(variable, attribute).split()
-    if name not in names:
-        raise ValueError(f"there is no {name}. There are {', '.join(names)}.")
-    return names.index(name)
-
-
-def _moments(count, sums, squares, level):
-    """Of exact totals: n Q - S^2 has hardly a digit left in doubles where values vary little."""
-    exact = [sum(map(fractions.Fraction, parts)) if np.isfinite(parts).all() else None for parts in (sums, squares)]
-    if count < 2 or None in exact:
-        mean = float(exact[0] / count) if count and exact[0] is not None else np.nan
-        return Means(mean, np.nan, np.nan, np.nan, 1)
-    mean, error = float(exact[0] / count), float((count * exact[1] - exact[0]**2) / count**2 / (count - 1)) ** 0.5
-    half = stats.t.ppf(0.5 + level / 2, count - 1) * error
-    return Means(mean, error, mean - half, mean + half, 1)
-
-
-def trial_means(arm, name, minus=None, level=0.95):
-    """The mean of a figure of a trial, such as `trace_P`, or of its differences to another arm of the scenario, `minus`,
-    by trial; with Student's interval. Of files that keep trials and of those that keep aggregates."""
-    if keeps_trials(arm):
-        values = column(arm, name) - (column(minus, name) if minus else 0)
-        values = values[~np.isnan(values)]
-        error = values.std(ddof=1) / np.sqrt(values.size) if values.size > 1 else np.nan
-        mean, half = values.mean() if values.size else np.nan, stats.t.ppf(0.5 + level / 2, max(values.size - 1, 1)) * error
-        return Means(mean, error, mean - half, mean + half, 1)
-    place = _place(arm["column"], "column_names", name)
-    if minus is None:
-        return _moments(int(arm["column_count"][place]), arm["column_total"][place], arm["column_square_total"][place], level)
-    own, other = (group.name.rsplit("/", 1)[1] for group in (arm, minus))
-    if "subtracted_arm" not in arm or other not in text(arm["subtracted_arm"], "arm_names").split():
-        if own == other:
-            raise ValueError("an arm less itself is 0. Name two arms.")
-        mean, error, low, high, _ = trial_means(minus, name, arm, level)
-        return Means(-mean, error, -high, -low, 1)
-    row = _place(arm["subtracted_arm"], "arm_names", other), place
-    return _moments(int(arm["difference_count"][row]), arm["difference_total"][row], arm["difference_square_total"][row],
-                    level)
-
-
-def per_step(arm, figure, level=0.95):
-    """The mean over the counted trials of a figure at each step, with Student's interval (NaN for integer figures,
-    whose squares are not kept)."""
-    totals, squares = total(arm, f"{figure}_total"), f"{figure}_square_total"
-    square_totals = total(arm, squares) if squares in arm else np.full_like(totals, np.nan)
-    dimension = int(arm[f"{figure}_total"].attrs.get("dimension", 1))
-    return _means(totals, square_totals, int(arm.attrs["counted_trials"]), dimension, level)
-
-
-def over_steps(arm, figure, level=0.95):
-    """The mean over trials and steps; its interval takes one number a trial, because steps are correlated."""
-    totals, squares = total(arm, f"{figure}_total"), total(arm, f"{figure}_run_square_total")
-    steps, dimension = arm["step"].size, int(arm[f"{figure}_total"].attrs.get("dimension", 1))
-    means = _means(totals.sum(), squares, int(arm.attrs["counted_trials"]), dimension, level)
-    return Means(*(value / steps for value in means[:4]), dimension)
-
-
-def degrees(arm, figure):
-    """Degrees of freedom of the chi-square that the figure's total follows at each step, under a consistent filter."""
-    attributes, trials = arm[f"{figure}_total"].attrs, int(arm.attrs["counted_trials"])
-    if "dimension" in attributes:
-        return np.full(arm["step"].size, trials * int(attributes["dimension"]), dtype=float)
-    rows = text(arm[f"{figure}_total"], "rows")
-    more_rows = np.full(arm["step"].size, float(attributes["more_rows"]) * trials)
-    return more_rows + (total(arm, f"{rows}_total") if rows else 0)
-
-
-def chi_square_band(degrees_of_freedom, level=0.95):
-    """Bounds of a chi-square over its degrees of freedom: the classical band of ANEES and NIS/m."""
-    tails = [(1 - level) / 2, (1 + level) / 2]
-    return [stats.chi2.ppf(tail, degrees_of_freedom) / degrees_of_freedom for tail in tails]
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        The file is not there, or is not a results file of a version that this package reads.
+    """
+    file, kind = open_hdf5(source)
+    if kind == TRAJECTORIES:
+        file.close()
+        raise ValueError(f"{source}: format: it has trajectories, not results. Take credence.open_trajectories.")
+    return Study(file)
