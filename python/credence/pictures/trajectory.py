@@ -1,162 +1,151 @@
-"""Pictures of one trial: an arm's group of a trajectory file."""
+"""Pictures of one trial: its path in the plane, its errors within what P says, its NEES."""
+
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from scipy import stats
 
-import credence_results as results
-
+from .._file import FloatArray
+from ..trajectory import Trajectory
 from . import style
+from .style import Picture
 
 FEATURE_COLOURS = [style.GREEN, style.PURPLE, style.ORANGE]
-# Name: how many standard deviations, and what to call it.
 ELLIPSES = {"1-sigma": (1.0, "1-σ ellipses"), "95": (float(np.sqrt(stats.chi2.ppf(0.95, 2))), "95 % ellipses")}
 
 
-def caption(arm):
-    """Scenario, arm, trial and how it ended."""
-    return f"{arm.name[1:]}, {results.text(arm, 'source')}"
+def source(trial: Trajectory) -> str:
+    """Scenario, arm and trial."""
+    return f"{trial.scenario.name}, {trial.name}, {trial.source}"
 
 
-def robot_axes(arm):
-    """Places of the robot's x and y in the state; those of the features follow."""
-    names = results.text(arm["component"], "component_names").split()
-    return names.index("r_x"), names.index("r_x") + 2
-
-
-def positions(arm, name):
-    """Robot [pose, axis] and features [pose, feature, axis] of a state variable."""
-    values, (robot, features) = arm[name][:], robot_axes(arm)
-    return values[:, robot:features], values[:, features:].reshape(len(values), -1, 2)
-
-
-def arm_colour(arm):
+def arm_colour(trial: Trajectory) -> str:
     """The colour that the arm has in the pictures of the study: that of its place among the scenario's arms."""
-    controllers, estimators = (results.setting(arm.parent, "arms", key).replace(" ", "").split(",") or [""]
+    controllers, estimators = (trial.scenario.setting(f"arms.{key}").replace(" ", "").split(",") or [""]
                                for key in ("controllers", "estimators"))
     names = [f"{controller or 'fixed'}.{estimator}" for controller in controllers for estimator in estimators]
-    return style.arm_style(names.index(arm.name.rsplit("/", 1)[1]))["color"]
+    return str(style.arm_style(names.index(trial.name) if trial.name in names else 0)["color"])
 
 
-def _ellipses(axis, centres, covariances, scale, colour, **drawn):
-    """Ellipses of the covariances [n, 2, 2]; those that are not there are left out."""
+def ellipses(centres: FloatArray, covariances: FloatArray, scale: float, axis: Axes, **drawn: Any) -> None:
+    """Ellipses of the covariances [n, 2, 2] about centres [n, 2]; those that are not there are left out."""
     there = np.isfinite(covariances).all(axis=(1, 2)) & np.isfinite(centres).all(axis=1)
     values, vectors = np.linalg.eigh(covariances[there])
     widths = 2 * scale * np.sqrt(np.maximum(values, 0))
     angles = np.degrees(np.arctan2(vectors[:, 1, 1], vectors[:, 0, 1]))
     axis.add_collection(EllipseCollection(widths[:, 1], widths[:, 0], angles, units="xy", offsets=centres[there],
-                                          offset_transform=axis.transData, facecolors="none", edgecolors=colour,
-                                          **drawn))
+                                          offset_transform=axis.transData, facecolors="none", **drawn))
 
 
-def _block(covariance, first):
+def block(covariance: FloatArray, first: int) -> FloatArray:
+    """The 2 x 2 part of each covariance."""
     return covariance[:, first:first + 2, first:first + 2]
 
 
-def _draw_features(axis, features, seen):
-    """True features pose by pose, hollow where they were not seen."""
-    for feature in range(features.shape[1]):
-        own, missed = FEATURE_COLOURS[feature % len(FEATURE_COLOURS)], seen[:, feature] == 0
-        axis.plot(*features[:, feature].T, color=own, linewidth=0.5, zorder=2)
-        axis.plot(*features[~missed, feature].T, "o", color=own, markersize=1.9, zorder=2.5,
-                  label=f"feature {feature}, drifting" if features.shape[1] <= len(FEATURE_COLOURS) else None)
-        axis.plot(*features[missed, feature].T, "o", color=own, markersize=2.2, markerfacecolor="white",
-                  markeredgewidth=0.6, zorder=2.5)
-    axis.plot([], [], "o", color=style.GREY, markersize=2.4, markerfacecolor="white", markeredgewidth=0.6,
-              label="not seen")
-
-
-def draw_path(axis, arm, ellipse="95"):
-    """True and estimated path, features with their drift, edges, ellipses, and lines of sight to what was seen."""
-    (robot, features), (estimate, estimates) = positions(arm, "truth"), positions(arm, "mean")
-    seen, covariance, scale = arm["seen"][:], arm["covariance"][:], ELLIPSES[ellipse][0]
-    colour, (first, first_feature) = arm_colour(arm), robot_axes(arm)
-    if "edge" in arm:
-        ends = np.stack([features[:, arm["edge_from"][:]], features[:, arm["edge_to"][:]]], axis=2).reshape(-1, 2, 2)
-        axis.add_collection(LineCollection(ends, colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
-    sights = [(robot[pose], features[pose, feature]) for pose, feature in np.argwhere(seen == 1)]
-    axis.add_collection(LineCollection(sights, colors=style.SKY, linewidths=0.6, zorder=1.5, label="lines of sight"))
-    _draw_features(axis, features, seen)
-    for feature in range(features.shape[1]):
-        _ellipses(axis, estimates[:, feature], _block(covariance, first_feature + 2 * feature), scale,
-                  FEATURE_COLOURS[feature % len(FEATURE_COLOURS)], linewidths=0.5, zorder=2.2)
-    axis.plot(*robot.T, color="black", marker=".", markersize=2.5, linewidth=0.8, zorder=3, label="true path")
-    axis.plot(*estimate.T, color=colour, marker="+", markersize=3.5, markeredgewidth=0.7, linewidth=0.6,
-              linestyle="--", zorder=3.2, label="estimated path")
-    _ellipses(axis, estimate, _block(covariance, first), scale, colour, linewidths=0.6, zorder=3.1)
-    axis.plot([], [], "o", color=style.GREY, markersize=6, markerfacecolor="none", markeredgewidth=0.6,
-              label=ELLIPSES[ellipse][1])
-    unit = results.text(arm.parent, "length_unit")
-    axis.set(aspect="equal", xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-    extent(axis, arm, ellipse)
-
-
-def extent(axis, arm, ellipse="95"):
+def limits(axis: Axes, trial: Trajectory, scale: float) -> float:
     """Sets the limits to what the trial holds, ellipses included, and returns width / height."""
-    scale, (first, _) = ELLIPSES[ellipse][0], robot_axes(arm)
-    reach = scale * np.sqrt(np.diagonal(arm["covariance"][:], axis1=1, axis2=2)[:, first:])
-    mean, truth = arm["mean"][:, first:], arm["truth"][:, first:]
+    first = trial.components.index("r_x")
+    reach = scale * np.sqrt(np.diagonal(trial["covariance"], axis1=1, axis2=2)[:, first:])
+    mean, truth = trial["mean"][:, first:], trial["truth"][:, first:]
     places = np.concatenate([(mean - reach).reshape(-1, 2), (mean + reach).reshape(-1, 2), truth.reshape(-1, 2)])
     places = places[np.isfinite(places).all(axis=1)]
     low, high = places.min(axis=0) - 0.2, places.max(axis=0) + 0.2
-    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    return (high[0] - low[0]) / (high[1] - low[1])
+    unit = trial.scenario.group.attrs["length_unit"]
+    unit = unit.decode() if isinstance(unit, bytes) else unit
+    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
+    return float((high[0] - low[0]) / (high[1] - low[1]))
 
 
-def path(arm, ellipse="95", width=style.PAGE):
-    """The document's own figure: one trial in the plane, in a figure as high as the path asks for."""
-    figure, axis = style.new_figure(width, 100)
-    draw_path(axis, arm, ellipse)
-    ratio, narrow = extent(axis, arm, ellipse), width < style.PAGE
-    if narrow or ratio > 1.6:
-        figure.set_figheight(((48 if narrow else 40) + (width - 15) / ratio) / 25.4)
-        style.legend_above(axis, columns=2 if narrow else 4)
-    else:
-        figure.set_figheight(min(220, 18 + 110 / ratio) / 25.4)
-        style.legend_right(axis)
-    style.headline(figure, caption(arm))
-    return figure
+def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> float:
+    """True and estimated path, features, edges, ellipses, and lines of sight to what was seen; width / height."""
+    (robot, features), (estimate, estimates) = trial.positions("truth"), trial.positions("mean")
+    seen, covariance, scale = trial["seen"], trial["covariance"], ELLIPSES[ellipse][0]
+    colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURE_COLOURS)
+    if "edge" in trial:
+        ends = np.stack([features[:, trial["edge_from"]], features[:, trial["edge_to"]]], axis=2).reshape(-1, 2, 2)
+        axis.add_collection(LineCollection(ends, colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
+    sights = [(robot[pose], features[pose, feature]) for pose, feature in np.argwhere(seen == 1)]
+    axis.add_collection(LineCollection(sights, colors=style.SKY, linewidths=0.6 if few else 0.2, zorder=1.5,
+                                       label="lines of sight"))
+    for feature in range(features.shape[1]):
+        own = FEATURE_COLOURS[feature % len(FEATURE_COLOURS)]
+        drawn = slice(None) if few else slice(-1, None)  # many stand still: their last ellipse says it all
+        ellipses(estimates[drawn, feature], block(covariance, first + 2 + 2 * feature)[drawn], scale, axis,
+                 edgecolors=own, linewidths=0.5, zorder=2.2)
+        axis.plot(*features[:, feature].T, ".-", color=own, linewidth=0.5, markersize=3, zorder=2.4,
+                  label=f"feature {feature}" if few else ("features" if feature == 0 else None))
+    shown = style.thinned(*robot.T, *estimate.T)
+    short = len(robot) <= 60
+    axis.plot(*robot[shown].T, color="black", marker="." if short else "", markersize=2.5, linewidth=0.9, zorder=3,
+              label="true path")
+    axis.plot(*estimate[shown].T, color=colour, marker="+" if short else "", markersize=3.5, markeredgewidth=0.7,
+              linewidth=0.8, linestyle="--", zorder=3.2, label="estimated path")
+    some = np.unique(np.linspace(0, len(robot) - 1, min(len(robot), 60)).astype(int))
+    ellipses(estimate[some], block(covariance, first)[some], scale, axis, edgecolors=colour, linewidths=0.6, zorder=3.1)
+    axis.plot([], [], "o", color=style.GREY, markersize=6, markerfacecolor="none", markeredgewidth=0.6,
+              label=ELLIPSES[ellipse][1])
+    return limits(axis, trial, scale)
 
 
-def _draw_error(axis, arm, component):
-    """The error of a component of the state within 95 % of what the filter says."""
-    names = results.text(arm["component"], "component_names").split()
-    units = results.text(arm["component"], "component_units").split()
-    error = arm["mean"][:, component] - arm["truth"][:, component]
-    if names[component] == "theta":
-        error = (error + np.pi) % (2 * np.pi) - np.pi
-    half = stats.norm.ppf(0.975) * np.sqrt(arm["covariance"][:, component, component])
-    axis.fill_between(arm["pose"][:], -half, half, color=style.BAND, linewidth=0)
-    axis.plot(arm["pose"][:], error, marker=".", color=arm_colour(arm))
-    axis.axhline(0, color=style.GREY, linewidth=0.6, zorder=0.5)
-    axis.set_ylabel(f"error of {names[component]} [{units[component]}]")
+def need_path(trial: Trajectory) -> None:
+    if not trial.has_path:
+        raise ValueError(f"invalid kind=path ({trial.name} has no robot in the plane). Take errors or nees.")
 
 
-def _draw_squared(axis, arm, name, degrees, label):
-    """NEES or NIS of each pose, within 95 % of its chi-square."""
-    low, high = (stats.chi2.ppf(tail, np.where(degrees > 0, degrees, np.nan)) for tail in (0.025, 0.975))
-    axis.fill_between(arm["pose"][:], low, high, color=style.BAND, linewidth=0)
-    axis.plot(arm["pose"][:], arm[name][:], marker=".", color=arm_colour(arm))
-    axis.set(ylabel=label, ylim=(0, None))
+def path(trial: Trajectory, width: float, *, ellipse: str = "95") -> Picture:
+    """The trial in the plane, in a picture as high as the path asks for."""
+    need_path(trial)
+    picture, axis = style.one_panel(width)
+    ratio = draw_path(axis, trial, ellipse)
+    picture.set_figheight(min(215, 34 + (width - 22) / ratio) / 25.4)
+    style.key(axis, list(zip(*axis.get_legend_handles_labels())), width)
+    columns, first = trial.columns, trial.components.index("r_x")
+    last = float(np.linalg.norm(trial.errors[-1, first:first + 2]))
+    half = float(np.sqrt(np.trace(block(trial["covariance"][-1:], first)[0])))
+    unit = trial.component_units[first]
+    picture.title(f"The last position is off by {last:.3g} {unit}; the filter says {half:.3g} {unit} (1 σ). "
+                  f"NEES / n is {columns['nees_ratio']:.2f}", source(trial))
+    return picture
 
 
-def judged(arm):
-    """What a single trial says of its filter: errors of the robot, NEES, NIS, trace(P) and what was seen, by pose; as
-    wide as a page."""
-    figure, axes = style.new_figure(style.PAGE, 100, nrows=2, ncols=3, sharex=True)
-    first, first_feature = robot_axes(arm)
-    for axis, component in zip(axes[0], range(first_feature)):
-        _draw_error(axis, arm, component)
-    seen = np.where(arm["seen"][:] == 1, 1, 0).sum(axis=1)
-    if first_feature < 3:
-        axes[0, 2].bar(arm["pose"][1:], seen[1:], color=arm_colour(arm), alpha=0.6, width=0.7)
-        axes[0, 2].set(ylabel="features seen", ylim=(0, arm["feature"].size))
-        axes[0, 2].yaxis.get_major_locator().set_params(integer=True)
-    dimensions = np.where(arm["pose"][:] > 0, arm["component"].size, 0)
-    _draw_squared(axes[1, 0], arm, "nees", dimensions, "NEES")
-    _draw_squared(axes[1, 1], arm, "nis", np.maximum(arm["rows"][:], 0), "NIS")
-    axes[1, 2].plot(arm["pose"][:], arm["trace_P"][:], marker=".", color=arm_colour(arm))
-    axes[1, 2].set(ylabel="trace(P)" + style.unit_text(results.units(arm, "trace_P")), ylim=(0, None))
-    for axis in axes[1]:
-        style.step_axis(axis, arm["pose"][:], "pose")
-    style.headline(figure, f"{caption(arm)}; grey: where 95 % of a consistent filter's are")
-    return figure
+def errors(trial: Trajectory, width: float) -> Picture:
+    """The error of each component of the robot (of a user's own world the first three) within 95 % of what P says."""
+    shown = trial.components.index("r_x") + 2 if trial.has_path else min(3, len(trial.components))
+    picture = Picture(width, 24 + 34 * shown)
+    axes = picture.subplots(nrows=shown, sharex=True, squeeze=False)[:, 0]
+    outside, pose = {}, trial["pose"]
+    for component, axis in enumerate(axes):
+        error = trial.errors[:, component]
+        half = stats.norm.ppf(0.975) * np.sqrt(trial["covariance"][:, component, component])
+        drawn = style.thinned(error, half)
+        axis.fill_between(pose[drawn], -half[drawn], half[drawn], color=style.BAND, linewidth=0)
+        axis.plot(pose[drawn], error[drawn], marker="." if drawn.size <= 200 else "", color=arm_colour(trial))
+        axis.axhline(0, color=style.GREY, linewidth=0.6, zorder=0.5)
+        axis.set_ylabel(f"error of {trial.components[component]} [{trial.component_units[component]}]")
+        outside[trial.components[component]] = float(np.sum(np.abs(error) > half))
+    style.step_axis(axes[-1], pose, "pose")
+    style.key(axes[0], [style.band_entry("95 % of what P says")], width)
+    picture.title("Errors leave what P says at " + style.ranked(outside, lambda count: f"{count:.0f}")
+                  + f" of {np.isfinite(trial.errors[:, 0]).sum()} poses", source(trial))
+    return picture
+
+
+def nees(trial: Trajectory, width: float) -> Picture:
+    """NEES at each pose, within 95 % of its chi-square."""
+    picture, axis = style.one_panel(width)
+    pose, values, n = trial["pose"], trial["nees"], len(trial.components)
+    low, high = stats.chi2.ppf([0.025, 0.975], n)
+    drawn = style.thinned(values)
+    axis.axhspan(low, high, color=style.BAND, linewidth=0, zorder=0)
+    axis.plot(pose[drawn], values[drawn], marker="." if drawn.size <= 200 else "", color=arm_colour(trial))
+    axis.set(ylabel=f"NEES ({n} components)", ylim=(0, None))
+    style.step_axis(axis, pose, "pose")
+    style.key(axis, [style.band_entry(f"95 % of χ²({n})")], width)
+    there = np.isfinite(values)
+    picture.title(f"NEES lies outside the 95 % of χ²({n}) at {np.sum((values < low) | (values > high))} of "
+                  f"{there.sum()} poses", source(trial))
+    return picture
