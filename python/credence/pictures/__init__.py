@@ -22,6 +22,7 @@ from ..study import Scenario, Study
 from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
+from .place import place
 from .steps import accuracy, coverage, nees, nis, shape
 from .style import Picture
 from .trials import distribution, paired
@@ -30,7 +31,8 @@ __all__ = ["Picture", "animate", "plot"]
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
     "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "shape": shape,
-    "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map}
+    "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map,
+    "place": place}
 OF_TRIAL: dict[str, Callable[..., Picture]] = {
     "path": trajectory.path, "errors": trajectory.errors, "nees": trajectory.nees}
 
@@ -54,7 +56,7 @@ def plot(
         its first trial.
     kind : str, optional
         Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``shape``, ``accuracy``, ``distribution``,
-        ``paired``, ``verdicts``, ``map``. Of a grid: ``sweep``. Of a trial: ``path`` (the default), ``errors``,
+        ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default), ``errors``,
         ``nees``.
     scenario : str, optional
         The scenario of a study.

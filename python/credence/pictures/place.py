@@ -1,95 +1,80 @@
-#!/usr/bin/env python3
-"""The document's Figures 1 to 4, each from a single trial of a study, beside its place among all trials of that study.
+"""A single trial under every arm, beside its place among all trials of its study."""
 
-    python3 analysis/figures.py seed.h5 traces docs/figures
+from __future__ import annotations
 
-seed.h5 holds the four scenarios of FIGURES; traces/SCENARIO-ARM.h5 is what `credence replay` wrote of one trial of each
-arm. analysis/figures.sh makes all of it. Writes figure-1.png to figure-4.png.
-"""
-import pathlib
-import sys
+import os
+import tempfile
 
 import numpy as np
 
-import credence_results as results
-from pictures import study, style, trajectory
+from ..study import Scenario
+from ..trajectory import Trajectory, open_trajectories
+from . import program, style, trajectory
+from .steps import Arms, source
+from .style import Picture
+from .trials import draw_distribution, percentile
 
-FIGURES = ["kf-straight-constant", "kf-straight-ranged", "kf-circle-constant", "kf-circle-ranged"]
-DISTRIBUTIONS = (("trace_P", "trace(P) at the last pose"), ("unseen", "features unseen, summed over the poses"))
-
-
-def open_traces(folder, scenario):
-    """{arm: its group} of the trajectory files of a scenario, fixed path first."""
-    files = [results.open_file(folder / f"{scenario}-{arm}.h5", (results.TRAJECTORIES,))
-             for arm in ("fixed.kf", "greedy.kf")]
-    return {arm: group for file in files for _, arm, group in results.arms(file)}
+COLUMNS = ("trace_P", "unseen")
+KEYS = 36.0  # millimetres between paths and distributions, for the legends of both
 
 
-def axes_for(paths, wide):
-    """A figure with axes for the paths, for their legend and for two distributions: a straight path takes the whole
-    width, a circle half of it."""
-    rows, across = (paths, 1) if wide else (1, paths)
-    figure = style.plt.figure(figsize=(style.PAGE / 25.4, (96 + 22 * paths if wide else 172) / 25.4))
-    grid = figure.add_gridspec(rows + 2, 2, height_ratios=[21 if wide else 84] * rows + [26, 48])
-    drawn = [figure.add_subplot(grid[row, :] if across == 1 else grid[row, column])
-             for row in range(rows) for column in range(across)]
-    key = figure.add_subplot(grid[rows, :])
-    key.set_axis_off()
-    return figure, drawn, key, [figure.add_subplot(grid[rows + 1, column]) for column in (0, 1)]
-
-
-def grouped(traces):
-    """Arms that took the same path together: [(their names, one of their groups)]."""
-    taken = []
-    for arm, group in traces.items():
+def _grouped(trials: dict[str, Trajectory]) -> list[tuple[list[str], Trajectory]]:
+    """Arms that took the same path together."""
+    taken: list[tuple[list[str], Trajectory]] = []
+    for arm, trial in trials.items():
         for names, other in taken:
-            if all(np.array_equal(group[name][:], other[name][:]) for name in ("truth", "mean")):
+            if all(np.array_equal(trial[name], other[name]) for name in ("truth", "mean")):
                 names.append(arm)
                 break
         else:
-            taken.append(([arm], group))
+            taken.append(([arm], trial))
     return taken
 
 
-def share_limits(axes):
+def place(scenario: Scenario, arms: Arms, width: float, *, trial: int = 0, credence: str | None = None) -> Picture:
+    """The path of a trial under each arm (above), and where it is among all trials of the study (below)."""
+    with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+        trials = {}
+        for name in arms:
+            file = os.path.join(folder, f"{name}.h5")
+            program.replay(scenario.group.file.filename, scenario.name, name, trial, file, credence)
+            (trials[name],) = open_trajectories(file)
+        return _draw(scenario, arms, width, trials)
+
+
+def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajectory]) -> Picture:
+    paths = _grouped(trials)
+    wide = scenario.setting("features.path") == "straight"
+    rows, across = (len(paths), 1) if wide else (1, len(paths))
+    heights = [30.0 if wide else 0.95 * width / across] * rows + [KEYS, 52.0]
+    picture = Picture(width, 0)
+    grid = picture.add_gridspec(rows + 2, 2, height_ratios=heights)
+    axes = [picture.add_subplot(grid[row, :] if across == 1 else grid[row, column])
+            for row in range(rows) for column in range(across)]
+    for axis, (names, one) in zip(axes, paths):
+        trajectory.draw_path(axis, one)
+        axis.set_title(" and ".join(names))
+    _share_limits(axes)
+    keys = picture.add_subplot(grid[rows, :])
+    keys.set_axis_off()
+    keys.legend(*axes[0].get_legend_handles_labels(), loc="upper center", ncols=5, borderaxespad=0).set_in_layout(False)
+    runs = {column: {name: one.columns[column] for name, one in trials.items()} for column in COLUMNS}
+    for place, column in enumerate(COLUMNS):
+        axis = picture.add_subplot(grid[rows + 1, place])
+        draw_distribution(axis, scenario, arms, column, width / 2, runs[column])
+        axis.get_legend().set_in_layout(False)
+    picture.set_figheight((20 + sum(heights)) / 25.4)
+    unit = style.pretty(next(iter(arms.values()))[1].describe("trace_P").units)
+    said = {name: f"{value:.3g} {unit} ({percentile(arms[name][1]['trace_P'], value):.0f} % of the trials have less)"
+            for name, value in runs["trace_P"].items()}
+    picture.title("trace(P) at the last pose: " + ", ".join(f"{name} {words}" for name, words in said.items()),
+                  f"Above trial {next(iter(trials.values())).trial}, below its place among {source(scenario)}")
+    return picture
+
+
+def _share_limits(axes: list[style.Axes]) -> None:
     """Gives all of them the same limits."""
     boxes = np.array([[*axis.get_xlim(), *axis.get_ylim()] for axis in axes])
     low, high = boxes.min(axis=0), boxes.max(axis=0)
     for axis in axes:
         axis.set(xlim=(low[0], high[1]), ylim=(low[2], high[3]))
-
-
-def draw(number, scenario, traces):
-    """One figure: the trial's path under each arm, and where it and the published run stand among all trials."""
-    wide = results.setting(scenario, "features", "path") == "straight"
-    paths = grouped(traces)
-    figure, axes, key, places = axes_for(len(paths), wide)
-    for axis, (arms, group) in zip(axes, paths):
-        trajectory.draw_path(axis, group)
-        unit = results.units(group, "trace_P").replace("^2", "²")
-        axis.set_title(f"{' and '.join(arms)}: trace(P) {group.attrs['trace_P']:.4g} {unit}, "
-                       f"{int(group.attrs['unseen'])} unseen")
-    share_limits(axes)
-    key.legend(*axes[0].get_legend_handles_labels(), loc="upper center", ncols=5, borderaxespad=0).set_in_layout(False)
-    for axis, (name, label) in zip(places, DISTRIBUTIONS):
-        study.draw_distribution(axis, scenario, name, label, {arm: float(g.attrs[name]) for arm, g in traces.items()})
-        style.legend_above(axis, fontsize=7, handlelength=1.6, handletextpad=0.5).set_in_layout(False)
-    source = results.text(next(iter(traces.values())), "source")
-    figure.suptitle(f"Figure {number}: {results.text(scenario, 'title')}.\nAbove a single run ({source}), "
-                    f"below its place among {study.caption(scenario).split(', ', 1)[1]} (in brackets: trials below)",
-                    x=0.01, ha="left", fontsize=8)
-    return figure
-
-
-def main(study_file, traces, output):
-    with results.open_file(study_file, (results.STUDY,)) as file:
-        for number, name in enumerate(FIGURES, 1):
-            figure = draw(number, file[name], open_traces(pathlib.Path(traces), name))
-            style.save_png(figure, output, f"figure-{number}", dots_per_inch=160, colours=128)
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 4:
-        print("usage: figures.py STUDY.h5 TRACES OUTPUT", file=sys.stderr)
-        sys.exit(2)
-    main(*sys.argv[1:])

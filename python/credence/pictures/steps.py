@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.lines import Line2D
 from scipy import stats
 
 from .._file import FloatArray
@@ -47,7 +48,7 @@ def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str
         outside[name], steps = float(np.sum((mean < bounds[0]) | (mean > bounds[1]))), step.size
         shown = style.thinned(mean, low, high)
         line = style.arm_line(place, len(arms), shown.size)
-        axis.fill_between(step[shown], low[shown], high[shown], color=line["color"], **style.shade(len(arms)))
+        style.interval(axis, step[shown], mean[shown], low[shown], high[shown], line, len(arms))
         axis.plot(step[shown], mean[shown], **line)
         drawn.append(mean)
         if step.size and (reach := float(np.max(bounds[1] - bounds[0]))) > widest:  # where arms have other bands
@@ -58,11 +59,11 @@ def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str
     style.step_axis(axis, arm["step"])
     style.spread_out(axis.yaxis, drawn)
     axis.set_ylabel(label)
-    style.key(axis, [*style.arm_entries(places(arms)), style.band_entry("95 % band of a consistent filter")], width)
+    style.key(axis, [*style.arm_entries(places(arms)), style.band_entry("95 % if consistent")], width)
     what = label.split(" / ")[0]
-    picture.title(f"{what} leaves the band of a consistent filter at "
-                  + style.ranked(outside, lambda count: f"{count:.0f} of {steps} steps"),
-                  f"{source(scenario)}; shades: 95 % intervals of the means")
+    picture.title(f"{what} leaves the band of a consistent filter: "
+                  + style.ranked(outside, lambda count: f"at {count:.0f} of {steps} steps"),
+                  f"{source(scenario)}; shades or bars: 95 % intervals of the means")
     return picture
 
 
@@ -101,10 +102,10 @@ def coverage(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
     axis.axhline(100 * level, color=style.GREY, linewidth=0.6, zorder=0.5)
     style.step_axis(axis, arm["step"])
     what = "the truth" if group == "all" else group
-    axis.set_ylabel(f"trials with {what} inside the {100 * level:g} % region [%]")
-    style.key(axis, [*style.arm_entries(places(arms)), style.band_entry("95 % band of a consistent filter")], width)
-    picture.title(f"The {100 * level:g} % region of P holds {what} in "
-                  + style.ranked(found, lambda share: f"{share:.1f} %") + " of the trials", source(scenario))
+    axis.set_ylabel(f"inside the {100 * level:g} % region [% of trials]")
+    style.key(axis, [*style.arm_entries(places(arms)), style.band_entry("95 % if consistent")], width)
+    picture.title(f"The {100 * level:g} % region of P holds {what}: "
+                  + style.ranked(found, lambda share: f"in {share:.1f} %") + " of the trials", source(scenario))
     return picture
 
 
@@ -125,7 +126,7 @@ def shape(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) -> Pi
     axis.set(xlabel="probability of χ² below the NEES (all steps)", ylabel="density; a consistent filter has 1",
              xlim=(0, 1), ylim=(0, None))
     style.key(axis, style.arm_entries(places(arms)), width)
-    picture.title("NEES exceeds the 95 % quantile of χ² in " + style.ranked(tails, lambda share: f"{share:.1f} %")
+    picture.title("NEES exceeds the 95 % quantile of χ²: " + style.ranked(tails, lambda share: f"in {share:.1f} %")
                   + " of trials and steps", f"{source(scenario)}; {bins} bins of equal probability")
     return picture
 
@@ -138,16 +139,18 @@ def accuracy(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
     for name, (place, arm) in arms.items():
         error, said = (np.sqrt(arm.per_step(series[name]).mean) for series in (errors, variances))
         low, high = (np.sqrt(np.maximum(end, 0)) for end in arm.per_step(errors[name]).interval())
-        shown, line = style.thinned(error, said), style.arm_line(place, len(arms), arm["step"].size)
-        axis.fill_between(arm["step"][shown], low[shown], high[shown], color=line["color"], **style.shade(len(arms)))
-        axis.plot(arm["step"][shown], error[shown], **line | {"linestyle": "-", "markevery": 0.07})
-        axis.plot(arm["step"][shown], said[shown], **style.arm_style(place) | {"linestyle": ":", "linewidth": 1.4})
+        shown, step = style.thinned(error, said), arm["step"]
+        line = style.arm_line(place, len(arms), shown.size)
+        style.interval(axis, step[shown], error[shown], low[shown], high[shown], line, len(arms))
+        axis.plot(step[shown], error[shown], **line | {"linestyle": "-"})
+        axis.plot(step[shown], said[shown], color=line["color"], linestyle=":", linewidth=1.4)
         found[name], unit = float(np.sqrt(np.mean(error**2) / np.mean(said**2))), arm.describe(errors[name]).units
     style.step_axis(axis, arm["step"])
-    axis.set(ylabel=f"error of {'the state' if group == 'all' else group} [{style.pretty(unit)}], squared under a root",
-             ylim=(0, None))
-    style.key(axis, style.arm_entries(places(arms)), width)
-    picture.title("Error over what P says: " + style.ranked(found, lambda ratio: f"{ratio:.2f}"),
-                  f"{source(scenario)}; lines: root mean squared error with 95 % intervals; dots: root of the mean "
-                  "variance that the filter says")
+    what = "the state" if group == "all" else group
+    axis.set(ylabel=f"error of {what} [{style.root_of(unit)}]", ylim=(0, None))
+    lines = [(Line2D([], [], color=style.GREY, linestyle=dashes), label)
+             for dashes, label in (("-", "root mean square"), (":", "what P says"))]
+    style.key(axis, [*style.arm_entries(places(arms)), *lines], width)
+    picture.title(f"Error of {what} over what P says: " + style.ranked(found, lambda ratio: f"{ratio:.2f}"),
+                  f"{source(scenario)}; shades or bars: 95 % intervals; dots: root of the mean variance")
     return picture

@@ -17,6 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
+from PIL import Image
 
 from .._file import FloatArray
 
@@ -27,13 +28,14 @@ ARM_COLOURS = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY]  # [Okabe and Ito 20
 ARM_LINES: list[Any] = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
 ARM_MARKERS = ["o", "s", "^", "D", "v", "P"]
 POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+COLOURS = 128  # of a .png
 MOST_POINTS = 2000  # of a curve; more are not seen in print, and make files large
 PRINT: dict[Any, Any] = {
     "font.family": "DejaVu Sans", "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7.5,
     "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "axes.titlelocation": "left", "axes.linewidth": 0.6,
     "lines.linewidth": 1.1, "lines.markersize": 3.2, "axes.spines.top": False, "axes.spines.right": False,
     "xtick.major.width": 0.6, "ytick.major.width": 0.6, "legend.frameon": False, "legend.handlelength": 2.6,
-    "pdf.fonttype": 42, "svg.hashsalt": "credence", "axes.axisbelow": True, "savefig.dpi": 200, "figure.dpi": 100,
+    "pdf.fonttype": 42, "svg.hashsalt": "credence", "axes.axisbelow": True, "savefig.dpi": 160, "figure.dpi": 100,
 }
 
 
@@ -41,7 +43,7 @@ class Picture(Figure):
     """A matplotlib figure with one message as its title. A notebook shows it as it is; `save` writes it."""
 
     def __init__(self, width: float, height: float) -> None:
-        super().__init__(figsize=(width / 25.4, height / 25.4), layout="constrained")
+        super().__init__(figsize=(width / 25.4, max(height, 1) / 25.4), layout="constrained")
         FigureCanvasAgg(self)
 
     def title(self, message: str, source: str) -> None:
@@ -55,15 +57,21 @@ class Picture(Figure):
             super().draw(renderer)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a .pdf, .svg or .png, the same bytes each time."""
-        date = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(os.path.splitext(path)[1], {"Software": None})
+        """Writes a .pdf, .svg or .png, the same bytes each time; a .png with 128 colours, which make it small."""
+        ending = os.path.splitext(path)[1].lower()
+        if ending == ".png":
+            with Image.open(io.BytesIO(self._repr_png_())) as picture:
+                small = picture.convert("RGB").quantize(COLOURS, Image.Quantize.FASTOCTREE)
+                small.save(path, optimize=True, dpi=picture.info["dpi"])
+            return
+        date = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(ending)
         with matplotlib.rc_context(PRINT):
             self.savefig(path, metadata=date)
 
     def _repr_png_(self) -> bytes:
         picture = io.BytesIO()
         with matplotlib.rc_context(PRINT):
-            self.savefig(picture, format="png", dpi=150)
+            self.savefig(picture, format="png", metadata={"Software": None})
         return picture.getvalue()
 
 
@@ -116,9 +124,17 @@ def arm_line(index: int, count: int, points: int) -> dict[str, Any]:
     return arm_style(index, count) | arm_mark(index) | {"markevery": (index * every // max(count, 1) % every, every)}
 
 
-def shade(count: int) -> dict[str, Any]:
-    """How the interval of one of so many arms is drawn."""
-    return {"alpha": 0.25 if count <= 4 else 0.12, "linewidth": 0}
+def interval(axis: Axes, x: FloatArray, mean: FloatArray, low: FloatArray, high: FloatArray, line: dict[str, Any],
+             count: int) -> None:
+    """The interval of one of so many arms: a shade, or of many arms, whose shades would hide one another, bars at the
+    arm's marks."""
+    if count <= 4:
+        axis.fill_between(x, low, high, color=line["color"], alpha=0.25, linewidth=0)
+        return
+    first, every = line["markevery"]
+    at = slice(first, None, every)
+    axis.errorbar(x[at], mean[at], yerr=np.abs([mean[at] - low[at], high[at] - mean[at]]), linestyle="none",
+                  ecolor=line["color"], elinewidth=0.8)
 
 
 def ranked(values: Mapping[str, float], say: Callable[[float], str]) -> str:
@@ -137,6 +153,11 @@ def pretty(unit: str) -> str:
 def in_brackets(unit: str) -> str:
     """`` [dm²]``; nothing for `1`."""
     return f" [{pretty(unit)}]" if pretty(unit) else ""
+
+
+def root_of(unit: str) -> str:
+    """The unit of a root: dm of dm^2."""
+    return unit.removesuffix("^2") if unit.count("^2") == 1 and unit.endswith("^2") else f"√({pretty(unit)})"
 
 
 def with_half_width(mean: float, half: float) -> str:
@@ -189,12 +210,27 @@ def aside(index: int, count: int) -> float:
 
 
 def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float) -> None:
-    """A legend above the panel, where it hides nothing, in as many columns as fit."""
-    if entries:
-        handles, labels = zip(*entries)
-        columns = max(1, int((width - 12) / (9 + 1.45 * max(map(len, labels)))))
-        axis.legend(handles, labels, loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=min(columns, len(labels)),
-                    borderaxespad=0.2, columnspacing=1.4)
+    """A legend where it hides nothing: above the panel, by which the picture grows; on a page beside it where there are
+    many short entries."""
+    if not entries:
+        return
+    handles, labels = zip(*entries)
+    longest = 9 + 1.4 * max(map(len, labels))
+    if len(labels) > 4 and longest < 45 and width >= PAGE:
+        beside(axis, entries)
+        return
+    columns = max(1, min(len(labels), int((width - 12) / longest)))
+    rows = -(-len(labels) // columns)
+    picture = axis.figure
+    picture.set_figheight(picture.get_figheight() + 4 * (rows - 1) / 25.4)
+    axis.legend(handles, labels, loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=columns, borderaxespad=0.2,
+                columnspacing=1.4)
+
+
+def beside(axis: Axes, entries: Sequence[tuple[Any, str]]) -> None:
+    """A legend on the right of the panel."""
+    handles, labels = zip(*entries)
+    axis.legend(handles, labels, loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
 def arm_entries(places: Mapping[str, int]) -> list[tuple[Any, str]]:
@@ -211,14 +247,3 @@ def finite(values: npt.ArrayLike) -> FloatArray:
     """Those that are not NaN, rising."""
     found: FloatArray = np.sort(np.asarray(values, np.float64))
     return found[~np.isnan(found)]
-
-
-def strip(picture: Picture, entries: Sequence[tuple[Any, str]]) -> None:
-    """A legend of the whole picture in a strip below its panels, by which the picture grows."""
-    width, height = (float(size) * 25.4 for size in picture.get_size_inches())
-    handles, labels = zip(*entries)
-    columns = max(1, min(len(labels), int(width / (14 + 1.5 * max(map(len, labels))))))
-    high = 2 + 4.2 * -(-len(labels) // columns)
-    picture.set_figheight((height + high) / 25.4)
-    picture.get_layout_engine().set(rect=(0, high / (height + high), 1, height / (height + high)))
-    picture.legend(handles, labels, loc="lower left", ncols=columns, borderaxespad=0.3, columnspacing=1.4)

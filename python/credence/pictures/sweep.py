@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -50,8 +51,9 @@ def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray]) -> None:
     for index, found in enumerate(curves.values()):
         mean, low, high = found.T
         if numbers:
-            line, shown = style.arm_line(index, len(curves), x.size) | {"markevery": 1}, style.thinned(mean, low, high)
-            axis.fill_between(x[shown], low[shown], high[shown], color=line["color"], **style.shade(len(curves)))
+            shown = style.thinned(mean, low, high)
+            line = style.arm_line(index, len(curves), x.size) | {"markevery": (0, 1)}
+            style.interval(axis, x[shown], mean[shown], low[shown], high[shown], line, len(curves))
             axis.plot(x[shown], mean[shown], **line)
         else:
             axis.errorbar(x + style.aside(index, len(curves)), mean, yerr=np.abs([mean - low, high - mean]),
@@ -68,7 +70,7 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
     """A column along a swept key, with 95 % intervals; or its differences planned - fixed. A panel for each value of the
     other keys, the first four of them."""
     study, panels = grid.study, list(slices(grid))
-    shown = panels[:MOST_PANELS if width >= style.PAGE else 2]
+    shown = panels[:MOST_PANELS if width >= style.PAGE else 1]
     first = study[next(name for name in grid.names.flat if name)]
     drawn: dict[str, tuple[str, str | None]] = {arm: (arm, None) for arm in first}
     if difference:
@@ -81,31 +83,35 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
                               for point in names]) for name, arms in drawn.items()} for _, names in shown]
     for axis, (title, _), curves in zip(axes, shown, found):
         _draw(axis, grid, curves)
-        axis.set_title(title)
+        if len(shown) > 1:
+            axis.set_title(title)
         if difference or column.endswith("_ratio"):
             axis.axhline(0 if difference else 1, color=style.GREY, linewidth=0.6, zorder=0.5)
     if not difference:
         style.spread_out(axes[0].yaxis, [values for curves in found for values in curves.values()])
-    what = trials.name_of(column, first)
-    axes[0].set_ylabel(f"difference of {what}" if difference else what)
-    style.strip(picture, style.arm_entries({name: index for index, name in enumerate(drawn)}))
-    picture.title(_message(grid, found, shown[0][0], what), _source(grid, len(panels) - len(shown)))
+    what = ("difference of " if difference else "") + trials.name_of(column, first)
+    axes[0].set_ylabel(textwrap.fill(what, 42))
+    entries = style.arm_entries({name: index for index, name in enumerate(drawn)})
+    if len(shown) > 1:
+        style.beside(axes[-1], entries)
+    else:
+        style.key(axes[0], entries, width)
+    picture.title(_message(grid, found[0], shown[0][0], what.split(" [")[0]), _source(grid, len(panels) - len(shown)))
     return picture
 
 
-def _message(grid: Grid, found: list[dict[str, FloatArray]], where: str, what: str) -> str:
-    """From the first value to the last, of the first panel's curve that changes most."""
-    values, curves = grid.coordinates[curve_key(grid)], found[0]
+def _message(grid: Grid, curves: dict[str, FloatArray], where: str, what: str) -> str:
+    """From the first value to the last, of the curve of a panel that changes most."""
+    values = grid.coordinates[curve_key(grid)]
     name = max(curves, key=lambda one: float(np.nan_to_num(np.ptp(curves[one][:, 0]))))
     first, last = curves[name][[0, -1], 0]
-    ends = [as_text(values[0]), as_text(values[-1])]
-    return (f"{name}: {what} goes from {first:.3g} at {curve_key(grid)}={ends[0]} to {last:.3g} at {ends[1]}"
-            + (f" ({where})" if where else ""))
+    return (f"{name}: {what} goes from {first:.3g} at {curve_key(grid)}={as_text(values[0])} to {last:.3g} at "
+            f"{as_text(values[-1])}" + (f" ({where})" if where else ""))
 
 
 def _source(grid: Grid, left_out: int) -> str:
     scenarios = [grid.study[name] for name in grid.names.flat if name]
     counts = [max(arm.trials for arm in scenario.arms.values()) for scenario in scenarios]
-    return (f"{grid.of}, {max(counts):,} trials each, seed {grid.study.seed}; shades: 95 % intervals of the means"
+    return (f"{grid.of}, {max(counts):,} trials each, seed {grid.study.seed}; shades or bars: 95 % intervals of the means"
             + (f"; {left_out} more panels in the file" if left_out else "")
             + (f"; {counts.count(0)} of {len(counts)} points are not run yet" if 0 in counts else ""))

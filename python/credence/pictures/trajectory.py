@@ -129,7 +129,7 @@ def errors(trial: Trajectory, width: float) -> Picture:
         outside[trial.components[component]] = float(np.sum(np.abs(error) > half))
     style.step_axis(axes[-1], pose, "pose")
     style.key(axes[0], [style.band_entry("95 % of what P says")], width)
-    picture.title("Errors leave what P says at " + style.ranked(outside, lambda count: f"{count:.0f}")
+    picture.title("Errors leave the 95 % of what P says: " + style.ranked(outside, lambda count: f"at {count:.0f}")
                   + f" of {np.isfinite(trial.errors[:, 0]).sum()} poses", source(trial))
     return picture
 

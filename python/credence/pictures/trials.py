@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from .. import means
 from .._file import FloatArray
@@ -34,7 +35,7 @@ def percentile(values: FloatArray, value: float) -> float:
 
 
 def draw_distribution(axis: Axes, scenario: Scenario, arms: Arms, column: str,
-                      runs: Mapping[str, float] | None = None) -> dict[str, float]:
+                      width: float, runs: Mapping[str, float] | None = None) -> dict[str, float]:
     """The share of trials at or below each value. Single runs, `runs` {arm: value} and the published ones, are marked on
     the curve at their place. Returns {arm: median}."""
     medians, ends, entries = {}, [], style.arm_entries(places(arms))
@@ -56,16 +57,17 @@ def draw_distribution(axis: Axes, scenario: Scenario, arms: Arms, column: str,
         medians[name] = float(np.median(values))
         ends.append(np.quantile(values, [0.0005, 0.9995]))
     axis.set(xlabel=name_of(column, scenario), ylabel="trials at or below [%]", ylim=(0, 100))
-    if ends and 0 < 4 * np.min(ends) < np.max(ends):
+    counted = next(iter(scenario.arms.values())).describe(column).units == "1"
+    if ends and not counted and 0 < 4 * np.min(ends) < np.max(ends):
         style.logarithmic(axis.xaxis, np.min(ends) / 1.1, np.max(ends) * 1.1)
-    style.key(axis, entries, axis.get_window_extent().width / axis.figure.dpi * 25.4)
+    style.key(axis, entries, width)
     return medians
 
 
 def distribution(scenario: Scenario, arms: Arms, width: float, *, column: str = "trace_P") -> Picture:
     """The distribution of a column over the trials, with the published single run at its place where there is one."""
     picture, axis = style.one_panel(width)
-    medians = draw_distribution(axis, scenario, arms, column)
+    medians = draw_distribution(axis, scenario, arms, column, width)
     unit = style.pretty(next(iter(scenario.arms.values())).describe(column).units)
     picture.title(f"Median of {NAMES.get(column, column)}: " + style.ranked(medians, lambda value: f"{value:.4g}")
                   + f" {unit}", source(scenario))
@@ -94,12 +96,12 @@ def paired(scenario: Scenario, arms: Arms, width: float, *, column: str = "trace
         shown, line = style.thinned(values), style.arm_style(arms[planned][0], len(found))
         low, high = (float(end) for end in of.interval())
         axis.plot(values[shown], 100 * (shown + 1) / values.size, drawstyle="steps-post", **line)
-        axis.axvspan(low, high, color=line["color"], **style.shade(len(found)))
-        axis.axvline(float(of.mean), color=line["color"], linewidth=0.8)
+        axis.errorbar(float(of.mean), 4 + 5 * index, xerr=(high - low) / 2, elinewidth=1.6,
+                      **style.arm_mark(arms[planned][0]))
         name, unit = f"{planned} \N{MINUS SIGN} {fixed}", arms[planned][1].describe(column).units
-        entries.append((style.Line2D([], [], **line),
+        entries.append((Line2D([], [], **line | style.arm_mark(arms[planned][0])),
                         f"{name}: {style.with_half_width(float(of.mean), (high - low) / 2)}"))
-        less[name] = 100 * float(np.mean(values < 0))
+        less[planned] = 100 * float(np.mean(values < 0))
         reach = max(reach, float(np.quantile(np.abs(values), 0.999)))
         scale = max(scale, float(np.median(np.abs(values))))
     axis.axvline(0, color="black", linewidth=0.6)
@@ -107,8 +109,7 @@ def paired(scenario: Scenario, arms: Arms, width: float, *, column: str = "trace
         style.root_axis(axis, scale, reach)
     axis.set(xlabel=f"difference of {name_of(column, scenario)}", ylabel="trials at or below [%]", ylim=(0, 100))
     style.key(axis, entries, width)
-    picture.title(f"Less {NAMES.get(column, column)} than the fixed path in "
-                  + style.ranked(less, lambda share: f"{share:.0f} %").replace(f" {chr(8722)} fixed", " − fixed")
-                  + " of the trials", f"{source(scenario)}; lines and shades: mean and its 95 % interval"
-                  + (f"; {style.pretty(unit)}" if style.pretty(unit) else ""))
+    picture.title(f"Less {NAMES.get(column, column)} than on the fixed path: "
+                  + style.ranked(less, lambda share: f"in {share:.0f} %") + " of the trials",
+                  f"{source(scenario)}; marks with bars: means with 95 % intervals{style.in_brackets(unit)}")
     return picture

@@ -29,6 +29,8 @@ def _verdicts(parts: dict[str, dict[str, Any]]) -> str:
     if len(said) <= 3:
         return ", ".join(f"{name} {verdict}" for name, verdict in said.items())
     counts = collections.Counter(said.values()).most_common()
+    if len(counts) == 1:
+        return f"All {len(said)} arms are {counts[0][0]}"
     return f"Of {len(said)} arms " + ", ".join(f"{count} {verdict}" for verdict, count in counts)
 
 
@@ -36,7 +38,7 @@ def verdicts(scenario: Scenario, arms: Arms, width: float, *, credence: str | No
     """NEES / dimension of every component group over all steps, with its 95 % interval, beside the margin."""
     parts = _report(scenario, arms, credence)
     groups = [block["block"] for block in next(iter(parts.values()))["blocks"]]
-    picture, axis = style.one_panel(width, min(220, 36 + len(groups) * max(6, 2.6 * len(parts))))
+    picture, axis = style.one_panel(width, min(220, 36 + len(groups) * max(6, 1.8 * len(parts))))
     margin, drawn = next(iter(parts.values()))["margin"], []
     axis.axvspan(1 - margin, 1 + margin, color=style.BAND, linewidth=0)
     axis.axvline(1, color=style.GREY, linewidth=0.6)
