@@ -17,10 +17,10 @@ from typing import Any
 
 try:
     from credence.study import Scenario, Study
-    from credence.trajectory import Trajectory, open_trajectories
+    from credence.trajectory import Trajectory
 
-    from . import OF_SCENARIO, OF_TRIAL, Picture, plot, program, style
-    from . import open_study as _open_study
+    from . import program, style
+    from .drawing import OF_SCENARIO, OF_TRIAL, Picture, opened, plot
     from .trials import NAMES, pairs
 except ImportError as missing:
     print(f"credence.pictures: cannot draw ({missing}). Install python3-h5py, python3-scipy and python3-matplotlib "
@@ -121,12 +121,9 @@ def _save(picture: Picture, stem: pathlib.Path, vector: str) -> None:
 
 
 def _jobs(options: argparse.Namespace) -> Iterator[Job]:
-    try:
-        study = _open_study(options.file)
-    except ValueError as problem:
-        if "trajectories, not results" not in str(problem):
-            raise
-        yield from _of_trajectories(open_trajectories(options.file), options)
+    study = opened(options.file)
+    if not isinstance(study, Study):
+        yield from _of_trajectories(study, options)
         return
     if "keep" in study.file.attrs:
         print(f"no pictures of {' and '.join(NEED_TRIALS)}: {options.file} keeps aggregates. They need the trials "

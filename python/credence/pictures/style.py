@@ -121,7 +121,9 @@ def arm_mark(index: int) -> dict[str, Any]:
 def arm_line(index: int, count: int, points: int) -> dict[str, Any]:
     """A line with about fifteen marks, each arm's at points of its own where there are more than two arms."""
     every = max(count if count > 2 else 1, points // 15)
-    return arm_style(index, count) | arm_mark(index) | {"markevery": (index * every // max(count, 1) % every, every)}
+    thin = {"linewidth": 0.8} if points > 200 else {}
+    at = index * every // max(count, 1) % every
+    return arm_style(index, count) | arm_mark(index) | thin | {"markevery": (at, every)}
 
 
 def interval(axis: Axes, x: FloatArray, mean: FloatArray, low: FloatArray, high: FloatArray, line: dict[str, Any],
