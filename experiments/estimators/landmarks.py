@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables and pictures of docs/estimators.md, "Landmarks on a loop", from a file of experiments/estimators/landmarks.ini.
+"""Tables and pictures of docs/estimators.md, "Landmarks on a loop", from a study of landmarks.ini.
 
     PYTHONPATH=python python3 experiments/estimators/landmarks.py study.h5 [-o DIR] [--sweep sigma=FILE.h5 ...]
 
@@ -12,8 +12,9 @@ import argparse
 import pathlib
 import sys
 
-import credence
 import numpy as np
+
+import credence
 
 
 def estimator(arm):
@@ -111,7 +112,7 @@ def main(arguments=None):
         with credence.open(options.file) as study:
             scenario = next(iter(study.scenarios.values()))
             if scenario.setting("scenario.world") != "landmarks":
-                raise ValueError(f"{options.file} has no landmarks. Give a file of experiments/estimators/landmarks.ini.")
+                raise ValueError(f"{options.file} has no landmarks. Give a study of landmarks.ini.")
             ratios(scenario, "nees_pose", "pose NEES/3")
             ratios(scenario, "nees_heading", "heading NEES")
             summary(scenario)

@@ -6,7 +6,7 @@ import importlib
 from typing import Any
 
 _homes = {
-    "Arm": "study",
+    "Arm": "arm",
     "Scenario": "study",
     "Study": "study",
     "animate": "pictures",

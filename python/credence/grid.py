@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ._file import FloatArray
-from .study import Arm, Scenario, Study
+from .arm import Arm
+from .study import Scenario, Study
 
 if TYPE_CHECKING:
     import xarray
@@ -81,13 +82,14 @@ def grids_of(study: Study) -> list[Grid]:
 
 def _grid(study: Study, of: str, keys: Sequence[str], points: dict[str, tuple[float | str, ...]]) -> Grid:
     axes: list[list[Any]] = []
-    for values in zip(*points.values()):
+    for values in zip(*points.values(), strict=True):
         texts = any(isinstance(value, str) for value in values)
         axes.append(list(dict.fromkeys(map(as_text, values))) if texts else sorted(set(values)))
     names = np.full([len(axis) for axis in axes], "", dtype=object)
     for name, place in points.items():
-        names[tuple(axis.index(value if value in axis else as_text(value)) for axis, value in zip(axes, place))] = name
-    return Grid(study, of, {key: np.array(axis) for key, axis in zip(keys, axes)}, names)
+        at = (axis.index(value if value in axis else as_text(value)) for axis, value in zip(axes, place, strict=True))
+        names[tuple(at)] = name
+    return Grid(study, of, {key: np.array(axis) for key, axis in zip(keys, axes, strict=True)}, names)
 
 
 def as_text(value: Any) -> str:

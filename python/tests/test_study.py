@@ -34,7 +34,7 @@ def test_columns_and_variables_are_those_of_h5py():
             assert list(arm.columns) == COLUMNS
             for name in COLUMNS:
                 np.testing.assert_array_equal(arm[name], plain[name][:])
-                assert arm.describe(name) == (plain[name].attrs["units"].decode(), plain[name].attrs["long_name"].decode())
+                assert arm.describe(name) == tuple(plain[name].attrs[one].decode() for one in ("units", "long_name"))
             np.testing.assert_array_equal(arm.detailed_nees, plain["detailed_nees"][:])
             np.testing.assert_array_equal(arm.nees, plain["nees_total"][:, 0] / 600)
             np.testing.assert_array_equal(arm.nis_rows, plain["nis_rows_total"][:] / 600)
@@ -57,7 +57,7 @@ def test_numbers_are_those_of_the_report(make):
                 assert found.units == part[name]["unit"]
             groups = arm.series_of("nees")
             assert list(groups) == [block["block"] for block in part["blocks"]]
-            for series, block in zip(groups.values(), part["blocks"]):
+            for series, block in zip(groups.values(), part["blocks"], strict=True):
                 step, run = arm.per_step(series), arm.over_steps(series)
                 assert step.dimension == block["dimension"]
                 near(step.mean / step.dimension, block["anees"]["ratio"])
@@ -65,7 +65,7 @@ def test_numbers_are_those_of_the_report(make):
                 near(np.array([run.mean, run.standard_error, *run.interval()]) / run.dimension,
                      [block["nees_ratio"], block["se"], *block["ci95"]])
                 near(band(arm.degrees(series)), np.transpose(block["anees"]["band95"]))
-            for series, nis in zip(arm.series_of("nis").values(), part["nis"]):
+            for series, nis in zip(arm.series_of("nis").values(), part["nis"], strict=True):
                 near(arm.degrees(series).sum(), nis["degrees"])
                 near(arm[series].sum() * arm.counted_trials / arm.degrees(series).sum(), nis["ratio"])
 
@@ -196,9 +196,9 @@ def test_what_cannot_be_read_is_refused(tmp_path):
 def test_names_are_found_or_refused_with_those_that_are_there():
     with credence.open(studies.two_scenarios()) as study:
         assert repr(study["ekf-circle-ranged", "greedy.ekf"]) == repr(study["ekf-circle-ranged"]["greedy.ekf"])
-        with pytest.raises(KeyError, match="has no scenario greedy.ekf. It has kf-circle-constant, ekf-circle-ranged"):
+        with pytest.raises(KeyError, match=r"has no scenario greedy\.ekf\. It has kf-circle-constant, ekf-circle"):
             study["greedy.ekf"]
-        with pytest.raises(KeyError, match="has no arm fixed.kf. It has fixed.ekf, greedy.ekf"):
+        with pytest.raises(KeyError, match=r"has no arm fixed\.kf\. It has fixed\.ekf, greedy\.ekf"):
             study["ekf-circle-ranged", "fixed.kf"]
         assert study["ekf-circle-ranged"].setting("sensor.noise") == "ranged"
         assert study["kf-circle-constant"].published("trace_P") == {"fixed.kf": 0.1061, "greedy.kf": 0.1063}
@@ -227,7 +227,7 @@ def test_a_grid_has_the_numbers_of_the_report():
             "noise.heading": [0.01, 0.1], "sensor.noise": ["constant", "ranged"]}
         means = grid.values(lambda scenario: scenario["greedy.ekf"].mean("trace_P").mean)
         for place, name in np.ndenumerate(grid.names):
-            assert dict(zip(("of", "at"), study[name].sweep)) == parts[name, "fixed.ekf"]["sweep"]
+            assert dict(zip(("of", "at"), study[name].sweep, strict=True)) == parts[name, "fixed.ekf"]["sweep"]
             near(means[place], parts[name, "greedy.ekf"]["trace_P"]["mean"])
         holes = Grid(study, grid.of, grid.coordinates, np.where(grid.names == grid.names[0, 0], "", grid.names))
         assert np.isnan(holes.values(lambda scenario: 1.0)).tolist() == [[True, False], [False, False]]
@@ -266,4 +266,5 @@ def test_a_trajectory_has_the_trial_of_its_study():
     assert (trial.trial, trial.name, trial.status) == (17, "greedy.ekf", "completed")
     robot, features = trial.positions("truth")
     assert (robot.shape, features.shape) == ((20, 2), (20, 3, 2))
-    near(np.sum((trial.positions("mean")[0] - robot) ** 2) + np.sum(trial.errors[:, 0] ** 2), trial.columns["pose_error"])
+    squared = np.sum((trial.positions("mean")[0] - robot) ** 2) + np.sum(trial.errors[:, 0] ** 2)
+    near(squared, trial.columns["pose_error"])

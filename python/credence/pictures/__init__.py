@@ -4,8 +4,8 @@
     credence.plot(study, "coverage", group="pose").save("coverage.pdf")
     credence.animate(study, trial=17, path="trial.gif")
 
-`python -m credence.pictures study.h5 -o pictures` draws all that a file has. Needs h5py, matplotlib and SciPy, which are
-not imported before something is drawn.
+`python -m credence.pictures study.h5 -o pictures` draws all that a file has. Needs h5py, matplotlib and SciPy, which
+are not imported before something is drawn.
 """
 
 from __future__ import annotations

@@ -45,8 +45,8 @@ def _parser() -> argparse.ArgumentParser:
                         help="millimetres: a page (default) or a column")
     parser.add_argument("--ellipses", choices=("95", "1-sigma"), default="95",
                         help="ellipses of a trajectory: 95 %% (default) or 1-sigma")
-    parser.add_argument("--credence", metavar="PATH", help="the program, which says the verdicts (default: the package's "
-                        "compiled module, build/credence of a checkout, or that on the PATH)")
+    parser.add_argument("--credence", metavar="PATH", help="the program, which says the verdicts (default: the "
+                        "package's compiled module, build/credence of a checkout, or that on the PATH)")
     return parser
 
 
@@ -93,7 +93,7 @@ def _of_scenario(scenario: Scenario, options: argparse.Namespace) -> Iterator[Jo
         "paired": [{"column": column} for column in columns if pairs(list(arms))],
         "place": [{"trial": options.trial, "credence": options.credence}] if "place" in (options.kind or []) else []}
     for kind, wanted in kinds.items():
-        if options.kind and kind not in options.kind or kind in NEED_TRIALS and not first.keeps_trials:
+        if (options.kind and kind not in options.kind) or (kind in NEED_TRIALS and not first.keeps_trials):
             continue
         for given in wanted:
             words = [scenario.name, kind, *(str(given[word]) for word in ("arm", "column") if word in given)]

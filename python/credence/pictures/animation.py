@@ -8,6 +8,7 @@ import shutil
 import matplotlib
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.lines import Line2D
 
 from ..trajectory import Trajectory
 from . import style, trajectory
@@ -54,7 +55,7 @@ class _Frame:
         marks = [("true path", {"color": "black", "marker": "o"}), ("features", {"color": style.GREEN, "marker": "o"}),
                  ("estimated path", {"color": self.colour, "linestyle": "--", "marker": "+"}),
                  (called, {"color": self.colour, "marker": "o", "linestyle": "", "markerfacecolor": "none"})]
-        self.entries = [(style.Line2D([], [], **drawn), label) for label, drawn in marks]  # type: ignore[arg-type]
+        self.entries = [(Line2D([], [], **drawn), label) for label, drawn in marks]  # type: ignore[arg-type]
 
     def show(self, pose: int) -> None:
         axis, labels = self.axis, (self.axis.get_xlabel(), self.axis.get_ylabel())

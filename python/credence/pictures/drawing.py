@@ -18,7 +18,7 @@ from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
 from .place import place
 from .steps import accuracy, coverage, nees, nis, shape
-from .style import Picture
+from .style import Picture as Picture
 from .trials import distribution, paired
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
@@ -48,8 +48,8 @@ def plot(
         its first trial.
     kind : str, optional
         Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``shape``, ``accuracy``, ``distribution``,
-        ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default), ``errors``,
-        ``nees``.
+        ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default),
+        ``errors``, ``nees``.
     scenario : str, optional
         The scenario of a study.
     arms : list of str, optional

@@ -6,6 +6,7 @@ import os
 import tempfile
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from ..study import Scenario
 from ..trajectory import Trajectory, open_trajectories
@@ -51,7 +52,7 @@ def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajec
     grid = picture.add_gridspec(rows + 2, 2, height_ratios=heights)
     axes = [picture.add_subplot(grid[row, :] if across == 1 else grid[row, column])
             for row in range(rows) for column in range(across)]
-    for axis, (names, one) in zip(axes, paths):
+    for axis, (names, one) in zip(axes, paths, strict=True):
         trajectory.draw_path(axis, one)
         axis.set_title(" and ".join(names))
     _share_limits(axes)
@@ -62,7 +63,8 @@ def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajec
     for place, column in enumerate(COLUMNS):
         axis = picture.add_subplot(grid[rows + 1, place])
         draw_distribution(axis, scenario, arms, column, width / 2, runs[column])
-        axis.get_legend().set_in_layout(False)
+        if legend := axis.get_legend():
+            legend.set_in_layout(False)
     picture.set_figheight((20 + sum(heights)) / 25.4)
     unit = style.pretty(next(iter(arms.values()))[1].describe("trace_P").units)
     said = {name: f"{value:.3g} {unit} ({percentile(arms[name][1]['trace_P'], value):.0f} % of the trials have less)"
@@ -72,7 +74,7 @@ def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajec
     return picture
 
 
-def _share_limits(axes: list[style.Axes]) -> None:
+def _share_limits(axes: list[Axes]) -> None:
     """Gives all of them the same limits."""
     boxes = np.array([[*axis.get_xlim(), *axis.get_ylim()] for axis in axes])
     low, high = boxes.min(axis=0), boxes.max(axis=0)

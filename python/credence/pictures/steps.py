@@ -9,7 +9,8 @@ from matplotlib.lines import Line2D
 from scipy import stats
 
 from .._file import FloatArray
-from ..study import Arm, Scenario, Study
+from ..arm import Arm
+from ..study import Scenario, Study
 from . import style
 from .style import Picture
 
@@ -97,8 +98,9 @@ def coverage(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
         shown = style.thinned(shares)
         axis.plot(arm["step"][shown], shares[shown], **style.arm_line(place, len(arms), shown.size))
         found[name], level = float(shares.mean()), float(arm["level"][at])
-    bounds = 100 * stats.binom.ppf([0.025, 0.975], arm.counted_trials, level) / max(arm.counted_trials, 1)
-    axis.axhspan(*bounds, color=style.BAND, linewidth=0, zorder=0)
+    low, high = (100 * float(stats.binom.ppf(tail, arm.counted_trials, level)) / max(arm.counted_trials, 1)
+                 for tail in (0.025, 0.975))
+    axis.axhspan(low, high, color=style.BAND, linewidth=0, zorder=0)
     axis.axhline(100 * level, color=style.GREY, linewidth=0.6, zorder=0.5)
     style.step_axis(axis, arm["step"])
     what = "the truth" if group == "all" else group
@@ -110,7 +112,7 @@ def coverage(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
 
 
 def shape(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) -> Picture:
-    """How the NEES of the whole state lies in its chi-square, over all steps: level at 1 if the filter is consistent."""
+    """How the NEES of the whole state lies in its chi-square, over all steps: level at 1 if it is consistent."""
     picture, axis = style.one_panel(width)
     tails = {}
     for name, (place, arm) in arms.items():
@@ -148,8 +150,8 @@ def accuracy(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
     style.step_axis(axis, arm["step"])
     what = "the state" if group == "all" else group
     axis.set(ylabel=f"error of {what} [{style.root_of(unit)}]", ylim=(0, None))
-    lines = [(Line2D([], [], color=style.GREY, linestyle=dashes), label)
-             for dashes, label in (("-", "root mean square"), (":", "what P says"))]
+    lines = [(Line2D([], [], color=style.GREY, linestyle="-"), "root mean square"),
+             (Line2D([], [], color=style.GREY, linestyle=":"), "what P says")]
     style.key(axis, [*style.arm_entries(places(arms)), *lines], width)
     picture.title(f"Error of {what} over what P says: " + style.ranked(found, lambda ratio: f"{ratio:.2f}"),
                   f"{source(scenario)}; shades or bars: 95 % intervals; dots: root of the mean variance")

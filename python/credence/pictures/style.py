@@ -4,6 +4,7 @@ thinned curves, and files that come out the same each time."""
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
@@ -62,7 +63,7 @@ class Picture(Figure):
         if ending == ".png":
             with Image.open(io.BytesIO(self._repr_png_())) as picture:
                 small = picture.convert("RGB").quantize(COLOURS, Image.Quantize.FASTOCTREE)
-                small.save(path, optimize=True, dpi=picture.info["dpi"])
+                small.save(os.fspath(path), optimize=True, dpi=picture.info["dpi"])
             return
         date = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(ending)
         with matplotlib.rc_context(PRINT):
@@ -90,7 +91,7 @@ def thinned(*curves: npt.ArrayLike, most: int = MOST_POINTS) -> npt.NDArray[np.i
         return np.arange(size)
     edges = np.linspace(0, size, max(1, (most - 2) // (2 * len(values))) + 1).astype(int)
     kept = {0, size - 1}
-    for low, high in zip(edges[:-1], edges[1:]):
+    for low, high in itertools.pairwise(edges):
         for curve in values:
             stretch = curve[low:high]
             if not np.isnan(stretch).all():
@@ -216,7 +217,7 @@ def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float) -> None:
     many short entries."""
     if not entries:
         return
-    handles, labels = zip(*entries)
+    handles, labels = zip(*entries, strict=True)
     longest = 9 + 1.4 * max(map(len, labels))
     if len(labels) > 4 and longest < 45 and width >= PAGE:
         beside(axis, entries)
@@ -224,6 +225,7 @@ def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float) -> None:
     columns = max(1, min(len(labels), int((width - 12) / longest)))
     rows = -(-len(labels) // columns)
     picture = axis.figure
+    assert isinstance(picture, Figure)
     picture.set_figheight(picture.get_figheight() + 4 * (rows - 1) / 25.4)
     axis.legend(handles, labels, loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=columns, borderaxespad=0.2,
                 columnspacing=1.4)
@@ -231,7 +233,7 @@ def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float) -> None:
 
 def beside(axis: Axes, entries: Sequence[tuple[Any, str]]) -> None:
     """A legend on the right of the panel."""
-    handles, labels = zip(*entries)
+    handles, labels = zip(*entries, strict=True)
     axis.legend(handles, labels, loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 

@@ -40,7 +40,8 @@ def slices(grid: Grid) -> Iterator[tuple[str, npt.NDArray[Any]]]:
     names = np.moveaxis(grid.names, along, -1)
     others = keys[:along] + keys[along + 1:]
     for place in np.ndindex(names.shape[:-1]):
-        yield ", ".join(f"{key}={as_text(grid.coordinates[key][at])}" for key, at in zip(others, place)), names[place]
+        values = [as_text(grid.coordinates[key][at]) for key, at in zip(others, place, strict=True)]
+        yield ", ".join(f"{key}={value}" for key, value in zip(others, values, strict=True)), names[place]
 
 
 def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray]) -> None:
@@ -67,8 +68,8 @@ def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray]) -> None:
 
 
 def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: bool = False) -> Picture:
-    """A column along a swept key, with 95 % intervals; or its differences planned - fixed. A panel for each value of the
-    other keys, the first four of them."""
+    """A column along a swept key, with 95 % intervals; or its differences planned - fixed. A panel for each value of
+    the other keys, the first four of them."""
     study, panels = grid.study, list(slices(grid))
     shown = panels[:MOST_PANELS if width >= style.PAGE else 1]
     first = study[next(name for name in grid.names.flat if name)]
@@ -81,7 +82,7 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
     axes = picture.subplots(ncols=len(shown), sharey=True, squeeze=False)[0]
     found = [{name: np.array([mean_and_ends(study[point], arms[0], column, arms[1]) if point else [np.nan] * 3
                               for point in names]) for name, arms in drawn.items()} for _, names in shown]
-    for axis, (title, _), curves in zip(axes, shown, found):
+    for axis, (title, _), curves in zip(axes, shown, found, strict=True):
         _draw(axis, grid, curves)
         if len(shown) > 1:
             axis.set_title(title)
@@ -112,6 +113,6 @@ def _message(grid: Grid, curves: dict[str, FloatArray], where: str, what: str) -
 def _source(grid: Grid, left_out: int) -> str:
     scenarios = [grid.study[name] for name in grid.names.flat if name]
     counts = [max(arm.trials for arm in scenario.arms.values()) for scenario in scenarios]
-    return (f"{grid.of}, {max(counts):,} trials each, seed {grid.study.seed}; shades or bars: 95 % intervals of the means"
+    return (f"{grid.of}, {max(counts):,} trials each, seed {grid.study.seed}; shades or bars: 95 % intervals of means"
             + (f"; {left_out} more panels in the file" if left_out else "")
             + (f"; {counts.count(0)} of {len(counts)} points are not run yet" if 0 in counts else ""))

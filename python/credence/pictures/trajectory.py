@@ -15,7 +15,8 @@ from . import style
 from .style import Picture
 
 FEATURE_COLOURS = [style.GREEN, style.PURPLE, style.ORANGE]
-ELLIPSES = {"1-sigma": (1.0, "1-σ ellipses"), "95": (float(np.sqrt(stats.chi2.ppf(0.95, 2))), "95 % ellipses")}
+SIGMA = "\N{GREEK SMALL LETTER SIGMA}"
+ELLIPSES = {"1-sigma": (1.0, f"1-{SIGMA} ellipses"), "95": (float(np.sqrt(stats.chi2.ppf(0.95, 2))), "95 % ellipses")}
 
 
 def source(trial: Trajectory) -> str:
@@ -67,7 +68,7 @@ def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> float:
     colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURE_COLOURS)
     if "edge" in trial:
         ends = np.stack([features[:, trial["edge_from"]], features[:, trial["edge_to"]]], axis=2).reshape(-1, 2, 2)
-        axis.add_collection(LineCollection(ends, colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
+        axis.add_collection(LineCollection(list(ends), colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
     sights = [(robot[pose], features[pose, feature]) for pose, feature in np.argwhere(seen == 1)]
     axis.add_collection(LineCollection(sights, colors=style.SKY, linewidths=0.6 if few else 0.2, zorder=1.5,
                                        label="lines of sight"))
@@ -102,12 +103,12 @@ def path(trial: Trajectory, width: float, *, ellipse: str = "95") -> Picture:
     picture, axis = style.one_panel(width)
     ratio = draw_path(axis, trial, ellipse)
     picture.set_figheight(min(215, 34 + (width - 22) / ratio) / 25.4)
-    style.key(axis, list(zip(*axis.get_legend_handles_labels())), width)
+    style.key(axis, list(zip(*axis.get_legend_handles_labels(), strict=True)), width)
     columns, first = trial.columns, trial.components.index("r_x")
     last = float(np.linalg.norm(trial.errors[-1, first:first + 2]))
     half = float(np.sqrt(np.trace(block(trial["covariance"][-1:], first)[0])))
     unit = trial.component_units[first]
-    picture.title(f"The last position is off by {last:.3g} {unit}; the filter says {half:.3g} {unit} (1 σ). "
+    picture.title(f"The last position is off by {last:.3g} {unit}; the filter says {half:.3g} {unit} (1 {SIGMA}). "
                   f"NEES / n is {columns['nees_ratio']:.2f}", source(trial))
     return picture
 
@@ -138,7 +139,7 @@ def nees(trial: Trajectory, width: float) -> Picture:
     """NEES at each pose, within 95 % of its chi-square."""
     picture, axis = style.one_panel(width)
     pose, values, n = trial["pose"], trial["nees"], len(trial.components)
-    low, high = stats.chi2.ppf([0.025, 0.975], n)
+    low, high = (float(stats.chi2.ppf(tail, n)) for tail in (0.025, 0.975))
     drawn = style.thinned(values)
     axis.axhspan(low, high, color=style.BAND, linewidth=0, zorder=0)
     axis.plot(pose[drawn], values[drawn], marker="." if drawn.size <= 200 else "", color=arm_colour(trial))

@@ -36,8 +36,8 @@ def percentile(values: FloatArray, value: float) -> float:
 
 def draw_distribution(axis: Axes, scenario: Scenario, arms: Arms, column: str,
                       width: float, runs: Mapping[str, float] | None = None) -> dict[str, float]:
-    """The share of trials at or below each value. Single runs, `runs` {arm: value} and the published ones, are marked on
-    the curve at their place. Returns {arm: median}."""
+    """The share of trials at or below each value. Single runs, `runs` {arm: value} and the published ones, are marked
+    at their place on the curve. Returns {arm: median}."""
     medians, ends, entries = {}, [], style.arm_entries(places(arms))
     marks = (("this run", "v", runs or {}), ("published run", "D", scenario.published(column)))
     for name, (place, arm) in arms.items():

@@ -4,12 +4,14 @@ of the program's report."""
 from __future__ import annotations
 
 import collections
+import itertools
 from typing import Any
 
 import numpy as np
 
 from .._file import FloatArray
-from ..study import Arm, Scenario
+from ..arm import Arm
+from ..study import Scenario
 from . import program, style
 from .steps import Arms, source
 from .style import Picture
@@ -86,7 +88,7 @@ def _thinned_columns(logs: FloatArray) -> FloatArray:
     if steps <= style.MOST_POINTS:
         return logs
     edges = np.linspace(0, steps, style.MOST_POINTS + 1).astype(int)
-    stretches = [logs[:, low:high] for low, high in zip(edges[:-1], edges[1:])]
+    stretches = [logs[:, low:high] for low, high in itertools.pairwise(edges)]
     return np.stack([np.take_along_axis(one, np.abs(np.nan_to_num(one)).argmax(1)[:, None], 1)[:, 0]
                      for one in stretches], axis=1)
 
