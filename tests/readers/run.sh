@@ -17,17 +17,22 @@ has() { command -v "$1" >/dev/null || { echo "SKIPPED: $1 is not installed"; ret
 # A world of one's own.
 cmake --build build --target tracker >"$work/tracker.log" 2>&1 || { tail -n 30 "$work/tracker.log"; exit 1; }
 build/tests/tracker run experiments/own_filter/tracker.ini --trials 300 --quiet -o "$work/own.h5"
+mkdir "$work/pictures"
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
 octave_run() { octave-cli --quiet "$@" 2>"$work/octave.err" || { cat "$work/octave.err"; return 1; }; }
 with_octave() {
   octave_run $readers/readers.m "${files[@]}"
-  octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/octave.svg" >"$work/octave.tsv"
+  octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/pictures/octave.svg" >"$work/pictures/octave.tsv"
 }
 others=()
 if has octave-cli && has gnuplot; then with_octave & others+=($!); fi
-if has Rscript; then Rscript $readers/readers.R "${files[@]}" & others+=($!); fi
+with_r() {
+  Rscript $readers/readers.R "${files[@]}"
+  Rscript $readers/functions.R "$work/study.h5" >"$work/pictures/r.tsv"
+}
+if has Rscript; then with_r & others+=($!); fi
 for reader in h5py netcdf4 xarray-netcdf4 xarray-h5netcdf h5dump ncdump; do
   /usr/bin/python3 $readers/readers.py $reader "${files[@]}"
 done
@@ -38,9 +43,7 @@ if /usr/bin/python3 -c 'import h5py, scipy, matplotlib, pytest' 2>/dev/null; the
   PYTHONPATH=python /usr/bin/python3 -m pytest -q -p no:cacheprovider python/tests/test_study.py \
     python/tests/test_pictures.py >"$work/pytest.log" || { cat "$work/pytest.log"; exit 1; }
   tail -n 1 "$work/pytest.log"
-  said=()
-  [ ! -f "$work/octave.tsv" ] || said=("$work/octave.tsv" "$work/octave.svg")
-  /usr/bin/python3 $readers/analysis_test.py "$work/study.h5" "$work/own.h5" "$work/pictures" "${said[@]}" >/dev/null
+  /usr/bin/python3 $readers/analysis_test.py "$work/study.h5" "$work/own.h5" "$work/pictures" | tail -n 1
   unset CREDENCE
   cmake --install build --prefix "$work/usr" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
   (cd "$work" && PYTHON=/usr/bin/python3 bash usr/share/credence/analysis/figures.sh) >"$work/figures.log" 2>&1 &&
