@@ -13,9 +13,11 @@ credence=${CREDENCE:-$built}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$credence" run "$root"/experiments/seed/kf-*.ini --trials 10000 --seed 1 --quiet -o "$work/seed.h5"
+PYTHONPATH=$root/python${PYTHONPATH:+:$PYTHONPATH} "${PYTHON:-python3}" -m credence.pictures "$work/seed.h5" \
+  --kind place --credence "$credence" -o "$work/pictures" >"$work/log"
+mkdir -p "$output"
+number=0
 for scenario in kf-{straight,circle}-{constant,ranged}; do
-  for arm in fixed.kf greedy.kf; do
-    "$credence" replay "$work/seed.h5" --scenario $scenario --arm $arm --trial 0 -o "$work/$scenario-$arm.h5"
-  done
+  number=$((number + 1))
+  cp "$work/pictures/$scenario-place.png" "$output/figure-$number.png"
 done
-"${PYTHON:-python3}" "$root/analysis/figures.py" "$work/seed.h5" "$work" "$output"

@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
+    from credence.arm import Arm
     from credence.judging import Verdict, assert_consistent, judge
     from credence.pictures import animate, plot
     from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
-    from credence.study import Arm, Scenario, Study, open
+    from credence.study import Scenario, Study, open
     from credence.trajectory import Trajectory, open_trajectories
 
-_homes = {
-    "Arm": "study",
+_modules = {
+    "Arm": "arm",
     "Comparison": "program",
     "Failure": "_core",
     "InputError": "_core",
@@ -72,12 +73,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    if name not in _homes:
+    if name not in _modules:
         raise AttributeError(f"module 'credence' has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"credence.{_homes[name]}"), name)
+    value = getattr(importlib.import_module(f"credence.{_modules[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_homes])
+    return sorted([*globals(), *_modules])

@@ -46,7 +46,7 @@ const Words& words_of(FileKind kind) {
     static const Words words[] = {
         {"a scenario", "`credence run` and `credence show` read it"},
         {"a results file", "`credence report` reads it"},
-        {"the trajectory file of a replay", "analysis/plot.py and whatever opens HDF5 read it"},
+        {"the trajectory file of a replay", "`python -m credence.pictures` and whatever opens HDF5 read it"},
         {"a record", "`credence judge` reads it"},
         {"a noise record", "`credence replay SCENARIO.ini --noise` reads it"},
         {"the journal of a run", "`credence watch` follows it, and `credence run --resume` goes on with it"},

@@ -230,7 +230,7 @@ TEST_CASE("cli: a file of another kind is refused with the command that reads it
     const std::vector<std::pair<std::string, std::string>> kinds{
         {"small.ini", "scenario"}, {"small.h5", "results file"}, {"record.h5", "record"}, {"trace.h5", "trajectory file of a replay"}};
     const std::vector<std::string> readers{"`credence run` and `credence show` read it", "`credence report` reads it",
-                                           "`credence judge` reads it", "analysis/plot.py"};
+                                           "`credence judge` reads it", "python -m credence.pictures"};
     const auto check = [&](const std::string& command, const std::string& own) {
         for (std::size_t k = 0; k < kinds.size(); ++k) {
             if (kinds[k].second == own || (command == "compare" && kinds[k].second == "record")) continue;  // it takes both

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # run.sh CREDENCE: a results file and a trajectory file read by everything that opens them, each against the JSON of the
-# program, and the modules and pictures of analysis/. Says SKIPPED for a reader that is not installed.
+# program, and the pure part of the Python package with its pictures. Says SKIPPED for a reader that is not installed.
 set -euo pipefail
 credence=$1
 readers=tests/readers
@@ -14,45 +14,40 @@ has() { command -v "$1" >/dev/null || { echo "SKIPPED: $1 is not installed"; ret
 "$credence" replay "$work/study.h5" --scenario ekf-circle-ranged --arm greedy.ekf --trial 17 --format json \
   -o "$work/trace.h5" >"$work/replay.json"
 /usr/bin/python3 $readers/expected.py "$work/report.json" "$work/replay.json" "$work/expected.tsv"
-mkdir "$work/pictures"
-for arm in fixed.kf greedy.kf; do
-  "$credence" replay "$work/study.h5" --scenario kf-circle-constant --arm $arm --trial 0 \
-    -o "$work/pictures/kf-circle-constant-$arm.h5" >/dev/null
-done
-"$credence" run experiments/seed/ekf-circle-ranged.ini --set scenario.name=base --sweep noise.heading=0.01,0.1 \
-  --sweep sensor.noise=constant,ranged --trials 60 --quiet -o "$work/swept.h5"
-# A world of one's own; ten arms; many steps.
+# A world of one's own.
 cmake --build build --target tracker >"$work/tracker.log" 2>&1 || { tail -n 30 "$work/tracker.log"; exit 1; }
-build/tests/tracker run experiments/own_filter/tracker.ini --trials 300 --quiet -o "$work/pictures/own.h5"
-"$credence" run experiments/seed/ekf-circle-ranged.ini --set arms.estimators=ekf,ideal,fej,riekf,iekf --trials 60 --quiet \
-  -o "$work/pictures/arms.h5"
-"$credence" run experiments/estimators/landmarks.ini --trials 30 --quiet -o "$work/pictures/steps.h5"
+build/tests/tracker run experiments/own_filter/tracker.ini --trials 300 --quiet -o "$work/own.h5"
+mkdir "$work/pictures"
 files=("$work/study.h5" "$work/trace.h5" "$work/expected.tsv")
 
 # Octave says the same harmless error on its way out, whatever the netcdf package was asked for.
 octave_run() { octave-cli --quiet "$@" 2>"$work/octave.err" || { cat "$work/octave.err"; return 1; }; }
 with_octave() {
   octave_run $readers/readers.m "${files[@]}"
-  octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/octave.svg" >"$work/octave.tsv"
+  octave_run $readers/functions.m "$work/study.h5" kf-circle-constant "$work/pictures/octave.svg" >"$work/pictures/octave.tsv"
 }
 others=()
 if has octave-cli && has gnuplot; then with_octave & others+=($!); fi
-if has Rscript; then Rscript $readers/readers.R "${files[@]}" & others+=($!); fi
+with_r() {
+  Rscript $readers/readers.R "${files[@]}"
+  Rscript $readers/functions.R "$work/study.h5" >"$work/pictures/r.tsv"
+}
+if has Rscript; then with_r & others+=($!); fi
 for reader in h5py netcdf4 xarray-netcdf4 xarray-h5netcdf h5dump ncdump; do
   /usr/bin/python3 $readers/readers.py $reader "${files[@]}"
 done
 for other in "${others[@]}"; do wait "$other"; done
 
-if /usr/bin/python3 -c 'import h5py, scipy, matplotlib' 2>/dev/null; then
-  said=()
-  [ ! -f "$work/octave.tsv" ] || said=("$work/octave.tsv" "$work/octave.svg")
-  /usr/bin/python3 $readers/analysis_test.py "$credence" "$work/study.h5" "$work/report.json" "$work/trace.h5" \
-    "$work/pictures" "${said[@]}" | tail -n 1
-  /usr/bin/python3 $readers/sweep_test.py "$credence" "$work/swept.h5" "$work/pictures" >"$work/sweep.log" || { cat "$work/sweep.log"; exit 1; }
-  grep SKIPPED "$work/sweep.log" || true
+if /usr/bin/python3 -c 'import h5py, scipy, matplotlib, pytest' 2>/dev/null; then
+  export CREDENCE=$PWD/$credence PYTHONDONTWRITEBYTECODE=1
+  PYTHONPATH=python /usr/bin/python3 -m pytest -q -p no:cacheprovider python/tests/test_study.py \
+    python/tests/test_pictures.py >"$work/pytest.log" || { cat "$work/pytest.log"; exit 1; }
+  tail -n 1 "$work/pytest.log"
+  /usr/bin/python3 $readers/analysis_test.py "$work/study.h5" "$work/own.h5" "$work/pictures" | tail -n 1
+  unset CREDENCE
   cmake --install build --prefix "$work/usr" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
   (cd "$work" && PYTHON=/usr/bin/python3 bash usr/share/credence/analysis/figures.sh) >"$work/figures.log" 2>&1 &&
     [ -s "$work/figures/figure-4.png" ] || { cat "$work/figures.log"; exit 1; }
 else
-  echo "SKIPPED: python3-matplotlib is not installed"
+  echo "SKIPPED: python3-matplotlib or python3-pytest is not installed"
 fi

@@ -1,0 +1,143 @@
+"""What results files and trajectory files have in common: how they are opened, and how their groups are read."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator
+from typing import Any, BinaryIO, NamedTuple
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+Array = npt.NDArray[Any]
+Source = str | os.PathLike[str] | BinaryIO
+
+SCHEMA_VERSIONS = 2, 3
+RESULTS, TRAJECTORIES = "credence results", "credence trajectories"
+
+
+def open_hdf5(source: Source) -> tuple[h5py.File, str]:
+    """The open file and its format; ValueError where credence did not write it, or in another schema version."""
+    try:
+        file = h5py.File(source if hasattr(source, "read") else os.fspath(source), "r")
+    except FileNotFoundError:
+        raise FileNotFoundError(f"{source}: the file: cannot be found. Check the path.") from None
+    except OSError as problem:
+        raise ValueError(f"{source}: the file: cannot be read as HDF5 ({problem}). "
+                         "Give one that credence wrote.") from None
+    kind = text(file, "format") if "format" in file.attrs else "none"
+    version = file.attrs.get("schema_version")
+    if kind in (RESULTS, TRAJECTORIES) and version in SCHEMA_VERSIONS:
+        return file, kind
+    file.close()
+    if version is None or kind not in (RESULTS, TRAJECTORIES):
+        raise ValueError(f"{source}: format: invalid format={kind} (must be {RESULTS} or {TRAJECTORIES}). "
+                         "Give a file that `credence run` or `credence replay` wrote.")
+    raise ValueError(f"{source}: schema_version: invalid schema_version={version} (this package reads "
+                     f"{', '.join(map(str, SCHEMA_VERSIONS))}). Take the package of the release that wrote it.")
+
+
+def text(thing: Any, name: str) -> str:
+    """A text attribute. HDF5 keeps an empty text as one null character."""
+    value = thing.attrs[name]
+    return (value.decode() if isinstance(value, bytes) else str(value)).rstrip("\0")
+
+
+def _address(variable: h5py.Dataset) -> int:
+    """Where the file keeps it: HDF5 goes through the whole file for the name of what a reference leads to."""
+    return int(h5py.h5o.get_info(variable.id).addr)
+
+
+def stem(group: h5py.Group) -> str:
+    """The last word of a group's path."""
+    return str(group.name).rsplit("/", 1)[-1]
+
+
+class Description(NamedTuple):
+    """What a number is: its unit (`1` without a dimension) and its meaning."""
+
+    units: str
+    meaning: str
+
+
+def described(variable: Any, meaning: str = "") -> Description:
+    """The description that a variable of the file has of itself."""
+    return Description(text(variable, "units"), meaning or text(variable, "long_name"))
+
+
+class Variables:
+    """A group of a file whose variables are read when they are asked for, by key or as attributes."""
+
+    def __init__(self, group: h5py.Group) -> None:
+        #: The plain h5py group.
+        self.group = group
+        self.name = stem(group)
+
+    def read(self, name: str, selection: Any = ()) -> Array:
+        """Reads a variable, or a part of it.
+
+        Parameters
+        ----------
+        name : str
+            The variable's name, such as ``trace_P``.
+        selection : int, slice or tuple of them
+            What to read of it, as h5py takes it; by default all. Nothing else is read from the disk.
+
+        Returns
+        -------
+        ndarray
+            In the variable's own type; as float64 with NaN for what is missing where the variable has a fill value.
+        """
+        variable = self.group.get(name)
+        if not isinstance(variable, h5py.Dataset):
+            raise KeyError(self._missing(name))
+        values = np.asarray(variable[selection])
+        if "_FillValue" not in variable.attrs:
+            return values
+        fill, values = variable.attrs["_FillValue"][0], values.astype(np.float64)
+        return values if np.isnan(fill) else np.where(values == fill, np.nan, values)
+
+    def describe(self, name: str) -> Description:
+        """Unit and meaning of a variable."""
+        variable = self.group.get(name)
+        if not isinstance(variable, h5py.Dataset):
+            raise KeyError(self._missing(name))
+        return described(variable)
+
+    @functools.cached_property
+    def dimensions(self) -> dict[str, list[str]]:
+        """{variable: names of its dimensions}, of all variables that are not coordinates themselves."""
+        variables = [(name, variable) for name, variable in self.group.items() if isinstance(variable, h5py.Dataset)]
+        coordinates = {_address(one): name for name, one in variables if one.attrs.get("CLASS") == b"DIMENSION_SCALE"}
+        return {name: [coordinates[_address(scales[0])] for scales in variable.dims] for name, variable in variables
+                if name not in coordinates.values()}
+
+    def words(self, variable: str, attribute: str) -> list[str]:
+        """The words of a text attribute of a variable, such as ``component_names`` of ``component``."""
+        return text(self.group[variable], attribute).split()
+
+    def _missing(self, name: str) -> str:
+        return f"{self.group.name} has no {name}"
+
+    def __getitem__(self, name: str) -> Array:
+        return self.read(name)
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or name == "group":
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except KeyError as problem:
+            raise AttributeError(problem.args[0]) from None
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in self.group
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.group)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]

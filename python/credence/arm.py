@@ -1,0 +1,200 @@
+"""One arm of a results file: its columns and series as numpy arrays, and their means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import means
+from ._file import Array, Description, FloatArray, Variables, described, text
+from .means import Means
+
+if TYPE_CHECKING:
+    import xarray
+
+    from .study import Scenario
+
+
+class Arm(Variables):
+    """One arm of a scenario: an array for each column [trial] and each series [step], by key or as an attribute.
+
+    A series is its mean over the counted trials. Whatever else the file has is there under its own name, such as
+    ``detailed_nees`` [detailed_trial, step] and ``detailed_error`` [detailed_trial, step, component].
+    """
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that it is an arm of."""
+        from .study import Scenario
+
+        return Scenario(self.group.parent)
+
+    @property
+    def keeps_trials(self) -> bool:
+        """Whether the file has columns: it has totals instead of a study that keeps aggregates."""
+        return "keep" not in self.group.file.attrs
+
+    @property
+    def columns(self) -> dict[str, Description]:
+        """The columns, one number a trial, with unit and meaning; also where only their totals are kept."""
+        if self.keeps_trials:
+            known = ("status", "status_pose")
+            return {name: described(self.group[name]) for name, dimensions in self.dimensions.items()
+                    if dimensions == ["trial"] and name not in known}
+        units = text(self.group["column"], "column_units").split(", ")
+        names = self.words("column", "column_names")
+        return {name: Description(unit, name) for name, unit in zip(names, units, strict=True)}
+
+    @property
+    def series(self) -> dict[str, Description]:
+        """The series, one number a step, with unit and meaning."""
+        ends = "_run_square_total"
+        names = (name.removesuffix(ends) for name in self.group if name.endswith(ends))
+        return {name: described(self.group[f"{name}_total"]) for name in names}
+
+    def series_of(self, role: str) -> dict[str, str]:
+        """{component group or kind of rows: series} of a role: ``nees``, ``nis``, ``squared_error``, ``variance``.
+        The whole state is called ``all``."""
+        totals = {name: self.group[f"{name}_total"] for name in self.series}
+        return {text(total, "part_of"): name for name, total in totals.items() if text(total, "role") == role}
+
+    @property
+    def trials(self) -> int:
+        """Trials that are there, failed ones too."""
+        return int(self.group["trial"].size) if self.keeps_trials else int(self.group["status_count"][:].sum())
+
+    @property
+    def counted_trials(self) -> int:
+        """Trials that have numbers, over which the means run: all but those with a covariance that is not positive
+        definite or with values that are not finite."""
+        return int(self.group.attrs["counted_trials"])
+
+    @property
+    def ended(self) -> dict[str, int]:
+        """{how they ended: trials}, such as ``completed`` and ``diverged``."""
+        status = self.group["status" if self.keeps_trials else "status_code"]
+        codes = status.attrs["flag_values"].tolist()
+        counts = [np.sum(status[:] == code) for code in codes] if self.keeps_trials else self.group["status_count"][:]
+        return dict(zip(text(status, "flag_meanings").split(), map(int, counts), strict=True))
+
+    @property
+    def failed_trials(self) -> int:
+        """Trials that did not complete, those that diverged too; a verdict counts them so."""
+        return self.trials - self.ended["completed"]
+
+    def read(self, name: str, selection: Any = ()) -> Array:
+        if f"{name}_total" not in self.group or name in self.group:
+            return super().read(name, selection)
+        total = self.group[f"{name}_total"]
+        values = total[:] if total.ndim == 1 else total[..., 0]
+        mean: Array = np.asarray((values / self.counted_trials if self.counted_trials else values * np.nan)[selection])
+        return mean
+
+    def describe(self, name: str) -> Description:
+        """Unit and meaning of a column, a series or another variable."""
+        if name in self.group:
+            return super().describe(name)
+        if f"{name}_total" in self.group:
+            return described(self.group[f"{name}_total"])
+        return self.columns[name] if name in self.columns else super().describe(name)
+
+    def mean(self, name: str, minus: Arm | None = None) -> Means:
+        """The mean of a column, or of its differences trial by trial to another arm of the same scenario.
+
+        Parameters
+        ----------
+        name : str
+            A column, such as ``trace_P``.
+        minus : Arm, optional
+            The arm that is subtracted; a trial that has no value in one of the arms is left out.
+
+        Returns
+        -------
+        Means
+            One number, in the column's unit; also of files that keep aggregates, from their exact totals.
+        """
+        units = self.describe(name).units
+        if self.keeps_trials:
+            values = self._numbers(name)
+            return means.of_values(values - minus._numbers(name) if minus else values, units)
+        column = self._place("column", "column_names", name)
+        if minus is None:
+            return self._exact("column", column, units)
+        if self.name == minus.name:
+            raise ValueError(f"invalid minus={minus.name} (an arm less itself is 0). Name two arms.")
+        if "subtracted_arm" in self and minus.name in self.words("subtracted_arm", "arm_names"):
+            return self._exact("difference", (self._place("subtracted_arm", "arm_names", minus.name), column), units)
+        return -minus.mean(name, minus=self)
+
+    def per_step(self, name: str) -> Means:
+        """The mean of a series over the counted trials at each step [step], in the series' unit. The standard error is
+        NaN for series of integers, whose squares are not kept."""
+        total, squares = self._total(f"{name}_total"), f"{name}_square_total"
+        square_total = self._total(squares) if squares in self else np.full_like(total, np.nan)
+        return means.of_totals(total, square_total, self.counted_trials, self.dimension(name),
+                               self.describe(name).units)
+
+    def over_steps(self, name: str) -> Means:
+        """The mean of a series over trials and steps. Its standard error takes one number a trial, because steps are
+        correlated."""
+        total, squares = self._total(f"{name}_total").sum(), self._total(f"{name}_run_square_total")
+        whole = means.of_totals(np.asarray(total), np.asarray(squares), self.counted_trials, self.dimension(name),
+                                self.describe(name).units)
+        return whole.over(self.group["step"].size)
+
+    def dimension(self, name: str) -> int:
+        """Components of the group that a series belongs to; 1 for a series without a dimension."""
+        return int(self.group[f"{name}_total"].attrs.get("dimension", 1))
+
+    def degrees(self, name: str) -> FloatArray:
+        """[step] degrees of freedom of the chi-square that the total of a NEES or NIS follows if the filter is
+        consistent."""
+        attributes, steps = self.group[f"{name}_total"].attrs, self.group["step"].size
+        if "dimension" in attributes:
+            return np.full(steps, float(self.counted_trials * self.dimension(name)))
+        rows = text(self.group[f"{name}_total"], "rows")
+        more: FloatArray = np.full(steps, float(attributes["more_rows"]) * self.counted_trials)
+        return more + self._total(f"{rows}_total") if rows else more
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The arm as an xarray.Dataset: columns [trial], series [step] with SERIES_standard_error, the detailed
+        variables, each with its unit. Needs xarray; reads all of these."""
+        from .grid import arm_to_xarray
+
+        return arm_to_xarray(self)
+
+    def _total(self, name: str) -> FloatArray:
+        variable = self.group[name]
+        return np.asarray(variable[:] if variable.dtype.kind == "i" else variable[..., 0], np.float64)
+
+    def _numbers(self, name: str) -> FloatArray:
+        return self.read(name).astype(np.float64)
+
+    def _exact(self, of: str, place: Any, units: str) -> Means:
+        return means.of_exact_totals(self.group[f"{of}_total"][place], self.group[f"{of}_square_total"][place],
+                                     int(self.group[f"{of}_count"][place]), units)
+
+    def _place(self, variable: str, attribute: str, name: str) -> int:
+        names = self.words(variable, attribute)
+        if name not in names:
+            raise KeyError(f"{self.group.name} has no {name}. It has {', '.join(names)}")
+        return names.index(name)
+
+    def _missing(self, name: str) -> str:
+        if not self.keeps_trials and name in (*self.columns, "trial", "status", "status_pose"):
+            return (f"{self.group.name} has no {name} of single trials, because the study keeps aggregates. Take "
+                    f"arm.mean({name!r}), or run the study with --keep trials")
+        return f"{self.group.name} has no {name}. It has {', '.join([*self.columns, *self.series])}"
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or f"{name}_total" in self.group
+
+    def __iter__(self) -> Iterator[str]:
+        yield from self.series
+        yield from self.group
+
+    def __repr__(self) -> str:
+        kept = "" if self.keeps_trials else ", aggregates"
+        return f"<credence.Arm {self.group.name[1:]}: {self.trials:,} trials, {self.failed_trials:,} failed{kept}>"

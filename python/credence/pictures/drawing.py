@@ -1,0 +1,168 @@
+"""One picture of a study, a grid or a trial, and one trial as a moving picture."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import tempfile
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import matplotlib
+
+from .._file import RESULTS, open_hdf5
+from ..grid import Grid
+from ..study import Scenario, Study
+from ..study import open as open_study
+from ..trajectory import Trajectory, open_trajectories
+from . import animation, program, style, sweep, trajectory, verdicts
+from .place import place
+from .steps import accuracy, coverage, nees, nis, shape
+from .style import Picture as Picture
+from .trials import distribution, paired
+
+OF_SCENARIO: dict[str, Callable[..., Picture]] = {
+    "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "shape": shape,
+    "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map,
+    "place": place}
+OF_TRIAL: dict[str, Callable[..., Picture]] = {
+    "path": trajectory.path, "errors": trajectory.errors, "nees": trajectory.nees}
+
+
+def plot(
+    what: Study | Scenario | Grid | Trajectory | str | os.PathLike[str],
+    kind: str | None = None,
+    *,
+    scenario: str | None = None,
+    arms: Sequence[str] | None = None,
+    width: float = style.PAGE,
+    path: str | os.PathLike[str] | None = None,
+    **options: Any,
+) -> Picture:
+    """Draws one picture, whose title says its message.
+
+    Parameters
+    ----------
+    what : Study, Scenario, Grid, Trajectory or path
+        What to draw: of a study its first scenario, or its first grid where it has one; of a path to a trajectory file
+        its first trial.
+    kind : str, optional
+        Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``shape``, ``accuracy``, ``distribution``,
+        ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default),
+        ``errors``, ``nees``.
+    scenario : str, optional
+        The scenario of a study.
+    arms : list of str, optional
+        The arms to draw; all of them by default. An arm looks the same in every picture.
+    width : float
+        In millimetres: 175, a page, by default; 85 is a column.
+    path : path, optional
+        Where to save it as well: .pdf, .svg or .png.
+    **options
+        ``group`` of nees, coverage and accuracy (``all``); ``level`` of coverage (0.95); ``column`` of distribution,
+        paired (``trace_P``) and sweep (``nees_ratio``); ``difference`` of sweep (False); ``arm`` of map; ``ellipse`` of
+        path (``95`` or ``1-sigma``).
+
+    Returns
+    -------
+    Picture
+        A matplotlib Figure.
+    """
+    if isinstance(what, str | os.PathLike):
+        what = _first(what)
+    if isinstance(what, Study):
+        grids = what.grids
+        if scenario is None and grids and kind in (None, "sweep"):
+            what = grids[0]
+        else:
+            what = what.scenarios[scenario or next(iter(what))]
+    with matplotlib.rc_context(style.PRINT):
+        picture = _drawn(what, kind, arms, width, options)
+    if path is not None:
+        picture.save(path)
+    return picture
+
+
+def opened(path: str | os.PathLike[str]) -> Study | list[Trajectory]:
+    """What a results file or a trajectory file has."""
+    file, kind = open_hdf5(path)
+    file.close()
+    return open_study(path) if kind == RESULTS else open_trajectories(path)
+
+
+def _first(path: str | os.PathLike[str]) -> Study | Trajectory:
+    found = opened(path)
+    return found if isinstance(found, Study) else found[0]
+
+
+def _drawn(what: Scenario | Grid | Trajectory, kind: str | None, arms: Sequence[str] | None, width: float,
+           options: dict[str, Any]) -> Picture:
+    if isinstance(what, Grid):
+        return _known({"sweep": sweep.sweep}, kind or "sweep")(what, width, **options)
+    if isinstance(what, Trajectory):
+        return _known(OF_TRIAL, kind or "path")(what, width, **options)
+    draw = _known(OF_SCENARIO, kind or "nees")
+    there = {name: (place, arm) for place, (name, arm) in enumerate(what.arms.items())}
+    for name in arms or []:
+        what[name]  # refuses an arm that is not there
+    chosen = {name: there[name] for name in arms or there}
+    for name, (_, arm) in chosen.items():
+        if arm.counted_trials == 0:
+            why = "every trial failed" if arm.trials else "it is not run yet"
+            raise ValueError(f"invalid arm {name} ({why}). Choose others with arms=[...].")
+    return draw(what, chosen, width, **options)
+
+
+def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[..., Picture]:
+    if kind not in kinds:
+        raise ValueError(f"invalid kind={kind} (must be one of {', '.join(kinds)}). Choose one.")
+    return kinds[kind]
+
+
+def animate(
+    what: Study | Trajectory | str | os.PathLike[str],
+    *,
+    path: str | os.PathLike[str],
+    trial: int = 0,
+    scenario: str | None = None,
+    arm: str | None = None,
+    ellipse: str = "95",
+    frames_per_second: int = 8,
+    credence: str | None = None,
+) -> pathlib.Path:
+    """Writes one trial as a moving picture: true and estimated path, features and ellipses, pose after pose.
+
+    Parameters
+    ----------
+    what : Study, Trajectory or path
+        A study or results file, of which the trial is run again; or a trajectory.
+    path : path
+        The file to write: .gif, or .mp4 where ffmpeg is installed.
+    trial : int
+        The trial of a study, from 0.
+    scenario, arm : str, optional
+        Which of the study's; by default the first scenario and its last arm.
+    ellipse : str
+        ``95`` (percent) or ``1-sigma``.
+    frames_per_second : int
+        Poses a second. Trials of more than 200 poses skip some.
+    credence : path, optional
+        The program that runs the trial again where the package's compiled module is missing.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+    """
+    if isinstance(what, str | os.PathLike):
+        what = _first(what)
+    if isinstance(what, Trajectory):
+        animation.animate(what, os.fspath(path), ellipse=ellipse, frames_per_second=frames_per_second)
+        return pathlib.Path(path)
+    scenario = scenario or next(iter(what))
+    arm = arm or list(what.scenarios[scenario])[-1]
+    with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+        file = os.path.join(folder, "trial.h5")
+        program.replay(what.path, scenario, arm, trial, file, credence)
+        (trajectory_of_trial,) = open_trajectories(file)
+        return animate(trajectory_of_trial, path=path, ellipse=ellipse, frames_per_second=frames_per_second)

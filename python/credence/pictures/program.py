@@ -1,0 +1,63 @@
+"""What the program says of a file: through the compiled module, or where that is missing through the program itself."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+from typing import Any
+
+
+class NoProgram(RuntimeError):
+    """Neither the compiled module nor the program is there, or it refused the file."""
+
+
+def find(asked: str | None = None) -> str | None:
+    """The program: the one asked for, that of a checkout's build, that which this was installed with, or that on the
+    PATH; None where there is none."""
+    if asked:
+        return asked
+    above = pathlib.Path(__file__).resolve().parents
+    built = [path for path in (above[3] / "build" / "credence", above[5] / "bin" / "credence") if path.is_file()]
+    return str(built[0]) if built else shutil.which("credence")
+
+
+def said(words: list[str], program: str | None = None) -> Any:
+    """What a command prints as JSON."""
+    if not program:
+        try:
+            from credence import _core
+        except ImportError:
+            pass
+        else:
+            return json.loads(_core.command(words, None)[1])
+    if (found := find(program)) is None:
+        raise NoProgram("the program credence is not found. Install the package with its compiled module, or name the "
+                        "program.")
+    try:
+        done = subprocess.run([found, *words], capture_output=True, text=True)
+    except OSError as problem:
+        raise NoProgram(str(problem)) from None
+    if done.returncode != 0:
+        raise NoProgram(done.stderr.strip())
+    return json.loads(done.stdout)
+
+
+def report(path: str, program: str | None = None) -> dict[tuple[str, str], dict[str, Any]]:
+    """{(scenario, arm): its part of the report}."""
+    return _report(path, os.stat(path).st_mtime_ns, program)
+
+
+@functools.lru_cache(maxsize=2)
+def _report(path: str, _: int, program: str | None) -> dict[tuple[str, str], dict[str, Any]]:
+    parts = said(["report", path, "--format=json"], program)
+    return {(part["scenario"], part["arm"]): part for part in parts}
+
+
+def replay(path: str, scenario: str, arm: str, trial: int, output: str, program: str | None = None) -> None:
+    """Writes the trajectory of one trial."""
+    said(["replay", path, f"--scenario={scenario}", f"--arm={arm}", f"--trial={trial}", f"--output={output}",
+          "--format=json"], program)

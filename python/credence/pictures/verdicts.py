@@ -1,0 +1,109 @@
+"""Pictures of the verdict: by component group over all steps, and of one arm by group and step. All numbers are those
+of the program's report."""
+
+from __future__ import annotations
+
+import collections
+import itertools
+from typing import Any
+
+import numpy as np
+
+from .._file import FloatArray
+from ..arm import Arm
+from ..study import Scenario
+from . import program, style
+from .steps import Arms, source
+from .style import Picture
+
+GAPS_UP_TO = 30  # steps with a white gap between them; of more, the gaps would be all that is seen
+DARKEST = 2.0  # log2 of the ratio: a factor of 4
+
+
+def _report(scenario: Scenario, arms: Arms, credence: str | None) -> dict[str, dict[str, Any]]:
+    found = program.report(str(scenario.group.file.filename), credence)
+    return {name: found[scenario.name, name] for name in arms}
+
+
+def _verdicts(parts: dict[str, dict[str, Any]]) -> str:
+    """`fixed.ekf mixed, greedy.ekf consistent`; of more than three, the number of each verdict."""
+    said = {name: part["verdict"] for name, part in parts.items()}
+    if len(said) <= 3:
+        return ", ".join(f"{name} {verdict}" for name, verdict in said.items())
+    counts = collections.Counter(said.values()).most_common()
+    if len(counts) == 1:
+        return f"All {len(said)} arms are {counts[0][0]}"
+    return f"Of {len(said)} arms " + ", ".join(f"{count} {verdict}" for verdict, count in counts)
+
+
+def verdicts(scenario: Scenario, arms: Arms, width: float, *, credence: str | None = None) -> Picture:
+    """NEES / dimension of every component group over all steps, with its 95 % interval, beside the margin."""
+    parts = _report(scenario, arms, credence)
+    groups = [block["block"] for block in next(iter(parts.values()))["blocks"]]
+    picture, axis = style.one_panel(width, min(220, 36 + len(groups) * max(6, 1.8 * len(parts))))
+    margin, drawn = next(iter(parts.values()))["margin"], []
+    axis.axvspan(1 - margin, 1 + margin, color=style.BAND, linewidth=0)
+    axis.axvline(1, color=style.GREY, linewidth=0.6)
+    entries = []
+    for index, (name, part) in enumerate(parts.items()):
+        mean = np.array([block["nees_ratio"] for block in part["blocks"]], dtype=float)
+        ends = np.array([block["ci95"] for block in part["blocks"]], dtype=float).T
+        bar = axis.errorbar(mean, np.arange(len(groups)) + style.aside(index, len(parts)), linestyle="none",
+                            xerr=np.nan_to_num(np.abs(ends - mean)), elinewidth=1.1, **style.arm_mark(arms[name][0]))
+        entries.append((bar, f"{name}: {part['verdict']}"))
+        drawn.append(ends)
+    for row in range(1, len(groups)):
+        axis.axhline(row - 0.5, color=style.BAND, linewidth=0.5, zorder=0)
+    style.spread_out(axis.xaxis, drawn)
+    axis.set_yticks(range(len(groups)), groups)
+    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group",
+             xlabel="NEES / dimension, mean over trials and steps")
+    style.key(axis, [*entries, style.band_entry(f"within the margin of {100 * margin:g} %")], width)
+    picture.title(_verdicts(parts), f"{source(scenario)}; bars: 95 % intervals")
+    return picture
+
+
+def ratio_map(scenario: Scenario, arms: Arms, width: float, *, arm: str | None = None,
+              credence: str | None = None) -> Picture:
+    """NEES / dimension of one arm by component group and step: blue is pessimistic, red is optimistic."""
+    name = arm or next(iter(arms))
+    part = _report(scenario, {name: arms[name]}, credence)[name]
+    groups = [block["block"] for block in part["blocks"]]
+    ratios = np.array([block["anees"]["ratio"] for block in part["blocks"]], dtype=float)
+    logs = np.log2(np.where(ratios > 0, ratios, np.nan))
+    picture, axis = style.one_panel(width, 40 + 6.5 * len(groups))
+    reach = float(np.clip(np.nanmax(np.abs(logs)), 0.25, DARKEST))
+    _cells(picture, axis, _thinned_columns(logs), arms[name][1], reach)
+    axis.set_yticks(range(len(groups)), groups)
+    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group")
+    row, column = np.unravel_index(np.nanargmax(np.abs(logs)), logs.shape)
+    picture.title(f"{name} is {part['verdict']}: {groups[row]} is off most, NEES is {ratios[row, column]:.2f} of its "
+                  f"dimension at step {int(arms[name][1]['step'][column])}", source(scenario))
+    return picture
+
+
+def _thinned_columns(logs: FloatArray) -> FloatArray:
+    """At most some thousand columns: of each stretch of steps the value farthest from 0."""
+    steps = logs.shape[1]
+    if steps <= style.MOST_POINTS:
+        return logs
+    edges = np.linspace(0, steps, style.MOST_POINTS + 1).astype(int)
+    stretches = [logs[:, low:high] for low, high in itertools.pairwise(edges)]
+    return np.stack([np.take_along_axis(one, np.abs(np.nan_to_num(one)).argmax(1)[:, None], 1)[:, 0]
+                     for one in stretches], axis=1)
+
+
+def _cells(picture: Picture, axis: Any, logs: FloatArray, arm: Arm, reach: float) -> None:
+    """The map with its bar of labelled levels."""
+    steps, rows = arm["step"], logs.shape[0]
+    edges = np.linspace(steps[0] - 0.5, steps[-1] + 0.5, logs.shape[1] + 1)
+    gaps: dict[str, Any] = {"rasterized": True}
+    if logs.shape[1] <= GAPS_UP_TO:
+        gaps = {"edgecolors": "white", "linewidth": 0.3}
+    image = axis.pcolormesh(edges, np.arange(rows + 1) - 0.5, logs, cmap="RdBu_r", vmin=-reach, vmax=reach, **gaps)
+    style.step_axis(axis, steps)
+    ticks = [tick for tick in (0.25, 0.5, 0.7, 0.85, 1, 1.2, 1.4, 2, 4) if abs(np.log2(tick)) <= reach * 1.001]
+    bar = picture.colorbar(image, ax=axis, ticks=np.log2(ticks), extend="both", aspect=18, pad=0.02)
+    bar.ax.set_yticklabels([f"{tick:g}" for tick in ticks])
+    bar.ax.minorticks_off()
+    bar.set_label("NEES / dimension\n(red: optimistic)")

@@ -1,0 +1,222 @@
+"""Results files as numpy arrays. Nothing is read from the disk until it is asked for.
+
+    study = credence.open("study.h5")
+    arm = study["kf-circle-constant", "greedy.kf"]      # of a study of one scenario: study["greedy.kf"]
+    arm.trace_P                                         # [trial], NaN for trials without a result
+    arm.nees                                            # [step], the mean over the trials
+    arm.per_step("nees").standard_error                 # [step]
+    arm.mean("trace_P", minus=study["kf-circle-constant", "fixed.kf"]).interval()
+
+docs/results-format.md says what is in a file. `arm.group` is the plain h5py group.
+"""
+
+from __future__ import annotations
+
+import configparser
+import html
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, overload
+
+import h5py
+
+from ._file import TRAJECTORIES, Source, open_hdf5, stem, text
+from .arm import Arm
+from .means import Means
+
+if TYPE_CHECKING:
+    import xarray
+
+    from .grid import Grid
+
+__all__ = ["Arm", "Means", "Scenario", "Study", "open"]
+
+SHOWN = 40  # arms of a study that its table in a notebook shows
+
+
+class Scenario:
+    """A scenario of a study: its arms by name, in the study's order."""
+
+    def __init__(self, group: h5py.Group) -> None:
+        #: The plain h5py group.
+        self.group = group
+        self.name = stem(group)
+
+    @property
+    def arms(self) -> dict[str, Arm]:
+        return {name: Arm(group) for name, group in self.group.items()}
+
+    @property
+    def text(self) -> str:
+        """The scenario as resolved: an INI text that ``credence.run`` reads."""
+        return text(self.group, "scenario")
+
+    def setting(self, name: str) -> str:
+        """A key such as ``noise.heading``, as text; empty where the world has none of that name."""
+        parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
+        parser.optionxform = str  # type: ignore[assignment,method-assign]
+        parser.read_string(self.text)
+        return parser.get(*name.split(".", 1), fallback="")
+
+    def published(self, column: str) -> dict[str, float]:
+        """{arm: value of the column in the published single run}, where the scenario names one."""
+        pairs = [pair.split() for pair in self.setting(f"published.{column}").split(",") if pair.strip()]
+        return {pair[0]: float(pair[1]) for pair in pairs if len(pair) == 2}
+
+    @property
+    def sweep(self) -> tuple[str, dict[str, float | str]] | None:
+        """(scenario that was swept, {key: value here}) of a point of a grid; None of another scenario."""
+        if "sweep_of" not in self.group.attrs:
+            return None
+        values = {key: self.group.attrs[f"sweep.{key}"] for key in text(self.group, "sweep_keys").split()}
+        return text(self.group, "sweep_of"), {
+            key: text(self.group, f"sweep.{key}") if isinstance(value, bytes | str) else float(value)
+            for key, value in values.items()}
+
+    def __getitem__(self, arm: str) -> Arm:
+        if arm not in self.group:
+            raise KeyError(f"{self.name} has no arm {arm}. It has {', '.join(self.group)}")
+        return Arm(self.group[arm])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.group)
+
+    def __len__(self) -> int:
+        return len(self.group)
+
+    def __repr__(self) -> str:
+        return "\n".join([f"<credence.Scenario {self.name}>", *(f"  {arm!r}" for arm in self.arms.values())])
+
+
+class Study:
+    """A results file. ``study["scenario", "arm"]`` is an Arm and ``study["scenario"]`` a Scenario; in a study of one
+    scenario ``study["arm"]`` is an Arm, too. Close it, or use it in a `with` statement, to let go of the file."""
+
+    def __init__(self, file: h5py.File) -> None:
+        #: The plain h5py file.
+        self.file = file
+
+    @property
+    def scenarios(self) -> dict[str, Scenario]:
+        """The scenarios in the study's order, which h5py keeps for file["/"] only."""
+        return {name: Scenario(group) for name, group in self.file["/"].items() if name != "run"}
+
+    @property
+    def arms(self) -> list[Arm]:
+        """All arms of all scenarios."""
+        return [arm for scenario in self.scenarios.values() for arm in scenario.arms.values()]
+
+    @property
+    def trials(self) -> int:
+        """Trials of each scenario that were asked for."""
+        return int(self.file.attrs["trials"])
+
+    @property
+    def complete(self) -> bool:
+        """Whether all of them were run; otherwise it is a part of a study, or an interrupted run."""
+        return bool(self.file.attrs["complete"])
+
+    @property
+    def seed(self) -> int:
+        return int(text(self.file, "root_seed_text"))
+
+    @property
+    def path(self) -> str:
+        return str(self.file.filename)
+
+    @property
+    def grids(self) -> list[Grid]:
+        """The grids that sweeps made (docs/sweep.md), as arrays of scenarios with coordinates."""
+        from .grid import grids_of
+
+        return grids_of(self)
+
+    def to_xarray(self) -> xarray.DataTree:
+        """The study as an xarray.DataTree: a node for each scenario, and in it one for each arm. It reads the file.
+        Needs xarray 2024.10 or later; Arm.to_xarray works with any."""
+        from .grid import study_to_xarray
+
+        return study_to_xarray(self)
+
+    def close(self) -> None:
+        self.file.close()
+
+    @overload
+    def __getitem__(self, name: tuple[str, str]) -> Arm: ...
+    @overload
+    def __getitem__(self, name: str) -> Any: ...
+    def __getitem__(self, name: str | tuple[str, str]) -> Any:
+        if isinstance(name, tuple):
+            return self[name[0]][name[1]]
+        scenarios = self.scenarios
+        if name in scenarios:
+            return scenarios[name]
+        if len(scenarios) == 1:
+            return next(iter(scenarios.values()))[name]
+        raise KeyError(f"the study has no scenario {name}. It has {', '.join(scenarios)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.scenarios)
+
+    def __len__(self) -> int:
+        return len(self.scenarios)
+
+    def __enter__(self) -> Study:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _state(self) -> str:
+        kept = ", aggregates" if "keep" in self.file.attrs else ""
+        return f"{self.trials:,} trials, seed {self.seed}, {'complete' if self.complete else 'not complete'}{kept}"
+
+    def __repr__(self) -> str:
+        if not self.file:
+            return "<credence.Study, closed>"
+        shown = [f"  {arm!r}" for arm in self.arms[:SHOWN]]
+        return "\n".join([f"<credence.Study {self.path}: {self._state()}>", *shown, *self._rest()])
+
+    def _repr_html_(self) -> str:
+        if not self.file:
+            return html.escape(repr(self))
+        rows = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in _row(arm)) + "</tr>"
+                       for arm in self.arms[:SHOWN])
+        heads = "".join(f"<th>{head}</th>" for head in ("scenario", "arm", "trials", "failed", "NEES / n"))
+        rest = "".join(f"<p>{line}</p>" for line in self._rest())
+        return (f"<p><b>{html.escape(self.path)}</b>: {self._state()}</p><table><thead><tr>{heads}</tr></thead>"
+                f"<tbody>{rows}</tbody></table>{rest}")
+
+    def _rest(self) -> list[str]:
+        more = len(self.arms) - SHOWN
+        return [f"and {more} arms more"] if more > 0 else []
+
+
+def _row(arm: Arm) -> tuple[str, ...]:
+    ratio = arm.over_steps("nees") if "nees" in arm.series else None
+    shown = f"{float(ratio.mean) / ratio.dimension:.3f}" if ratio and arm.counted_trials else "\N{EN DASH}"
+    trials = f"{arm.trials:,}" if arm.trials else "not run yet"
+    return stem(arm.group.parent), arm.name, trials, f"{arm.failed_trials:,}", shown
+
+
+def open(source: Source) -> Study:
+    """Opens a results file; nothing but its header is read.
+
+    Parameters
+    ----------
+    source : path or binary file
+        What ``credence run -o`` wrote, of schema version 2 or 3; or an open file, such as io.BytesIO.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        The file is not there, or is not a results file of a version that this package reads.
+    """
+    file, kind = open_hdf5(source)
+    if kind == TRAJECTORIES:
+        file.close()
+        raise ValueError(f"{source}: format: it has trajectories, not results. Take credence.open_trajectories.")
+    return Study(file)
