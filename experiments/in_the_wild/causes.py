@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
+from unittest import mock
 
 import ahrs_attitude
 import gtsam
@@ -26,9 +27,9 @@ class ExactlyIntegrated(EKF):  # type: ignore[misc]
 
 
 def attitude(filter_class: type[EKF]) -> float:
-    ahrs_attitude.EKF = filter_class
     generators = (np.random.default_rng([SEED, i]) for i in range(TRIALS))
-    trials = [ahrs_attitude.trial(each, variances="simulated") for each in generators]
+    with mock.patch.object(ahrs_attitude, "EKF", filter_class):
+        trials = [ahrs_attitude.trial(each, variances="simulated") for each in generators]
     return float(np.mean(ahrs_attitude.own_nees(trials))) / 3
 
 
@@ -43,7 +44,9 @@ def derivative_at(rotation_vector: np.ndarray) -> np.ndarray:
 
 def preintegration() -> tuple[float, float]:
     """Of predict() against the prediction without noise: with P as it is, and with P mapped to its tangent space."""
-    exact, as_it_is, mapped = gtsam_imu.integrate(np.zeros((1200, 6)), 11), [], []
+    exact = gtsam_imu.integrate(np.zeros((1200, 6)), 11)
+    as_it_is: list[float] = []
+    mapped: list[float] = []
     for i in range(TRIALS):
         told = gtsam_imu.integrate(np.random.default_rng([SEED, i]).standard_normal((1200, 6)), 11)
         for (increment, state, P), (_, without_noise, _) in zip(told, exact):
@@ -58,14 +61,12 @@ def preintegration() -> tuple[float, float]:
 def factors_in_isam2(only_new_factors: bool) -> int:
     made: list[Any] = []
 
-    class Kept(gtsam.ISAM2):  # type: ignore[misc]
-        def __init__(self, *arguments: Any) -> None:
-            super().__init__(*arguments)
-            made.append(self)
+    def keep(*arguments: Any, kind: Any = gtsam.ISAM2) -> Any:
+        made.append(kind(*arguments))
+        return made[0]
 
-    original, gtsam.ISAM2 = gtsam.ISAM2, Kept
-    gtsam_isam2.trial(np.random.default_rng([SEED, 0]), only_new_factors=only_new_factors)
-    gtsam.ISAM2 = original
+    with mock.patch.object(gtsam, "ISAM2", keep):
+        gtsam_isam2.trial(np.random.default_rng([SEED, 0]), only_new_factors=only_new_factors)
     return int(made[0].getFactorsUnsafe().size())
 
 

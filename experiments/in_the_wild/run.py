@@ -26,8 +26,8 @@ import credence
 
 SEED = 2026
 TOLERANCE = 1e-9  # of the mean NEES of a step, relative
-LIMITS = {"margin": 0.10}
-LIMITS_SHORT = {"margin": 0.25, "margin_direction": 0.5, "bias": 0.25}
+LIMITS: dict[str, Any] = {"margin": 0.10}
+LIMITS_SHORT: dict[str, Any] = {"margin": 0.25, "margin_direction": 0.5, "bias": 0.25}
 HEAD = ("library", "study", "filter", "trials", "steps", "n", "verdict", "NEES/n", "worst direction: error²/P")
 
 

@@ -86,6 +86,15 @@ class TestTum:
         with pytest.raises(ValueError, match=message):
             adapters.from_tum(write(tmp_path / "run.txt", rows), truth)
 
+    def test_files_without_numbers(self, tmp_path: Path) -> None:
+        _, truth = tum_pair(tmp_path, self.P.ravel())
+        (tmp_path / "empty.txt").write_text("# time x y z\n")
+        (tmp_path / "words.txt").write_text("1 2 three\n")
+        with pytest.raises(credence.InputError, match=r"empty.txt: there are no numbers in it"):
+            adapters.from_tum(tmp_path / "empty.txt", truth)
+        with pytest.raises(credence.InputError, match=r"words.txt: .*three"):
+            adapters.from_tum(tmp_path / "words.txt", truth)
+
     def test_beside_evo(self, tmp_path: Path) -> None:
         file_interface = pytest.importorskip("evo.tools.file_interface")
         metrics, sync = (pytest.importorskip(f"evo.core.{name}") for name in ("metrics", "sync"))

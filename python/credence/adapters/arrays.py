@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from credence import InputError, judge
+
 
 def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Arrays of an ``.npz`` file that are called as the arguments of :func:`credence.judge`.
@@ -28,25 +30,23 @@ def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = Non
 
     Raises
     ------
-    ValueError
+    InputError
         If an array of `names` is not in the file, or none is that `judge` takes.
     """
-    from credence import judge
-
     known = [name for name in inspect.signature(judge).parameters if name not in ("progress", "name")]
     called = {name: name for name in known} | dict(names or {})
     with np.load(path, allow_pickle=False) as file:
         missing = [array for array in (names or {}).values() if array not in file.files]
         if missing:
             there = ", ".join(file.files)
-            raise ValueError(f"{os.fspath(path)}: there is no array {missing[0]} in it (it has {there})")
+            raise InputError(f"{os.fspath(path)}: there is no array {missing[0]} in it (it has {there})")
         arguments: dict[str, Any] = {name: file[array] for name, array in called.items() if array in file.files}
         for what in ("covariance", "nees"):
             found = {name.split("/")[1]: file[name] for name in file.files if _is_group(name, what)}
             if found:
                 arguments[f"group_{what}"] = found
     if not arguments:
-        raise ValueError(f"{os.fspath(path)}: no array in it is an argument of judge. Give their names.")
+        raise InputError(f"{os.fspath(path)}: no array in it is an argument of judge. Give their names.")
     single = {name: value for name, value in arguments.items() if isinstance(value, np.ndarray) and not value.ndim}
     return arguments | {name: value.item() for name, value in single.items()}
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from credence import InputError
+
 _rotation_last = [3, 4, 5, 0, 1, 2]
 
 
@@ -41,7 +43,7 @@ def from_gtsam_poses(
 
     Raises
     ------
-    ValueError
+    InputError
         If the covariances do not have the dimension of the poses.
 
     Notes
@@ -54,7 +56,7 @@ def from_gtsam_poses(
     planar = hasattr(runs[0][0][0], "theta")
     coordinates, dimension = (_pose2, 3) if planar else (_pose3, 6)
     if joint.shape[-2:] != (dimension, dimension):
-        raise ValueError(f"invalid covariance of shape {joint.shape[-2:]} (a pose has {dimension} components)")
+        raise InputError(f"invalid covariance of shape {joint.shape[-2:]} (a pose has {dimension} components)")
     true, estimated = (np.array([[coordinates(pose) for pose in run] for run in each], dtype=float) for each in runs)
     arguments = {"truth": true, "estimate": estimated, "chart": "local"}
     if planar:
@@ -82,7 +84,7 @@ def from_stonesoup(truth: Iterable[Iterable[Any]], track: Iterable[Iterable[Any]
 
     Raises
     ------
-    ValueError
+    InputError
         If a track and its truth differ in length.
 
     Notes

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+
+from credence import InputError
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -15,14 +18,16 @@ Path = str | os.PathLike[str]
 def read_table(path: Path, *columns: int) -> Array:
     """The numbers of a text file, a row a line, without comments; it must have one of these numbers of columns."""
     try:
-        table: Array = np.loadtxt(path, comments="#", ndmin=2, dtype=float)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a file without numbers, which is refused below
+            table: Array = np.loadtxt(path, comments="#", ndmin=2, dtype=float)
     except ValueError as error:
-        raise ValueError(f"{os.fspath(path)}: {error}") from None
+        raise InputError(f"{os.fspath(path)}: {error}") from None
     if not table.size:
-        raise ValueError(f"{os.fspath(path)}: there are no numbers in it. Check the path.")
+        raise InputError(f"{os.fspath(path)}: there are no numbers in it. Check the path.")
     if columns and table.shape[1] not in columns:
         wanted = " or ".join(map(str, columns))
-        raise ValueError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be {wanted})")
+        raise InputError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be {wanted})")
     return table
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from credence import InputError
 from credence.adapters.tables import Array, Path, from_upper, match_times, normalised, path_list, read_table, stacked
 
 _pose_columns = 8  # time, x, y, z, and the quaternion x, y, z, w
@@ -19,12 +20,12 @@ def _associated(estimate: Path, truth: Path, columns: Sequence[int], max_differe
     estimated, true = read_table(estimate, *columns), read_table(truth)
     if true.shape[1] < _pose_columns:
         too_few = f"its lines have {true.shape[1]} numbers (must be at least {_pose_columns})"
-        raise ValueError(f"{os.fspath(truth)}: {too_few}")
+        raise InputError(f"{os.fspath(truth)}: {too_few}")
     estimated, true = (rows[np.argsort(rows[:, 0], kind="stable")] for rows in (estimated, true))
     of_estimate, of_truth = match_times(estimated[:, 0], true[:, 0], max_difference)
     if not of_estimate.size:
         message = f"no time of it is within {max_difference} s of one in {os.fspath(truth)}"
-        raise ValueError(f"{os.fspath(estimate)}: {message}. Give the truth of this run, or a larger max_difference.")
+        raise InputError(f"{os.fspath(estimate)}: {message}. Give the truth of this run, or a larger max_difference.")
     return estimated[of_estimate], true[of_truth, :_pose_columns]
 
 
@@ -65,7 +66,7 @@ def from_tum(
 
     Raises
     ------
-    ValueError
+    InputError
         If a line has another number of columns, or no pose has a truth.
     """
     estimates, truths = path_list(estimate), path_list(truth)
@@ -118,7 +119,7 @@ def from_openvins(
 
     Raises
     ------
-    ValueError
+    InputError
         If a line has another number of columns, no pose has a truth, or files of a simulation differ in their times.
     """
     estimates, truths = path_list(estimate), path_list(truth)
@@ -149,9 +150,9 @@ def _simulated(estimate: Path, truth: Path, deviation: Path) -> tuple[Array, Arr
     tables = read_table(estimate), read_table(truth), read_table(deviation)
     for path, table, least in zip((estimate, truth, deviation), tables, (17, 17, 16)):
         if table.shape[1] < least:
-            raise ValueError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be at least {least})")
+            raise InputError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be at least {least})")
         if not np.array_equal(table[:, 0], tables[0][:, 0]):
-            raise ValueError(f"{os.fspath(path)}: its times are not those of {os.fspath(estimate)}")
+            raise InputError(f"{os.fspath(path)}: its times are not those of {os.fspath(estimate)}")
     return tables[0][:, :17], tables[1][:, :17], tables[2][:, :16]
 
 
