@@ -31,7 +31,7 @@ def variance(x, kind, noise):
     return 0.05 * slant_range(x) if kind == "ekf" else 10
 
 
-def trial(rng, kind, noise="example", start="example", steps=400):
+def trial(rng, kind, noise="example", start="example"):
     mean, spread, Q = EXAMPLE[kind]
     if kind == "ekf":
         filter, observe = ExtendedKalmanFilter(3, 1), {"HJacobian": jacobian, "Hx": slant_range}
@@ -44,7 +44,7 @@ def trial(rng, kind, noise="example", start="example", steps=400):
     np.random.seed(rng.integers(2**32))  # RadarSim draws from NumPy's global generator
     truth = (0, 100, 1000) if start == "example" else rng.multivariate_normal(filter.x, filter.P)
     radar, told = RadarSim(DT, *truth), []
-    for k in range(steps):
+    for k in range(400):
         if k > 0 or kind == "ukf" or start == "drawn":  # test_ekf begins with a measurement
             filter.predict()
         z = radar.get_range(0.05)

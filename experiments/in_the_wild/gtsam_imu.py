@@ -26,9 +26,10 @@ FORCE = np.array([RUNNER.actualSpecificForce(k * DT) + BIAS.accelerometer() for 
 def integrate(noise, seconds, scale=1.0):
     """The preintegration after each second; noise has a row of six numbers, of unit variance, for each sample."""
     preintegrated, result = gtsam.PreintegratedImuMeasurements(parameters(scale), BIAS), []
+    force = FORCE + ACCELEROMETER / DT**0.5 * noise[:, :3]
+    omega = OMEGA + GYRO / DT**0.5 * noise[:, 3:]
     for k in range(100 * seconds):
-        force, omega = FORCE[k] + ACCELEROMETER / DT**0.5 * noise[k, :3], OMEGA[k] + GYRO / DT**0.5 * noise[k, 3:]
-        preintegrated.integrateMeasurement(force, omega, DT)
+        preintegrated.integrateMeasurement(force[k], omega[k], DT)
         if (k + 1) % 100 == 0:
             predicted = preintegrated.predict(LOOP.navState(0), BIAS)
             result.append((preintegrated.preintegrated(), predicted, preintegrated.preintMeasCov()))

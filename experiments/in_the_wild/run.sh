@@ -7,14 +7,17 @@
 #   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
 #   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
 #
-# PYTHON is an interpreter that has credence and what requirements.txt names; without it they are installed in
-# build/in-the-wild, credence from this tree.
+# PYTHON is an interpreter that has credence and what requirements.txt names. Without it they are installed once in
+# build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if [ -z "${PYTHON:-}" ]; then
-  PYTHON=$PWD/build/in-the-wild/bin/python
-  [ -x "$PYTHON" ] || python3 -m venv build/in-the-wild
-  "$PYTHON" -m pip install --quiet . -r experiments/in_the_wild/requirements.txt >&2
+  venv=$PWD/build/in-the-wild PYTHON=$PWD/build/in-the-wild/bin/python
+  if [ ! "$venv/complete" -nt experiments/in_the_wild/requirements.txt ]; then
+    python3 -m venv "$venv"
+    "$PYTHON" -m pip install --quiet . -r experiments/in_the_wild/requirements.txt >&2
+    touch "$venv/complete"
+  fi
 fi
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
 if [ "${1:-}" = --causes ]; then exec "$PYTHON" experiments/in_the_wild/causes.py; fi
