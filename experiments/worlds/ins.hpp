@@ -1,9 +1,8 @@
 #pragma once
-// Inertial navigation with GPS: an inertial unit at 100 Hz with unknown constant biases, a position each second, 15
+// Inertial navigation with GPS: an inertial unit at 100 Hz with biases that walk, a position each second, 15
 // states. A vehicle on a circle starts at a known place and speed, and hardly knows its heading.
 //
-//   R' = R exp((w - b_g - n_g) T), a = R (f - b_a - n_a) + g, v' = v + a T, p' = p + v T + a T^2/2
-//   z = p + noise, each second
+//   R' = R exp((w - b_g - n_g) T), a = R (f - b_a - n_a) + g, v' = v + a T, p' = p + v T + a T^2/2; z = p + noise
 //   error:     R = R^ exp(phi), v = v^ + dv, p = p^ + dp: the error-state filter  [Sola 2017, 5]
 //   invariant: (R, v, p) = (R^, v^, p^) exp(phi, rho_v, rho_p) in SE_2(3), biases beside it [Barrau, Bonnabel 2017]
 
@@ -13,7 +12,7 @@
 struct Ins {
     struct Settings {
         int rate = 100;
-        double speed = 10, radius = 50, sigma_gps = 1, gyro = 2e-3, accelerometer = 0.02;
+        double speed = 10, radius = 50, sigma_gps = 1, gyro = 2e-3, accelerometer = 0.02, walk = 5e-3;
         double tilt = 0.02, heading = 0.5, gyro_bias = 2e-3, accelerometer_bias = 0.05;
     };
     static constexpr const char* name = "ins";
@@ -22,6 +21,7 @@ struct Ins {
         keys.real("sensor.gps", &Settings::sigma_gps, 1e-6, 1e3, "sigma of a position, each axis (m)");
         keys.real("sensor.gyro", &Settings::gyro, 1e-12, 1, "sigma of a sample, each axis (rad/s)");
         keys.real("sensor.accelerometer", &Settings::accelerometer, 1e-12, 10, "sigma of a sample, each axis (m/s^2)");
+        keys.real("sensor.walk", &Settings::walk, 1e-9, 1, "sigma of a bias's step, as a share of a sample's (1)");
         keys.real("motion.speed", &Settings::speed, 0, 1e3, "on the circle (m/s)");
         keys.real("motion.radius", &Settings::radius, 1, 1e6, "of the circle (m)");
         keys.real("start.tilt", &Settings::tilt, 1e-6, 1, "sigma of roll and of pitch (rad)");
@@ -52,13 +52,7 @@ struct Ins {
     template <class Real>
     using Six = Eigen::Matrix<Real, 6, 1>;
     static Vector<double> gravity() { return {0, 0, -9.81}; }
-    template <class... Numbers>
-    static auto each_axis(Numbers... numbers) {
-        Eigen::Matrix<double, 3 * sizeof...(Numbers), 1> all;
-        int part = 0;
-        (all.template segment<3>(3 * part++).setConstant(numbers), ...);
-        return all;
-    }
+
     /// A sample u = (w, f) of the inertial unit, without its biases, moves attitude, velocity and position.
     template <class Real>
     static Pose<Real> moved(const Pose<Real>& X, const Six<Real>& u, double T) {
@@ -94,13 +88,14 @@ struct Ins {
     template <class Real>
     static Eigen::Matrix<Real, 9, 1> difference(bool invariant, const Pose<Real>& X, const Pose<Real>& Y) {
         Eigen::Matrix<Real, 9, 1> e = (Y.inverse() * X).log();
-        for (int j = 0; j < 2 && !invariant; ++j) e.template segment<3>(3 + 3 * j) = X.vectors.col(j) - Y.vectors.col(j);
+        const auto apart = (X.vectors - Y.vectors).eval();
+        for (int j = 0; j < 2 && !invariant; ++j) e.template segment<3>(3 + 3 * j) = apart.col(j);
         return e;
     }
 
     template <class Real>
     static void run(const Settings& s, credence::OwnTrialOf<Real>& trial) {
-        enum Source { start, unit, gps };
+        enum Source { start, unit, walk, gps };
         const bool invariant = trial.arm() == 1;
         const double T = 1.0 / s.rate, turning = s.speed / s.radius, push = s.speed * turning;
         const auto draw = [&](int source, int k, int index) {
@@ -108,17 +103,20 @@ struct Ins {
             for (int i = 0; i < 3; ++i) six.template segment<2>(2 * i) = trial.normal(source, k, 3 * index + i);
             return six;
         };
-        auto sigma = each_axis(s.tilt, 0.1, 0.1, s.gyro_bias, s.accelerometer_bias);
-        sigma(2) = s.heading;
-        const Six<double> noise = each_axis(s.gyro, s.accelerometer);
-        Eigen::Matrix<Real, 15, 1> wrong;
+        Eigen::Matrix<double, 15, 1> sigma;
+        sigma << s.tilt, s.tilt, s.heading, Six<double>::Constant(0.1), Vector<double>::Constant(s.gyro_bias),
+            Vector<double>::Constant(s.accelerometer_bias);
+        Six<double> noise;
+        noise << Vector<double>::Constant(s.gyro), Vector<double>::Constant(s.accelerometer);
+        const Vector<double> R = Vector<double>::Constant(s.sigma_gps * s.sigma_gps);
+        Eigen::Matrix<Real, 15, 1> wrong, error;
         wrong << draw(start, 0, 0), draw(start, 0, 1), draw(start, 0, 2).template head<3>();
         wrong = sigma.asDiagonal() * wrong;
         Pose<Real> estimate;
         estimate.vectors(0, 0) = s.speed;
         Pose<Real> X = corrected<Real>(false, estimate, wrong.template head<9>());
         Six<Real> biases = Six<Real>::Zero(), b = wrong.template tail<6>();
-        Matrix<Real> P = sigma.cwiseAbs2().template cast<Real>().asDiagonal();
+        Matrix<Real> P = sigma.cwiseAbs2().cast<Real>().asDiagonal();
         for (int k = 1; k < trial.poses(); ++k) {
             for (int sample = 0; sample < s.rate; ++sample) {
                 const double angle = turning * T * ((k - 1) * s.rate + sample);
@@ -127,21 +125,22 @@ struct Ins {
                 u << Real(0), Real(0), Real(turning), X.rotation.matrix.transpose() * (a - gravity());
                 const Six<Real> seen = u + b + noise.asDiagonal() * draw(unit, k, sample) - biases;
                 X = moved(X, u, T);
+                b += s.walk * noise.asDiagonal() * draw(walk, k, sample);
                 const Matrix<Real> F = motion_jacobian(invariant, estimate, seen, T);
                 const Eigen::Matrix<Real, 9, 6> G = F.template topRightCorner<9, 6>() * noise.asDiagonal();
                 Matrix<Real> Q = Matrix<Real>::Zero();
                 Q.template topLeftCorner<9, 9>() = credence::product_sum(G, G, Eigen::Matrix<double, 9, 9>::Zero());
+                Q.template bottomRightCorner<6, 6>().diagonal() = (s.walk * noise).cwiseAbs2().cast<Real>();
                 P = credence::predicted_covariance(F, P, Q);
                 estimate = moved(estimate, seen, T);
             }
             const Vector<Real> z = X.vectors.col(1) + s.sigma_gps * draw(gps, k, 0).template head<3>();
             Eigen::Matrix<Real, 3, 15> H = Eigen::Matrix<Real, 3, 15>::Zero();
             H.template middleCols<3>(6) = invariant ? estimate.rotation.matrix : Turn<Real>::Identity().eval();
-            const auto update = credence::sequential_update(P, z - estimate.vectors.col(1), H, each_axis(s.sigma_gps * s.sigma_gps));
+            const auto update = credence::sequential_update(P, z - estimate.vectors.col(1), H, R);
             estimate = corrected<Real>(invariant, estimate, update.step.template head<9>());
             biases += update.step.template tail<6>();
             P = update.P;
-            Eigen::Matrix<Real, 15, 1> error;
             error << difference(invariant, estimate, X), biases - b;
             trial.step(error, P, update.innovation, update.S);
         }
