@@ -60,7 +60,7 @@ class Row:
 
 
 def whole_state(verdict: credence.Verdict) -> dict[str, Any]:
-    found: dict[str, Any] = next(block for block in verdict["blocks"] if block["block"] == "all")
+    found: dict[str, Any] = next(group for group in verdict["groups"] if group["group"] == "all")
     return found
 
 

@@ -22,7 +22,7 @@ class Verdict:
     """The verdict on a filter, with everything that it rests on.
 
     ``str(verdict)`` is the text that ``credence judge`` prints, and a notebook shows its page. ``verdict[name]`` is an
-    entry of `json`, such as ``verdict["blocks"]``.
+    entry of `json`, such as ``verdict["groups"]``.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ def write(path: Path, rows: Any) -> Path:
 
 def nees(arguments: Arguments, group: str = "all") -> list[float]:
     """What judge has as the mean NEES of each step, not divided by the dimension."""
-    found = next(one for one in credence.judge(**arguments)["blocks"] if one["block"] == group)
+    found = next(one for one in credence.judge(**arguments)["groups"] if one["group"] == group)
     return [ratio * found["dimension"] for ratio in found["anees"]["ratio"]]
 
 
