@@ -1,4 +1,5 @@
 // The program as its user meets it.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "program.hpp"

@@ -1,4 +1,5 @@
 // Forged journals with right checksums: they are refused.
+// Kind: foreign files.
 
 #include "journal_forged.hpp"
 #include "of_scenarios.hpp"

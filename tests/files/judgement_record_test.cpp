@@ -1,4 +1,5 @@
 // Records for `judge`: every number against NumPy and SciPy, and the ways in which other programs write.
+// Kind: foreign files.
 
 #include "numeric/chi_square.hpp"
 

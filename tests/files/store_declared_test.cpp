@@ -1,4 +1,5 @@
 // Results of worlds that this program does not have: the file says enough of itself, or is refused.
+// Kind: foreign files.
 
 #include "store_damage.hpp"
 #include "study_support.hpp"

@@ -1,5 +1,5 @@
 """Prints chi_square.json: errors and innovations drawn by NumPy for a filter that is right, and what SciPy says of them:
-every figure of the evidence, computed from the values and not from totals, for tests/calibration_reference_test.cpp.
+every figure of the evidence, computed from the values and not from totals, for tests/calibration_reference_long_test.cpp.
 
     /usr/bin/python3 tests/reference/make_chi_square.py > tests/reference/chi_square.json
 

@@ -1,5 +1,5 @@
 """Prints lie_groups.json: exponentials, logarithms and left Jacobians of SO(2), SE(2), SO(3), SE(3) and SE_2(3) as SciPy
-computes them from matrices alone, for tests/worlds/filters_lie_test.cpp.
+computes them from matrices alone, for tests/worlds/filters_lie_long_test.cpp.
 
     python3 tests/reference/make_lie_groups.py > tests/reference/lie_groups.json
 

@@ -1,4 +1,5 @@
 // Sweeps: values and ranges, grids, names of points, and places as text.
+// Kind: foreign files.
 
 #include "catch.hpp"
 

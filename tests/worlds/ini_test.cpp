@@ -1,4 +1,5 @@
 // Scenario files.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"

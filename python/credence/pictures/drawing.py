@@ -17,7 +17,7 @@ from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
 from .place import place
-from .steps import accuracy, coverage, nees, nis, chi_square
+from .steps import accuracy, chi_square, coverage, nees, nis
 from .style import Picture as Picture
 from .trials import distribution, paired
 
