@@ -102,6 +102,8 @@ TEST_CASE("judge: errors of an angle that were not wrapped are named") {
     const Workplace here;
     const auto write = [&](double turn) {
         DrawnRecord drawn(200, 8, 3);
+        for (Eigen::VectorXd& error : drawn.error) error *= 0.2;  // no right angle is off by half a turn
+        for (Eigen::MatrixXd& covariance : drawn.covariance) covariance *= 0.04;
         for (int trial = 0; trial < drawn.trials; trial += 20) drawn.error[drawn.at(trial, 4)](2) += turn;
         write_file(here.path("r.h5"), [&](const Handle& root) {
             write_drawn(root, drawn);

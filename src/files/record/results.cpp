@@ -103,6 +103,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.columns = record_columns(shape);
     results.all_series = all_series;
     results.trials = shape.trials;
+    results.scenario.components = shape.components;
     results.scenario.groups = shape.groups;
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
