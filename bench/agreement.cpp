@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "baseline.hpp"
-#include "counted_unit.hpp"
-#include "units.hpp"
+#include "counted_target.hpp"
+#include "targets.hpp"
 #include "trials.hpp"
 
 namespace credence::bench {

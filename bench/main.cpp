@@ -41,7 +41,7 @@ Json context(const Effort& effort) {
             {"compiler", CREDENCE_BENCH_COMPILER},
             {"flags of credence", CREDENCE_BENCH_FLAGS},
             {"flags of A and B", CREDENCE_BENCH_BASELINE_FLAGS},
-            {"units", targets},
+            {"targets", targets},
             {"input",
              "the seed's scenario but for what a row names: K = 20 poses (19 steps), M = 3; a trial is the truth "
              "with all draws, planning, filter, NEES, NIS and trace(P) at each step, for credence all its "

@@ -9,7 +9,7 @@ namespace credence::bench {
 
 namespace {
 
-/// Keeps what it is told.
+/// Keeps what is reported to it.
 class Collector : public benchmark::BenchmarkReporter {
 public:
     explicit Collector(std::size_t prefix) : prefix_(prefix) {}

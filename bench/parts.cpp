@@ -34,7 +34,7 @@ void add_parts(const Effort& effort) {
 
 Table parts_table() {
     Table table{"parts",
-                "Parts, by unit (a filter step: predict, update, judge; heading model, M = 3, all in sight)",
+                "Parts, by target (a filter step: predict, update, judge; heading model, M = 3, all in sight)",
                 {"unit", "lanes", "FMA peak GFLOP/s", "ns/normal draw", "ns/filter step of a trial"},
                 {}};
     for (const Kernels& kernels : runnable_kernels()) {

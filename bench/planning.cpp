@@ -54,7 +54,7 @@ struct Measured {
 };
 
 /// Three digits, and all of those before the point.
-std::string figure(double value) {
+std::string number_text(double value) {
     char text[32];
     std::snprintf(text, sizeof text, value < 100 ? "%.3g" : "%.0f", value);
     return text;
@@ -77,9 +77,9 @@ void measure_cell(const std::string& process, const std::string& path, const std
         for (Measured& arm : arms) arm.measure();
     const double greedy = arms[1].median(), two = arms[2].median(), three = arms[3].median();
     std::printf("| %s, %s, %s | %d | %s | %s | %s | %s | %s | %s |\n", process == "heading" ? "ekf" : "kf", path.c_str(),
-                noise.c_str(), candidate_count(arms[1].row.problem.scenario()), figure(arms[0].median()).c_str(),
-                figure(greedy).c_str(), figure(two).c_str(), figure(two / greedy).c_str(), figure(three).c_str(),
-                figure(three / greedy).c_str());
+                noise.c_str(), candidate_count(arms[1].row.problem.scenario()), number_text(arms[0].median()).c_str(),
+                number_text(greedy).c_str(), number_text(two).c_str(), number_text(two / greedy).c_str(), number_text(three).c_str(),
+                number_text(three / greedy).c_str());
     std::fflush(stdout);
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "baseline.hpp"
-#include "counted_unit.hpp"
-#include "units.hpp"
+#include "counted_target.hpp"
+#include "targets.hpp"
 
 namespace credence::bench {
 
@@ -102,7 +102,7 @@ std::vector<Table> trial_tables(const std::string& key, const std::string& title
                 {"row", "A us/step", "B us/step", "us/step", "trials/s", "x A", "x B", "operations/step", "GFLOP/s",
                  "% of peak"},
                 {}};
-    Table others{key + "_units", title + ", other units", {"row"}, {}};
+    Table others{key + "_targets", title + ", other targets", {"row"}, {}};
     for (std::size_t u = 1; u < targets.size(); ++u)
         for (const char* what : {" us/step", " x A", " x B", " % of peak"})
             others.columns.push_back(targets[u].name + what);

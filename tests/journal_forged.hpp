@@ -60,7 +60,7 @@ struct Made {
         std::string bytes = header;
         for (const Record& one : records) bytes += one.bytes();
         put_bytes(path + ".journal", bytes);
-        const std::string watched = refusal<InputError>([&] { RunWatch(path).look(); }), text = refused(path, asked);
+        const std::string watched = refusal<InputError>([&] { RunWatch(path).snapshot(); }), text = refused(path, asked);
         // A program that only reads it refuses it too.
         if (!text.empty()) CHECK(watched.starts_with(path + ".journal: is damaged: "));
         std::filesystem::remove(path);

@@ -47,15 +47,15 @@ def relative_bound(products, place, trials, nis_ratio):
 
 def check_figures(ours, theirs):
     figures = {figure["part"]: figure for figure in theirs["figures"] if figure["name"] == "nees"}
-    for block in ours["blocks"]:
-        name = block["block"]
+    for group in ours["groups"]:
+        name = group["group"]
         for step, (total, count) in enumerate(zip(figures[name]["sum"], theirs["present"])):
-            ratio = total / (count * block["dimension"])
-            assert near(block["anees"]["ratio"][step], ratio), (name, step)
+            ratio = total / (count * group["dimension"])
+            assert near(group["anees"]["ratio"][step], ratio), (name, step)
             spread = (figures[name]["square_sum"][step] - total * total / count) / (count - 1)
-            assert near(block["variance_ratio"][step], spread / (2 * block["dimension"])), (name, step)
+            assert near(group["variance_ratio"][step], spread / (2 * group["dimension"])), (name, step)
     for step, distance in enumerate(theirs["shape_distance"]):
-        assert near(ours["shape"]["distance"][step], distance), step
+        assert near(ours["distribution"]["distance"][step], distance), step
     products = theirs["products"]
     for lag in ours["whiteness"]:
         assert near(lag["correlation"], products["sum"][lag["lag"] - 1] / products["count"][lag["lag"] - 1])

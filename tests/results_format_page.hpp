@@ -1,6 +1,6 @@
 #pragma once
 // The contents of results files as docs/results-format.md documents them in its tables, and of a file, in the same
-// words: `arm attribute counted_trials: int64`, `variable F_total [step, part]: double`, `figure nees_pose: nees`.
+// words: `arm attribute counted_trials: int64`, `variable F_total [step, part]: double`, `series nees_pose: nees`.
 
 #include <credence/text.hpp>
 
@@ -43,8 +43,8 @@ inline std::string documented_shape(const std::vector<std::string>& header, cons
 inline void add_row(const std::vector<std::string>& header, const std::vector<std::string>& cells, Facts& facts) {
     const std::vector<std::string> names = matches(cells[0], R"(`([A-Za-z_][\w.]*)`)");
     for (std::size_t i = 0; i < names.size(); ++i) {
-        if (header[0] == "figure F") {
-            facts.insert("figure " + names[i] + ": " + cells[1]);
+        if (header[0] == "series F") {
+            facts.insert("series " + names[i] + ": " + cells[1]);
             continue;
         }
         const std::vector<std::string> types = split_list(cells[header[1] == "shape" ? 2 : 1]);
@@ -84,10 +84,10 @@ inline std::string type_name(hid_t type, const std::string& place) {
 }
 
 /// The series of a group or component are documented once for all of them.
-inline std::string general(const std::string& figure) {
-    for (const char* block : {"nees", "squared_error", "variance"})
-        if (figure.starts_with(block + std::string("_feature_"))) return block + std::string("_feature_J");
-    return figure.starts_with("standardised_error_") ? "standardised_error_COMPONENT" : figure;
+inline std::string general(const std::string& series) {
+    for (const char* role : {"nees", "squared_error", "variance"})
+        if (series.starts_with(role + std::string("_feature_"))) return role + std::string("_feature_J");
+    return series.starts_with("standardised_error_") ? "standardised_error_COMPONENT" : series;
 }
 
 /// Names of the dimensions of a dataset, which is a dimension itself or has all its scales attached.
@@ -110,7 +110,7 @@ inline std::string dimension_names(const hdf5::Handle& dataset, const std::strin
 inline void add_attributes(const hdf5::Handle& object, const std::string& kind, const std::string& own_type,
                            Facts& facts) {
     static const std::set<std::string> of_hdf5{"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"};
-    static const std::set<std::string> of_figures{"figure", "role", "part_of", "dimension", "rows", "more_rows"};
+    static const std::set<std::string> of_series{"series", "role", "part_of", "dimension", "rows", "more_rows"};
     for (const std::string& name : hdf5::attribute_names(object)) {
         if (of_hdf5.count(name) > 0) continue;
         const hdf5::Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, name, "");
@@ -118,7 +118,7 @@ inline void add_attributes(const hdf5::Handle& object, const std::string& kind, 
         const std::string found = type_name(type.id(), name);
         const std::string said = name.starts_with("sweep.") ? "sweep.KEY" : name;
         const bool fill = name == "_FillValue" && found == own_type;
-        facts.insert((of_figures.count(name) > 0 ? "figure attribute " : kind + " attribute ") + said + ": " +
+        facts.insert((of_series.count(name) > 0 ? "series attribute " : kind + " attribute ") + said + ": " +
                      (fill ? "as the variable" : found));
     }
 }
@@ -127,10 +127,10 @@ inline void add_attributes(const hdf5::Handle& object, const std::string& kind, 
 inline void add_variable(const hdf5::Handle& dataset, const std::string& name, Facts& facts) {
     const hdf5::Handle type(H5Dget_type(dataset.id()), H5Tclose, name, "");
     std::string general_name = name;
-    if (H5Aexists(dataset.id(), "figure") > 0) {
-        const std::string figure = hdf5::read_text(dataset, "figure");
-        general_name = "F" + name.substr(figure.size());
-        facts.insert("figure " + general(figure) + ": " + hdf5::read_text(dataset, "role"));
+    if (H5Aexists(dataset.id(), "series") > 0) {
+        const std::string series = hdf5::read_text(dataset, "series");
+        general_name = "F" + name.substr(series.size());
+        facts.insert("series " + general(series) + ": " + hdf5::read_text(dataset, "role"));
     } else if (name.ends_with("_covered")) {
         general_name = "F_covered";
     }

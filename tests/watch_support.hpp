@@ -23,11 +23,11 @@ inline std::vector<double> trace_of(const ScenarioResults& results, const ArmRes
 }
 
 /// The snapshot has the means of these trials.
-inline void check_says(const Snapshot& look, const Study& study) {
-    REQUIRE(look.scenarios.size() == study.scenarios.size());
+inline void check_says(const Snapshot& snapshot, const Study& study) {
+    REQUIRE(snapshot.scenarios.size() == study.scenarios.size());
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         const ScenarioResults& results = study.scenarios[s];
-        const WatchedScenario& scenario = look.scenarios[s];
+        const WatchedScenario& scenario = snapshot.scenarios[s];
         CHECK(scenario.name == results.scenario.name);
         CHECK(scenario.trials == results.trials);
         CHECK(scenario.blocks == static_cast<std::int64_t>(results.blocks.size()));

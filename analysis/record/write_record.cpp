@@ -14,15 +14,18 @@
 
 /// `error` [trials, steps, n] = estimate - truth, wrapped where it is an angle; `covariance` [trials, steps, n, n];
 /// both NaN where there is no such step (a run that ends early counts as failed, unless a dataset `steps` [trials]
-/// declares how many steps it has). `blocks` such as "position 0:2, velocity 2:4", half-open and from 0. False if HDF5
-/// fails.
+/// declares how many steps it has). `names` of the components such as "x, vx, y, vy", and `groups` of them, counted from
+/// 0, such as "position 0 2, velocity 1 3". False if HDF5 fails.
 bool write_record(const char* path, hsize_t trials, hsize_t steps, hsize_t n, const double* error,
-                  const double* covariance, const char* blocks) {
+                  const double* covariance, const char* names, const char* groups) {
+    const int version = 2;
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     const hsize_t extents[] = {trials, steps, n, n};
     const bool written = file >= 0 && H5LTmake_dataset_double(file, "error", 3, extents, error) >= 0 &&
                          H5LTmake_dataset_double(file, "covariance", 4, extents, covariance) >= 0 &&
-                         H5LTset_attribute_string(file, "/", "blocks", blocks) >= 0;
+                         H5LTset_attribute_int(file, "/", "record_version", &version, 1) >= 0 &&
+                         H5LTset_attribute_string(file, "/", "component_names", names) >= 0 &&
+                         H5LTset_attribute_string(file, "/", "groups", groups) >= 0;
     return H5Fclose(file) >= 0 && written;
 }
 
@@ -51,5 +54,5 @@ int main(int argc, char** argv) {
             covariances.insert(covariances.end(), {P, 0, 0, P});
         }
     }
-    return write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x 0:1, y 1:2") ? 0 : 1;
+    return write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x, y", "along 0, across 1") ? 0 : 1;
 }

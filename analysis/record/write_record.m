@@ -5,18 +5,20 @@
 %
 % Octave and MATLAB store the first dimension fastest, files the last: an array [n, step, trial] here is [trial, step, n]
 % in the file, which is what judge reads. In MATLAB (not run) the same is
-%   h5create(path, '/error', size(e)); h5write(path, '/error', e); h5writeatt(path, '/', 'blocks', blocks);
+%   h5create(path, '/error', size(e)); h5write(path, '/error', e); h5writeatt(path, '/', 'groups', groups);
 
-function write_record(path, e, P, blocks)
+function write_record(path, e, P, names, groups)
   % e [n, step, trial] = estimate - truth, wrapped where it is an angle; P [n, n, step, trial]; both NaN: no such
   % step. A run that ends early counts as failed, unless a dataset "steps" [trial] declares how many steps it has.
-  % blocks such as "position 0:2, velocity 2:4", half-open and from 0.
+  % names of the components such as "x, vx, y, vy", groups of them, counted from 0, such as "position 0 2, velocity 1 3".
   [n, steps, trials] = size(e);
   nccreate(path, "error", "Dimensions", {"n", n, "step", steps, "trial", trials}, "Format", "netcdf4");
   ncwrite(path, "error", e);
   nccreate(path, "covariance", "Dimensions", {"n", n, "n2", n, "step", steps, "trial", trials});
   ncwrite(path, "covariance", P);
-  ncwriteatt(path, "/", "blocks", blocks);
+  ncwriteatt(path, "/", "record_version", int32(2));
+  ncwriteatt(path, "/", "component_names", names);
+  ncwriteatt(path, "/", "groups", groups);
 end
 
 if numel(argv()) != 1
@@ -28,4 +30,4 @@ randn("seed", 1);
 trials = 2000; steps = 10; L = [1 0 0; 0.5 2 0; 0.3 0.1 0.7];   % an example: errors drawn from N(0, L L')
 e = reshape(L * randn(3, steps * trials), [3, steps, trials]);
 P = repmat(L * L', [1, 1, steps, trials]);
-write_record(argv(){1}, e, P, "first 0:1, rest 1:3");
+write_record(argv(){1}, e, P, "a, b, c", "outer 0 2, middle 1");

@@ -15,13 +15,16 @@ import h5py
 import numpy as np
 
 
-def write_record(path, error, covariance, innovation=None, innovation_covariance=None, blocks=None, steps=None):
+def write_record(path, error, covariance, innovation=None, innovation_covariance=None, groups=None, names=None, units=None,
+                 steps=None):
     """error [trial, step, n] = estimate - truth, in the chart in which covariance [trial, step, n, n] lives (wrap angles!).
     innovation [trial, step, m] and innovation_covariance [trial, step, m, m] if you have them.
     NaN marks what is not there: an innovation's row that was not observed, error and covariance of a missing step.
     steps [trial]: how many steps each run has, where they differ. A run that ends early without it counts as failed.
-    blocks: parts of the state to judge by themselves, half-open and from 0, such as "position 0:2, velocity 2:4"."""
+    groups: components to judge by themselves, from 0, such as "position 0 2, velocity 1 3"; ranges such as 0:2 leave out
+    their end. names and units of the components: lists of texts."""
     with h5py.File(path, "w") as file:
+        file.attrs["record_version"] = 2
         file["error"] = np.asarray(error, dtype=float)
         file["covariance"] = np.asarray(covariance, dtype=float)
         if innovation is not None:
@@ -29,8 +32,9 @@ def write_record(path, error, covariance, innovation=None, innovation_covariance
             file["innovation_covariance"] = np.asarray(innovation_covariance, dtype=float)
         if steps is not None:
             file["steps"] = np.asarray(steps, dtype=np.int32)
-        if blocks:
-            file.attrs["blocks"] = blocks
+        for name, value in (("groups", groups), ("component_names", names), ("component_units", units)):
+            if value:
+                file.attrs[name] = value
 
 
 def example(trials=500, steps=30, seed=1):
@@ -57,4 +61,5 @@ def example(trials=500, steps=30, seed=1):
 
 
 if __name__ == "__main__":
-    write_record(sys.argv[1], *example(), blocks="position 0:2, velocity 2:4")
+    write_record(sys.argv[1], *example(), groups="position 0:2, velocity 2:4", names=["x", "y", "vx", "vy"],
+                 units=["m", "m", "m/s", "m/s"])

@@ -7,15 +7,5 @@
 #   bash experiments/verdict/rates.sh [SHARE]      SHARE of the studies, 1 by default
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source experiments/setup.sh
-if [ -n "${CREDENCE:-}" ]; then  # built beside that program
-  built=$(dirname "$CREDENCE")
-  cmake --build "$built" --target verdict_rates >&2
-else
-  built=build
-  install_missing $build_packages >&2
-  tests=()
-  [ -f build/CMakeCache.txt ] || tests=(-DCREDENCE_TESTS=OFF)
-  build build verdict_rates "${tests[@]}" >&2
-fi
+source experiments/verdict/program.sh verdict_rates
 "$built/verdict_rates" "$@"

@@ -32,13 +32,35 @@ struct Limits {
 /// times trials.
 bool too_many_failed(std::int64_t failed, std::int64_t trials, double share);
 
+/// What a finding or a caution is about.
+enum class Subject {
+    size,          ///< NEES/dimension over all steps
+    step,          ///< NEES/dimension at single steps
+    direction,     ///< the squared error of a linear combination of components
+    bias,
+    innovations,   ///< NIS/m
+    whiteness,
+    distribution,  ///< of NEES, against chi-square
+};
+
+/// `size`, `step`, `direction` ...
+const std::string& subject_name(Subject subject);
+
 /// One finding: what was found, where (a component group, a component, a group of rows), and when.
 struct Finding {
+    Subject about = Subject::size;
     std::string what;       ///< optimistic, pessimistic, biased; as a caution: correlated, distribution_wrong
-    std::string where, when;
+    std::string where;
+    std::string when;       ///< such as `over all steps`; of a direction its name, such as `0.71 x - 0.71 y`
     double value = 0;       ///< NEES/dimension, mean error/sigma, correlation, or distance, where it is farthest off
     Interval interval;      ///< corrected for all tests that were made
     std::string measure;    ///< of `value`: NEES/dim, NIS/m, squared error over P's, mean error/sigma ...
+};
+
+/// A component's share in a direction, in units of its own sigma.
+struct Loading {
+    std::string component;
+    double weight = 0;
 };
 
 /// A linear combination of the state, each component in units of its own sigma, and the ratio of its squared error to
@@ -48,6 +70,8 @@ struct DirectionOfGroup {
     std::string name;                ///< such as `0.71 x - 0.71 y`
     double ratio = 0;
     Interval interval;               ///< corrected, each end one-sided
+    double level = 0;                ///< of each end
+    std::vector<Loading> loadings{}; ///< the vector has length 1; shares below a tenth of the largest are left out
 };
 
 /// What the trials say of all directions of the state.
@@ -65,6 +89,17 @@ struct TrialsNeeded {
     double low = 0, value = 0, high = 0;
 };
 
+/// Something that looks wrong and is not shown: its plain 90 % interval lies outside the margin, its corrected one does
+/// not.
+struct Suspicion {
+    Subject about = Subject::size;
+    std::string what;                  ///< optimistic, pessimistic or biased
+    std::string where;                 ///< a component group or a component
+    double value = 0;                  ///< its mean
+    std::string measure;               ///< of `value`
+    TrialsNeeded trials;               ///< that would show it, if mean and spread stay; over the mean's 90 % interval
+};
+
 struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
@@ -74,16 +109,25 @@ struct Consistency {
     std::vector<Finding> cautions;
     DirectionsFound directions;
     std::vector<std::string> hints;    ///< what such findings often come from
+    bool chart_doubted = false;        ///< a hint says that the errors may be in another chart than P
     std::vector<std::string> reasons;  ///< undecided only: what could not be shown, and why
-    TrialsNeeded trials_needed;        ///< undecided only
+    TrialsNeeded trials_needed;        ///< undecided only, and not where more trials cannot help
+    std::vector<Suspicion> suspicions; ///< undecided only
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.
-Interval over_steps95(const GroupEvidence& block);
+Interval over_steps95(const GroupEvidence& group);
 
 /// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness of
 /// its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
 Consistency judge(const Evidence& evidence, const Limits& limits);
+
+/// Replaces by NaN the NEES of the groups, and what rests on it, that rounding may have changed by more than a tenth of
+/// the margin: `judge` says nothing by them.
+void leave_out_rounded(Evidence& evidence, const Limits& limits);
+
+/// When a finding was made, or along what: `steps 4 to 19`, `direction 0.71 x - 0.71 y`.
+std::string when_text(const Finding& finding);
 
 /// The finding in words, such as `optimistic: pose, steps 4 to 19, NEES/dim 1.20 (1.16 to 1.24)`.
 std::string sentence(const Finding& finding);

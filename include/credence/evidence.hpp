@@ -6,6 +6,7 @@
 #include <credence/results.hpp>
 #include <credence/statistics.hpp>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,7 +42,7 @@ struct Accuracy {
 
 /// One component group.
 struct GroupEvidence {
-    std::string block;
+    std::string name;
     int dimension = 0;
     std::vector<int> components;               ///< of the state
     Moments run;                               ///< of NEES/dim, averaged over each trial's steps
@@ -50,12 +51,14 @@ struct GroupEvidence {
     std::vector<Coverage> coverage;
     std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
     Accuracy accuracy;
+    /// Bound on what rounding may have done to NEES, as a share of it [statistics/conditioning.hpp]; 0 where unknown.
+    double rounding = 0;
 };
 
 /// NEES of a component group with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown
 /// beside the group's own, without a verdict.
 struct ChartEvidence {
-    std::string chart, block;                  ///< invariant; all, pose
+    std::string chart, name;                   ///< invariant; all, pose
     int dimension = 0;
     Moments run;                               ///< of NEES/dim, averaged over each trial's steps
     std::vector<Moments> step;                 ///< of NEES/dim
@@ -125,15 +128,16 @@ struct Evidence {
     std::int64_t left_out = 0;                 ///< trials that failed and are left out
     std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are not left out
     int steps = 0;
-    std::vector<GroupEvidence> blocks;         ///< the whole state first
+    std::vector<GroupEvidence> groups;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
     std::vector<NisEvidence> nis;              ///< all rows first; groups without rows are left out
     std::vector<Whiteness> whiteness;
     std::vector<BiasEvidence> bias;
-    DistributionEvidence shape;
+    DistributionEvidence distribution;
     CredibilityEvidence credibility;
     WorstTrials worst;
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
+    double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
     std::int64_t failed_trials() const { return left_out + diverged; }

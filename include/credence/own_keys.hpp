@@ -29,7 +29,9 @@ const std::vector<KeyOf<OwnBasics>>& basic_keys();
 double own_real(const std::string& key, const std::string& text, double low, double high);
 int own_integer(const std::string& key, const std::string& text, int low, int high);
 std::size_t own_choice(const std::string& key, const std::string& text, const std::vector<std::string>& choices);
+std::vector<double> own_reals(const std::string& key, const std::string& text, double low, double high);
 std::string own_text(double value);
+std::string own_text(const std::vector<double>& values);
 
 /// A list of keys `section.key`, each of a member of Settings, in the order in which they are shown.
 template <class Settings>
@@ -49,6 +51,12 @@ public:
     void integer(const std::string& key, int Settings::* member, int low, int high, const std::string& help) {
         add(key, help, {}, [=](Settings& s, const std::string& text) { s.*member = own_integer(key, text, low, high); },
             [=](const Settings& s) { return std::to_string(s.*member); });
+    }
+    /// One number or more in [low, high], separated by commas. What a list's length must be, `validate` says.
+    void reals(const std::string& key, std::vector<double> Settings::* member, double low, double high,
+               const std::string& help) {
+        add(key, help, {}, [=](Settings& s, const std::string& text) { s.*member = own_reals(key, text, low, high); },
+            [=](const Settings& s) { return own_text(s.*member); });
     }
     /// One of several words; the member is an enum that counts them from 0.
     template <class Enum>

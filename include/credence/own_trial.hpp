@@ -1,19 +1,39 @@
 #pragma once
-// Module worlds: one trial of a world of somebody's own, and what the engine makes of it. Who writes such a world reads
-// own_world.hpp first.
+// Module worlds: trials of a user's own world: what its function `run` draws from, and says what its filter says to.
 //
 //   n  components of the state, m  rows of an innovation; K poses, steps k = 1 ... K - 1
+//
+// In lanes: where `run` is a template on `Real`, the program runs several trials at once, one in each lane of the
+// processor, with the draws, statistics and files of any other world.
+//
+//   template <class Real>
+//   static void run(const Settings& settings, credence::OwnTrialOf<Real>& trial)
+//
+// Real is a scalar of Eigen's matrices (Eigen::Matrix<Real, 4, 1>), which mix with matrices of doubles. It is a double
+// where trials run one at a time, and a number of each of several trials otherwise. These cannot take different
+// branches, so that a filter is written without any on a Real:
+//   Mask<Real> seen = trial.uniform(detection, k) < 0.9     comparisons give one answer for each trial
+//   both(a, b), either(a, b), negated(a); any(mask), all(mask)
+//   select(mask, yes, no)                                   of Reals, or of matrices; no may be 0
+//   credence::sqrt, sin, cos, atan2, exp, log, abs, min, max, and wrapped, which brings an angle to [-pi, pi]
+//   credence::cholesky(S), solve(S, b), inverse(S), determinant(S)
+//                                                           of a symmetric positive definite S; Eigen's S.inverse() of
+//                                                           up to 4 x 4 works too
+// What branches, Eigen's LLT among it, is refused by the compiler with a sentence that says what to write. All of this
+// gives the same bits for any number of lanes. Plain doubles, which Eigen adds in another order, agree to rounding.
+//
+// The lanes come from the CMake function credence_add_world(TARGET HEADER...), which compiles the header once for each
+// instruction set. The header ends with CREDENCE_WORLD(World) for each of its worlds. Without it, trials run one at a
+// time.
 
-#include <credence/scenario.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/lane_pack.hpp>
+#include <credence/detail/symmetric.hpp>
 
 #include <Eigen/Dense>
 
+#include <concepts>
 #include <cstdint>
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
+#include <limits>
 
 namespace credence {
 
@@ -47,22 +67,128 @@ public:
     virtual void set(std::size_t column, double value) = 0;
 };
 
-/// What a user's own world says of a scenario beside its settings.
-struct OwnReport {
-    std::vector<Column> columns{};      ///< its own; others are there in every world
-    int largest_innovation = 0;         ///< m; 0: the trials give no innovations
+inline namespace CREDENCE_TARGET {
+
+/// Trials of one pack under one arm: where their noise comes from, and where their errors go. What is said of OwnTrial
+/// holds for each of them.
+template <class Real>
+class OwnTrialOf {
+public:
+    explicit OwnTrialOf(LanePack& pack) : pack_(pack) {}
+
+    std::size_t arm() const { return pack_.arm; }
+    int poses() const { return pack_.poses; }
+
+    Eigen::Matrix<Real, 2, 1> normal(int source, int pose, int index = 0) const {
+        double draw[2 * lanes<Real>];
+        pack_.normal(pack_, source, pose, key_index(source, pose, index), draw);
+        return {load<Real>(draw), load<Real>(draw + lanes<Real>)};
+    }
+    Real uniform(int source, int pose, int index = 0) const {
+        double draw[lanes<Real>];
+        pack_.uniform(pack_, source, pose, key_index(source, pose, index), draw);
+        return load<Real>(draw);
+    }
+
+    /// A trial whose P is not positive definite, or whose numbers are not finite, has failed: it goes on in its lane,
+    /// and is counted as failed. The function ends where all have.
+    template <class Error, class Covariance>
+    void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P) {
+        const auto& e = as_reals(error.derived());
+        const auto& p = as_reals(P.derived());
+        take(e, p, LaneStep{});
+    }
+    /// The innovation's rows are NaN in the lanes in which they were not observed.
+    template <class Error, class Covariance, class Innovation, class InnovationCovariance>
+    void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P,
+              const Eigen::MatrixBase<Innovation>& innovation, const Eigen::MatrixBase<InnovationCovariance>& S) {
+        const auto& e = as_reals(error.derived());
+        const auto& p = as_reals(P.derived());
+        const auto& nu = as_reals(innovation.derived());
+        const auto& s = as_reals(S.derived());
+        if (nu.rows() > pack_.largest_innovation) refuse(pack_, "an innovation longer than innovation_rows");
+        if (s.rows() != nu.rows() || s.cols() != nu.rows()) refuse(pack_, "an S of another size than its innovation");
+        take(e, p, {nullptr, nullptr, static_cast<int>(nu.rows()), numbers(nu), numbers(s)});
+    }
+    /// The same for an innovation that only some trials have.
+    template <class Error, class Covariance, class Innovation, class InnovationCovariance>
+    void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P,
+              const Eigen::MatrixBase<Innovation>& innovation, const Eigen::MatrixBase<InnovationCovariance>& S,
+              Mask<Real> observed) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        step(error, P, select(observed, innovation, Innovation::Constant(innovation.rows(), 1, nan)), S);
+    }
+    /// The same for an innovation that all trials have, or none.
+    template <class Error, class Covariance, class Innovation, class InnovationCovariance, std::same_as<bool> Bool>
+    void step(const Eigen::MatrixBase<Error>& error, const Eigen::MatrixBase<Covariance>& P,
+              const Eigen::MatrixBase<Innovation>& innovation, const Eigen::MatrixBase<InnovationCovariance>& S,
+              Bool observed) {
+        if (observed) step(error, P, innovation, S);
+        else step(error, P);
+    }
+
+    void set(std::size_t column, const Real& value) {
+        if (column >= pack_.own_column_count) refuse(pack_, "a column that it does not have is set");
+        store(value, pack_.own_columns + column * static_cast<std::size_t>(lanes<Real>));
+    }
+
+private:
+    int key_index(int source, int pose, int index) const {
+        const bool usual = ((source & ~15) | (index & ~0xffff)) == 0 && pose >= 0;
+        return usual ? index : rare_index(*pack_.world, source, pose, index);
+    }
+
+    /// A matrix of Reals in memory: the one that is given, or the value of an expression.
+    template <int rows, int columns, int most_rows, int most_columns>
+    static const auto& as_reals(const Eigen::Matrix<Real, rows, columns, 0, most_rows, most_columns>& matrix) {
+        return matrix;
+    }
+    template <class Expression>
+    static auto as_reals(const Expression& matrix) {
+        using Value = Eigen::Matrix<Real, Expression::RowsAtCompileTime, Expression::ColsAtCompileTime, 0,
+                                    Expression::MaxRowsAtCompileTime, Expression::MaxColsAtCompileTime>;
+        return Value(matrix.template cast<Real>());
+    }
+    template <class Matrix>
+    static const double* numbers(const Matrix& matrix) { return reinterpret_cast<const double*>(matrix.data()); }
+
+    template <class Error, class Covariance>
+    void take(const Error& error, const Covariance& P, LaneStep step) {
+        const int n = pack_.state_size;
+        if (error.rows() != n || P.rows() != n || P.cols() != n)
+            refuse(pack_, "an error or P of another size than the state");
+        if (pack_.steps == pack_.poses - 1) refuse(pack_, "a trial took more steps than it has");
+        step.error = numbers(error);
+        step.P = numbers(P);
+        if (!pack_.step(pack_, step)) leave(pack_);
+    }
+
+    LanePack& pack_;
 };
 
-/// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, status, status_pose.
-std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
-std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
+/// One trial at a time, where no lanes are.
+template <>
+class OwnTrialOf<double> {
+public:
+    explicit OwnTrialOf(OwnTrial& trial) : trial_(trial) {}
 
-/// Makes trials of a function that runs one. It is called from several threads at once.
-std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
-                                                 std::function<void(OwnTrial&)> run);
+    std::size_t arm() const { return trial_.arm(); }
+    int poses() const { return trial_.poses(); }
+    Eigen::Vector2d normal(int source, int pose, int index = 0) const { return trial_.normal(source, pose, index); }
+    double uniform(int source, int pose, int index = 0) const { return trial_.uniform(source, pose, index); }
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) { trial_.step(error, P); }
+    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
+              const Eigen::MatrixXd& S, bool observed = true) {
+        if (observed)
+            trial_.step(error, P, innovation, S);
+        else
+            trial_.step(error, P);
+    }
+    void set(std::size_t column, double value) { trial_.set(column, value); }
 
-/// Throws std::invalid_argument where a declaration cannot be: no arm or component, a name with other characters than
-/// letters, digits, _ and -, a block beyond the state. It is the world's bug, not its user's.
-void check_declared(const Scenario& scenario);
+private:
+    OwnTrial& trial_;
+};
 
+}  // namespace CREDENCE_TARGET
 }  // namespace credence

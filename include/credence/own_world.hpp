@@ -24,7 +24,7 @@
 //       one trial under trial.arm(): the truth, the measurements, the filter; trial.step(...) after each step. All
 //       randomness comes from trial.normal and trial.uniform; the same key is the same draw under every arm.
 //   or template <class Real> static void W::run(const Settings&, OwnTrialOf<Real>& trial)
-//       the same for several trials at once, see own_lanes.hpp.
+//       the same for several trials at once, see own_trial.hpp.
 // and, if it has use for them,
 //   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
@@ -35,6 +35,7 @@
 // arithmetic is.
 
 #include <credence/detail/lanes_of.hpp>
+#include <credence/detail/own_simulation.hpp>
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
 #include <credence/own_keys.hpp>

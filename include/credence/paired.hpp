@@ -34,7 +34,7 @@ struct PairedComparison {
 /// Where all differences are equal, the variance reduction is infinite (NaN if neither arm varies), and d_z is infinite
 /// too (NaN for differences of 0). Draws of the bootstrap are keyed by `root_seed` and the name of the column.
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
-                                const std::string& figure);
+                                const std::string& column);
 
 /// The same from totals: mean, t interval, shares of wins and d_z; values that need the trials are NaN, the histogram
 /// empty. The variance reduction is known where every trial of `a` and `b`, the values of the arms by themselves, is in

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct Record {
     bool has_innovations = false;
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
+    std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
+    std::function<Record()> in_other_chart{};  ///< reads the record again, with its errors in the other chart; else empty
 };
 
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of
@@ -66,8 +69,30 @@ struct Record {
 /// series. All are listed as troubles.
 ///
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
-Record read_record(const std::string& path,
-                                   const std::function<void(const Progress&)>& progress = {});
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {});
+
+/// An array in memory that stands for a dataset of a record.
+struct RecordArray {
+    enum class Type { real32, real64 };
+
+    std::string path;                   ///< such as `error`, `group/NAME/covariance`
+    const void* data = nullptr;
+    Type type = Type::real64;
+    std::vector<std::int64_t> extents, strides;  ///< strides in elements
+    double epsilon = 0;                 ///< distance of 1 from the next number of the type in which it was computed
+};
+
+/// A record of version 2 in memory.
+struct RecordArrays {
+    std::vector<RecordArray> arrays;
+    std::map<std::string, std::string> texts;       ///< the root's attributes, lists as texts with commas
+    std::map<std::string, int> dimensions;          ///< the attribute `dimension` of a NEES, by its path
+};
+
+/// Reads a record in memory as if it were in a file, a part at a time; the arrays are only read. `name` names the
+/// scenario, as a file's path does. Throws InputError `PLACE: PROBLEM. REMEDY.`, its places those of a file.
+Record read_record(const RecordArrays& arrays, const std::string& name,
+                   const std::function<void(const Progress&)>& progress = {});
 
 /// A record as a study of one scenario, to be compared with others of the same runs: its columns, without those that a
 /// record does not have.

@@ -8,6 +8,7 @@
 #include <credence/detail/exact_sum.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -110,6 +111,8 @@ struct ScenarioResults {
     std::shared_ptr<const KeptTotals> kept_totals{};
     /// False of a record without a covariance of the whole state: then nothing shows that all of it is consistent.
     bool has_joint_covariance = true;
+    /// Relative spacing of the numbers in which covariances were given: 2^-52, or 2^-23 of a record in singles.
+    double epsilon = std::numeric_limits<double>::epsilon();
     /// Of a record: what cannot be judged by what it holds, in full sentences.
     std::vector<std::string> not_judged{};
 

@@ -1,24 +1,84 @@
-"""Can a filter's covariance be believed? Nothing is imported before it is used."""
+"""Can a filter's covariance be believed? Verdicts on errors and covariances, and Monte Carlo studies of filters.
+
+>>> import credence
+>>> verdict = credence.judge(errors, covariances, groups={"pose": [0, 1, 2]})  # doctest: +SKIP
+>>> study = credence.run("scenario.ini", trials=10_000, sweep={"noise.heading": [0.01, 0.02]})  # doctest: +SKIP
+
+Nothing is imported before it is used: neither the compiled module nor NumPy.
+"""
 
 from __future__ import annotations
 
 import importlib
-from typing import Any
+from typing import TYPE_CHECKING
 
-_homes = {
+if TYPE_CHECKING:
+    from credence._core import Failure, InputError
+    from credence.arm import Arm
+    from credence.judging import Verdict, assert_consistent, judge
+    from credence.pictures import animate, plot
+    from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
+    from credence.study import Scenario, Study, open
+    from credence.trajectory import Trajectory, open_trajectories
+
+_modules = {
     "Arm": "arm",
+    "Comparison": "program",
+    "Failure": "_core",
+    "InputError": "_core",
+    "Interrupted": "program",
+    "Report": "program",
     "Scenario": "study",
     "Study": "study",
+    "Trajectory": "trajectory",
+    "Verdict": "judging",
     "animate": "pictures",
+    "assert_consistent": "judging",
+    "compare": "program",
+    "judge": "judging",
     "open": "study",
     "open_trajectories": "trajectory",
     "plot": "pictures",
+    "replay": "program",
+    "report": "program",
+    "resume": "program",
+    "run": "program",
+    "show": "program",
 }
 
-__all__ = sorted(_homes)
+__all__ = [
+    "Arm",
+    "Comparison",
+    "Failure",
+    "InputError",
+    "Interrupted",
+    "Report",
+    "Scenario",
+    "Study",
+    "Trajectory",
+    "Verdict",
+    "animate",
+    "assert_consistent",
+    "compare",
+    "judge",
+    "open",
+    "open_trajectories",
+    "plot",
+    "replay",
+    "report",
+    "resume",
+    "run",
+    "show",
+]
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _homes:
+def __getattr__(name: str) -> object:
+    if name not in _modules:
         raise AttributeError(f"module 'credence' has no attribute {name!r}")
-    return getattr(importlib.import_module(f"credence.{_homes[name]}"), name)
+    value = getattr(importlib.import_module(f"credence.{_modules[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_modules])

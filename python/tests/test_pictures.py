@@ -159,7 +159,7 @@ def test_a_map_has_the_colours_of_its_values():
     picture = drawn(studies.one_scenario(), "map", arm="fixed.ekf", credence=studies.CREDENCE)
     (cells,) = [one for one in picture.axes[0].collections if one.get_array() is not None]
     parts = {part["arm"]: part for part in studies.printed("report", studies.one_scenario())}
-    ratios = np.array([block["anees"]["ratio"] for block in parts["fixed.ekf"]["blocks"]])
+    ratios = np.array([group["anees"]["ratio"] for group in parts["fixed.ekf"]["groups"]])
     np.testing.assert_allclose(np.asarray(cells.get_array()).reshape(ratios.shape), np.log2(ratios))
     assert picture.axes[1].get_yticklabels()[0].get_text()
 
@@ -215,7 +215,7 @@ def given(*words):
 
 def test_the_command_draws_all_that_a_file_has(tmp_path, capsys):
     assert main(given(studies.two_scenarios(), "-o", tmp_path, "--scenario", "kf-circle-constant")) == 0
-    kinds = ["verdicts", "map-fixed.kf", "map-greedy.kf", "nees", "nis", "coverage", "shape", "accuracy",
+    kinds = ["verdicts", "map-fixed.kf", "map-greedy.kf", "nees", "nis", "coverage", "chi_square", "accuracy",
              *(f"{kind}-{column}" for kind in ("distribution", "paired")
                for column in ("trace_P", "unseen", "pose_error"))]
     expected = {f"kf-circle-constant-{kind}.{ending}" for kind in kinds for ending in ("pdf", "png")}

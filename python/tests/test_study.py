@@ -56,15 +56,15 @@ def test_numbers_are_those_of_the_report(make):
                      [part[name]["mean"], part[name]["se"], *part[name]["ci95"]])
                 assert found.units == part[name]["unit"]
             groups = arm.series_of("nees")
-            assert list(groups) == [block["block"] for block in part["blocks"]]
-            for series, block in zip(groups.values(), part["blocks"], strict=True):
+            assert list(groups) == [group["group"] for group in part["groups"]]
+            for series, group in zip(groups.values(), part["groups"], strict=True):
                 step, run = arm.per_step(series), arm.over_steps(series)
-                assert step.dimension == block["dimension"]
-                near(step.mean / step.dimension, block["anees"]["ratio"])
-                near(step.over(step.dimension).standard_error, block["anees_se"])
+                assert step.dimension == group["dimension"]
+                near(step.mean / step.dimension, group["anees"]["ratio"])
+                near(step.over(step.dimension).standard_error, group["anees_se"])
                 near(np.array([run.mean, run.standard_error, *run.interval()]) / run.dimension,
-                     [block["nees_ratio"], block["se"], *block["ci95"]])
-                near(band(arm.degrees(series)), np.transpose(block["anees"]["band95"]))
+                     [group["nees_ratio"], group["se"], *group["ci95"]])
+                near(band(arm.degrees(series)), np.transpose(group["anees"]["band95"]))
             for series, nis in zip(arm.series_of("nis").values(), part["nis"], strict=True):
                 near(arm.degrees(series).sum(), nis["degrees"])
                 near(arm[series].sum() * arm.counted_trials / arm.degrees(series).sum(), nis["ratio"])

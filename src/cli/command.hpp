@@ -121,7 +121,13 @@ int watch(const Parsed& parsed);
 int completion(const Parsed& parsed);
 int manual(const Parsed& parsed);
 
-/// All subcommands, in the order in which they are shown. Defined in main.cpp.
+/// Runs the words of a command line, without `credence`, and returns the exit code; errors are thrown.
+int obey(const std::vector<std::string>& words);
+/// Throws InputError where this process cannot do the command's work, whatever its arguments: such faults of its
+/// environment need not be those of a process on another machine.
+void check_process(const std::vector<std::string>& words);
+
+/// All subcommands, in the order in which they are shown.
 std::vector<const Command*> all_commands();
 
 /// The meanings of the program's exit codes.

@@ -62,13 +62,20 @@ int help() {
 }
 
 /// The command line as given, quoted where a shell needs it.
-std::string command_line(int argc, char** argv) {
-    std::vector<std::string> words{"credence"};
-    for (int i = 1; i < argc; ++i) words.push_back(shell_word(argv[i]));
-    return joined(words, " ");
+std::string command_line(const std::vector<std::string>& words) {
+    std::vector<std::string> quoted{"credence"};
+    for (const std::string& word : words) quoted.push_back(shell_word(word));
+    return joined(quoted, " ");
 }
 
-std::vector<std::string> arguments(int argc, char** argv) { return {argv + std::min(argc, 2), argv + argc}; }
+/// Whether a command line begins with the name of a command.
+bool names_command(const std::vector<std::string>& words) {
+    return !words.empty() && !words.front().empty() && words.front().front() != '-';
+}
+
+std::vector<std::string> without_first(const std::vector<std::string>& words) {
+    return words.empty() ? words : std::vector<std::string>(words.begin() + 1, words.end());
+}
 
 /// Prints a message on one line of the standard error, whatever the program's input contains.
 int complain(const std::string& message, int exit_code) {
@@ -90,16 +97,6 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
                      (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
 }
 
-/// Handles `--help`, `help`, `help COMMAND` and `--version`, or runs a command.
-int obey(const std::string& name, std::vector<std::string> arguments, const std::string& line) {
-    if (name == "--version") {
-        cli::print(version_text());
-        return 0;
-    }
-    if (name != "help" && name != "--help" && name != "-h") return dispatch(name, arguments, line);
-    return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, line);
-}
-
 }  // namespace
 
 namespace credence {
@@ -110,27 +107,41 @@ std::vector<const cli::Command*> cli::all_commands() {
     return commands;
 }
 
+/// Handles `--help`, `help`, `help COMMAND` and `--version`, or runs a command.
+int cli::obey(const std::vector<std::string>& words) {
+    const std::string name = words.empty() ? "--help" : words.front();
+    const std::vector<std::string> arguments = without_first(words);
+    if (name == "--version") {
+        print(version_text());
+        return 0;
+    }
+    if (name != "help" && name != "--help" && name != "-h") return dispatch(name, arguments, command_line(words));
+    return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, "");
+}
+
+void cli::check_process(const std::vector<std::string>& words) {
+    if (names_command(words) && words.front() != "help") best_target(), check_stack();
+}
+
 int program(int argc, char** argv) {
     cli::hold_standard_streams();
     // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
     // from being closed. Files that credence writes are closed, and checked, long before.
     H5dont_atexit();
-    const std::string name = argc > 1 ? argv[1] : "--help";
-    const bool known = !name.empty() && name.front() != '-';
-    const std::string prefix = known ? "credence " + name + ": " : "credence: ";
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    const std::string name = names_command(words) ? words.front() : "";
+    const std::string prefix = "credence" + (name.empty() ? "" : " " + name) + ": ";
     try {
-        // Faults of this process's environment, which a process on another machine need not have, are reported before
-        // any work.
-        if (known && name != "help") best_target(), cli::check_stack();
+        cli::check_process(words);
     } catch (const InputError& error) {
         return complain(prefix + error.what(), 2);
     }
     try {
-        const int code = obey(name, arguments(argc, argv), command_line(argc, argv));
+        const int code = cli::obey(words);
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {
-        return cli::rank_0_says_it(name, arguments(argc, argv)) ? 0 : complain(prefix + error.what(), 2);
+        return cli::rank_0_says_it(name, without_first(words)) ? 0 : complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
         return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
                                                 : "out of memory. The file holds more than fits."),

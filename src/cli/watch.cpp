@@ -20,10 +20,10 @@ const Command& watch_command() {
         "follow a run: what is committed so far, with intervals",
         "\nReads FILE.h5.journal while the run goes on and FILE.h5 when it is done; the run does not notice. On a\n"
         "terminal the table is drawn again until the run ends (exit code 0) or Ctrl-C ends the watching (3); the run\n"
-        "goes on then. Elsewhere it is printed once. Looking often and stopping when an interval pleases is not\n"
-        "`credence run --until`, which stops at a precision and pays for its looks.\n",
-        {{"every", "SECONDS", "seconds between two looks on a terminal (default 2)"},
-         {"once", "", "one look, on a terminal too"},
+        "goes on then. When output is not a terminal, one snapshot is printed. To watch and stop when an interval is\n"
+        "narrow enough is not `credence run --until`, whose intervals allow for its interim analyses.\n",
+        {{"every", "SECONDS", "seconds between two snapshots on a terminal (default 2)"},
+         {"once", "", "one snapshot, on a terminal too"},
          format_option({"text", "json"})}};
     return command;
 }
@@ -43,14 +43,14 @@ void wait(double seconds) {
 
 /// The last snapshot.
 Snapshot follow(RunWatch& run, double every) {
-    Snapshot look = run.look();
-    if (look.ended()) return look;
+    Snapshot snapshot = run.snapshot();
+    if (snapshot.ended()) return snapshot;
     Screen screen;
-    for (; !look.ended() && !Interrupt::came(); look = run.look()) {
-        screen.draw(shown(watch_text(look)));
+    for (; !snapshot.ended() && !Interrupt::came(); snapshot = run.snapshot()) {
+        screen.draw(shown(watch_text(snapshot)));
         wait(every);
     }
-    return look;
+    return snapshot;
 }
 
 /// FILE.h5, also where the name of its journal was given.
@@ -68,14 +68,14 @@ int watch(const Parsed& parsed) {
     check_kind(parsed.arguments.front(), {FileKind::results, FileKind::journal});
     RunWatch run(results_path(parsed.arguments.front()));
     if (format == "json" || parsed.has("once") || !can_draw()) {
-        const Snapshot look = run.look();
-        print(format == "json" ? watch_json(look) : watch_text(look));
+        const Snapshot snapshot = run.snapshot();
+        print(format == "json" ? watch_json(snapshot) : watch_text(snapshot));
         return 0;
     }
     const Interrupt interrupt;
-    const Snapshot look = follow(run, every);
-    print(watch_text(look));
-    return look.ended() ? 0 : 3;
+    const Snapshot snapshot = follow(run, every);
+    print(watch_text(snapshot));
+    return snapshot.ended() ? 0 : 3;
 }
 
 }  // namespace credence::cli

@@ -94,9 +94,8 @@ Shard shard_of_launcher(const Variables& variables) {
     const std::optional<Place> task = array_place(variables), process = process_place(variables);
     if (!task && !process)
         throw InputError(
-            "invalid --shard auto (no task of a Slurm array, no process of srun or mpirun is told of in the "
-            "environment). "
-            "Start it by one of them, or give --shard I/N.");
+            "invalid --shard auto (the variables of a task of a Slurm array, of srun and of mpirun are not in the "
+            "environment). Start it by one of them, or give --shard I/N.");
     const Place outer = task.value_or(Place{}), inner = process.value_or(Place{});
     constexpr std::int64_t most = std::int64_t{1} << 31;
     if (outer.count > most || inner.count > most)

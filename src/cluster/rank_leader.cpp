@@ -62,16 +62,16 @@ void RankLeader::serve(BlockQueue& queue) {
     const auto busy = [](const Rank& rank) { return rank.out > 0; };
     const auto dropping = [](const Rank& rank) { return rank.dropping; };
     for (Rank& rank : ranks_) rank.heard = Clock::now();  // until now rank 0 did not receive messages
-    bool told = false;
+    bool end_sent = false;
     for (;;) {
         while (const std::optional<Message> message = transport_.receive()) hear(*message, &queue);
-        if (!told && queue.stopped()) {
+        if (!end_sent && queue.stopped()) {
             tell_all(Word::drop);
             for (std::size_t rank = 1; rank < ranks_.size(); ++rank) ranks_[rank].dropping = true;
-            told = true;
+            end_sent = true;
         }
-        if (!told) hand_out(queue);
-        const bool over = told ? std::none_of(ranks_.begin(), ranks_.end(), dropping)
+        if (!end_sent) hand_out(queue);
+        const bool over = end_sent ? std::none_of(ranks_.begin(), ranks_.end(), dropping)
                                : queue.left() == 0 && std::none_of(ranks_.begin(), ranks_.end(), busy);
         if (over) return;
         check_alive();

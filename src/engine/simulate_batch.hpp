@@ -138,7 +138,7 @@ void keep_products(int poses, const Real* product_sum, const Real* product_count
     }
 }
 
-/// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that nobody reads.
+/// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that are never read.
 ///
 /// `Trial` is a world's: the types View (a CommonView), Layout, Real and Workspace, `truncate(View)`, and
 /// `run(view, draws, observer, workspace, columns, series)`, one pack of trials of one arm.

@@ -51,6 +51,14 @@ FileIdentity without_device(FileIdentity file) {
 
 std::string journal_path_of(const std::string& path) { return Output(path).target + ".journal"; }
 
+StudyDefinition stored_definition(const std::string& path) {
+    if (const std::string beside = journal_path_of(path); exists(beside)) {
+        const Journal journal(beside);
+        if (journal.header()) return journal.header()->study;
+    }
+    return definition_of(read_results_without_totals(path).study);
+}
+
 StoredRun::Contents StoredRun::Contents::of(const Study& study) {
     Contents contents{study.trials, {}};
     for (const ScenarioResults& results : study.scenarios) contents.blocks.push_back(results.blocks);

@@ -25,6 +25,10 @@ struct JournalHeader;
 /// its target have the same journal.
 std::string journal_path_of(const std::string& path);
 
+/// The study that is stored under the name of a results file: that of the run whose journal is there, or the file's.
+/// Throws InputError where neither can be read.
+StudyDefinition stored_definition(const std::string& path);
+
 /// Stores a run on the disk. Only one run at a time can write a file: the journal is locked.
 class StoredRun {
 public:

@@ -4,26 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <charconv>
 #include <cstdio>
-#include <numeric>
 
 namespace credence {
 
-namespace {
-
-constexpr std::size_t text_width = 118;
-
-std::size_t characters(const std::string& text) {
-    return static_cast<std::size_t>(
+int characters(const std::string& text) {
+    return static_cast<int>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-}  // namespace
+std::string aligned(const std::string& text, int width, bool right) {
+    const std::string space(static_cast<std::size_t>(std::max(0, width - characters(text))), ' ');
+    return right ? space + text : text + space;
+}
 
 std::string padded(const std::string& text, int width, bool right) {
-    const int left = width - static_cast<int>(characters(text));
-    const std::string space(static_cast<std::size_t>(std::max(1, left)), ' ');  // at least one blank between columns
-    return right ? space + text : text + space;
+    return aligned(text, std::max(width, characters(text) + 1), right);
 }
 
 std::string number(double value, int digits) {
@@ -34,6 +31,15 @@ std::string number(double value, int digits) {
     else if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
     else std::snprintf(buffer, sizeof buffer, "%.4g", value);
     return buffer;
+}
+
+std::string short_number(double value) {
+    if (!std::isfinite(value)) return "-";
+    char buffer[64];
+    const bool whole = std::abs(value) < 1e15 && (std::abs(value) >= 1e5 || value == std::nearbyint(value));
+    const auto end = whole ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 0).ptr
+                           : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 5).ptr;
+    return std::string(buffer, end);
 }
 
 int decimals_for(double uncertainty) {
@@ -77,14 +83,14 @@ std::string p_text(double p) {
 namespace {
 
 /// Words with blanks between them, on as many lines as needed; the first begins after `indent` columns.
-std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
+std::string flowing(const std::vector<std::string>& words, std::size_t indent) {
     std::string text;
     std::size_t column = indent;
-    for (const std::string& unit : units) {
-        const std::size_t size = characters(unit);
-        if (text.empty()) text = unit, column += size;
-        else if (column + 1 + size <= text_width) text += " " + unit, column += 1 + size;
-        else text += "\n" + std::string(indent + 2, ' ') + unit, column = indent + 2 + size;
+    for (const std::string& word : words) {
+        const auto size = static_cast<std::size_t>(characters(word));
+        if (text.empty()) text = word, column += size;
+        else if (column + 1 + size <= std::size_t{text_width}) text += " " + word, column += 1 + size;
+        else text += "\n" + std::string(indent + 2, ' ') + word, column = indent + 2 + size;
     }
     return text;
 }
@@ -94,39 +100,13 @@ std::string flowing(const std::vector<std::string>& units, std::size_t indent) {
 std::string wrapped(const std::string& text, std::size_t indent) { return flowing(split_list(text, ' '), indent); }
 
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent) {
-    std::vector<std::string> units = split_list(head, ' ');
+    std::vector<std::string> words = split_list(head, ' ');
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
-        const bool fits = indent + 2 + characters(part) <= text_width;
-        for (const std::string& unit : fits ? std::vector<std::string>{part} : split_list(part, ' ')) units.push_back(unit);
+        const bool fits = indent + 2 + static_cast<std::size_t>(characters(part)) <= std::size_t{text_width};
+        for (const std::string& word : fits ? std::vector<std::string>{part} : split_list(part, ' ')) words.push_back(word);
     }
-    return flowing(units, indent);
-}
-
-void TextTable::row(std::vector<std::string> cells) {
-    widths_.resize(std::max(widths_.size(), cells.size()));
-    for (std::size_t c = 0; c < cells.size(); ++c) widths_[c] = std::max(widths_[c], characters(cells[c]));
-    rows_.push_back({std::move(cells), {}});
-}
-
-void TextTable::line(std::string text) { rows_.push_back({{}, std::move(text)}); }
-
-bool TextTable::fits() const {
-    return std::accumulate(widths_.begin(), widths_.end(), 2 * widths_.size()) <= text_width;
-}
-
-std::string TextTable::text() const {
-    std::string text;
-    for (const Row& row : rows_) {
-        std::string line = row.line;
-        for (std::size_t c = 0; c < row.cells.size(); ++c) {
-            const bool right = alignment_[std::min(c, alignment_.size() - 1)] == 'r';
-            const std::string space(widths_[c] - characters(row.cells[c]), ' ');
-            line += "  " + (right ? space + row.cells[c] : row.cells[c] + space);
-        }
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
+    return flowing(words, indent);
 }
 
 }  // namespace credence

@@ -8,11 +8,23 @@
 
 namespace credence {
 
-/// Left- or right-pads to a width counted in characters, not bytes.
+/// Lines of text have no more characters.
+inline constexpr int text_width = 118;
+
+/// The number of characters of UTF-8, not of bytes.
+int characters(const std::string& text);
+
+/// Pads to a width, on the left (`right`) or on the right.
+std::string aligned(const std::string& text, int width, bool right = true);
+
+/// The same, with at least one blank.
 std::string padded(const std::string& text, int width, bool right = true);
 
 /// A number; `-` where it is not finite, so that neither `nan` nor `inf` appears in a sentence.
 std::string number(double value, int digits);
+
+/// Five significant digits, whole numbers in full; `-` for values that are not finite. The same in every locale.
+std::string short_number(double value);
 
 /// Decimals that show two digits of the uncertainty, at most 6.
 int decimals_for(double uncertainty);
@@ -40,27 +52,5 @@ std::string wrapped(const std::string& text, std::size_t indent = 0);
 
 /// The same for `head` and parts separated by commas, each of which stays on one line where it can.
 std::string wrapped_list(const std::string& head, const std::vector<std::string>& parts, std::size_t indent);
-
-/// A table with columns as wide as their content, two blanks apart.
-class TextTable {
-public:
-    /// `l` or `r` for each column, to the left or to the right; the last one stands for all further ones.
-    explicit TextTable(std::string alignment) : alignment_(std::move(alignment)) {}
-    void row(std::vector<std::string> cells);
-    /// A line between the rows, printed unchanged.
-    void line(std::string text);
-    /// Whether its rows have less than 120 columns.
-    bool fits() const;
-    std::string text() const;
-
-private:
-    struct Row {
-        std::vector<std::string> cells;
-        std::string line;
-    };
-    std::string alignment_;
-    std::vector<std::size_t> widths_;
-    std::vector<Row> rows_;
-};
 
 }  // namespace credence

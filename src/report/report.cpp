@@ -1,14 +1,13 @@
-#include <credence/report.hpp>
-
-#include "statistics/bootstrap.hpp"
+#include <algorithm>
+#include <cmath>
 #include <credence/error.hpp>
+#include <credence/report.hpp>
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"
 #include "report/words.hpp"
-
-#include <algorithm>
-#include <cmath>
+#include "statistics/bootstrap.hpp"
+#include "verdict/judgement.hpp"
 
 namespace credence {
 
@@ -54,6 +53,15 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
     return report;
 }
 
+/// Rounding may have changed it too much.
+void leave_out_nees(std::vector<ColumnReport>& columns) {
+    for (ColumnReport& column : columns) {
+        if (column.name != "nees_ratio") continue;
+        column.summary = summarise({});
+        std::fill(column.quantiles.begin(), column.quantiles.end(), nan);
+    }
+}
+
 }  // namespace
 
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
@@ -61,10 +69,13 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
     report.consistency = judge(report.evidence, limits);
     report.evidence.moments.reset();  // large, and of no further use
+    leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
     report.diverged = report.evidence.diverged;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));
+    if (!report.evidence.groups.empty() && is_rounded(report.evidence.groups.front(), limits))
+        leave_out_nees(report.columns);
     return report;
 }
 
@@ -83,21 +94,6 @@ Report make_report(const Study& study, const Limits& limits) {
         for (const ArmResults& arm : (*with_totals).arms)
             report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, limits));
     }
-    return report;
-}
-
-Report make_record_report(Record record, const std::string& path, const Limits& limits) {
-    ScenarioResults& results = record.results;
-    ArmResults& arm = results.arms.front();
-    Report report;
-    report.source = "record " + printable(path, path.size());
-    report.limits = limits;
-    report.troubles = record.troubles;
-    report.not_judged = results.not_judged;
-    results.scenario.title.clear();  // the source names it
-    report.scenarios.push_back(results.scenario);
-    constexpr std::uint64_t bootstrap_seed = 1;
-    report.arms.push_back(report_arm(results, arm, bootstrap_seed, limits));
     return report;
 }
 

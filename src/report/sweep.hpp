@@ -4,6 +4,7 @@
 #include <credence/report.hpp>
 
 #include "report/sweep_grid.hpp"
+#include "report/table.hpp"
 
 #include <map>
 #include <set>
@@ -65,6 +66,14 @@ private:
     std::map<std::string, SweepPoint> places_;
     std::vector<std::string> keys_;
 };
+
+/// Whether a page has a section for the scenario: points of sweeps have one only where there are few, because the page
+/// would be too long.
+bool has_section(const Report& report, const std::string& scenario);
+
+/// The columns' means and the verdict of an arm at every point of a grid, and those of a pair.
+Table arm_table(const SweptReport& swept, const Grid& grid, const std::string& name);
+Table pair_table(const SweptReport& swept, const Grid& grid, const std::string& name);
 
 /// The sweeps as text tables.
 std::string sweep_text(const Report& report);

@@ -17,17 +17,16 @@ namespace {
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
-    return finding.what == "biased" || finding.what == "correlated" ? std::abs(finding.value) : std::abs(std::log(finding.value));
+    const bool about_0 = finding.about == Subject::bias || finding.about == Subject::whiteness;
+    return about_0 ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
-
-bool is_direction(const Finding& finding) { return finding.when.starts_with("direction "); }
 
 /// The findings of one kind: each group or component at its worst, the farthest off first.
 std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what, bool directions) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
-        if (finding.what != what || is_direction(finding) != directions) continue;
+        if (finding.what != what || (finding.about == Subject::direction) != directions) continue;
         const auto same =
             std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
         if (same == worst.end())
@@ -39,8 +38,9 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
               [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
-        parts.push_back(directions ? worst[i].where + ", " + worst[i].when.substr(10) + ": " + number(worst[i].value, 2) + " times P"
-                                   : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+        parts.push_back(directions
+                            ? worst[i].where + ", " + worst[i].when + ": " + number(worst[i].value, 2) + " times P"
+                            : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
     if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
     return parts;
 }
@@ -59,6 +59,29 @@ std::string needed_text(const TrialsNeeded& needed) {
            number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
 }
 
+/// `NEES/dim of all is 0.91 and not shown to be too small: 2500 trials would show it if it stays (1500 to 6200)`
+std::string suspicion_text(const Suspicion& suspicion) {
+    const std::string too = suspicion.about == Subject::bias ? "beyond the margin"
+                            : suspicion.what == "optimistic" ? "too large"
+                                                             : "too small";
+    return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) +
+           " and not shown to be " + too + ": " + number(suspicion.trials.value, 0) +
+           " trials would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
+           number(suspicion.trials.high, 0) + ")";
+}
+
+/// The suspicions, those that need the fewest trials first.
+std::vector<std::string> suspicion_texts(std::vector<Suspicion> suspicions) {
+    constexpr std::size_t most = 3;
+    std::sort(suspicions.begin(), suspicions.end(),
+              [](const Suspicion& a, const Suspicion& b) { return a.trials.value < b.trials.value; });
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i) texts.push_back(suspicion_text(suspicions[i]));
+    if (suspicions.size() > most)
+        texts.push_back(std::to_string(suspicions.size() - most) + " more look wrong and are not shown to be");
+    return texts;
+}
+
 /// The reasons why an arm is undecided, and whether there are any data.
 std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
@@ -68,6 +91,7 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
         return {arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
                                          : "the innovations of one trial do not decide: give more trials or steps"};
     std::vector<std::string> reasons = verdict.reasons;
+    std::ranges::copy(suspicion_texts(verdict.suspicions), std::back_inserter(reasons));
     if (const std::string text = needed_text(verdict.trials_needed); !text.empty()) reasons.push_back(text);
     return reasons;
 }
@@ -81,7 +105,7 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status) ? "; the trial is in no figure." : "; the trial is in the figures."));
+                        (failed(trouble.status) ? "; the trial is left out of the numbers." : "; the trial is kept in the numbers."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
@@ -93,6 +117,14 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
 
 std::string verdict_word(const ArmReport& arm) {
     return arm.not_run() ? "not run yet" : verdict_name(arm.consistency.verdict);
+}
+
+Cell verdict_cell(const ArmReport& arm) {
+    return Cell::Piece{verdict_word(arm), std::nullopt, {}, arm.consistency.verdict};
+}
+
+Cell failed_cell(const ArmReport& arm) {
+    return arm.not_run() ? Cell("-") : count_cell(static_cast<double>(arm.failed_trials()));
 }
 
 std::string verdict_clause(const ArmReport& arm) {
@@ -181,7 +213,7 @@ std::vector<std::string> warnings_of(const Report& report) {
     for (const ArmReport& arm : report.arms) {
         const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                             {"are left out of its figures", "are in the figures"}), std::back_inserter(lines));
+                             {"are left out of its numbers", "are kept in the numbers"}), std::back_inserter(lines));
     }
     add_troubles(report, lines);
     for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
@@ -203,7 +235,7 @@ const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const
     return columns.front();
 }
 
-std::string figure_title(const std::string& column, const std::string& unit) {
+std::string column_title(const std::string& column, const std::string& unit) {
     const std::string name = column == "trace_P"        ? "trace(P), last step"
                              : column == "mean_trace_P" ? "trace(P), mean over the steps"
                              : column == "pose_error"   ? "pose error, sum over the poses"
@@ -211,16 +243,16 @@ std::string figure_title(const std::string& column, const std::string& unit) {
     return unit == "1" ? name : name + " [" + unit + "]";
 }
 
-std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence) {
+std::vector<const GroupEvidence*> shown_groups(const Evidence& evidence) {
     constexpr std::size_t most = 10;
-    std::vector<const GroupEvidence*> blocks;
-    for (const GroupEvidence& block : evidence.blocks) blocks.push_back(&block);
-    if (blocks.size() <= most) return blocks;
-    std::stable_sort(blocks.begin() + 1, blocks.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
+    std::vector<const GroupEvidence*> groups;
+    for (const GroupEvidence& group : evidence.groups) groups.push_back(&group);
+    if (groups.size() <= most) return groups;
+    std::stable_sort(groups.begin() + 1, groups.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
         return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
     });
-    blocks.resize(most);
-    return blocks;
+    groups.resize(most);
+    return groups;
 }
 
 double mean_of(const std::vector<double>& values) {
@@ -233,17 +265,17 @@ double mean_of(const std::vector<double>& values) {
     return sum / known;
 }
 
-WorstDistribution worst_distribution(const DistributionEvidence& shape) {
+WorstDistribution worst_distribution(const DistributionEvidence& distribution) {
     std::size_t worst = 0;
     WorstDistribution found;
-    for (std::size_t k = 0; k < shape.distance.size(); ++k) {
-        found.known += !std::isnan(shape.distance[k]);
-        if (!(shape.distance[k] <= shape.distance[worst])) worst = std::isnan(shape.distance[k]) ? worst : k;
+    for (std::size_t k = 0; k < distribution.distance.size(); ++k) {
+        found.known += !std::isnan(distribution.distance[k]);
+        if (!(distribution.distance[k] <= distribution.distance[worst])) worst = std::isnan(distribution.distance[k]) ? worst : k;
     }
     if (found.known == 0) return found;
     found.step = static_cast<int>(worst) + 1;
-    found.distance = shape.distance[worst];
-    found.p = std::min(1.0, shape.p[worst] * found.known);
+    found.distance = distribution.distance[worst];
+    found.p = std::min(1.0, distribution.p[worst] * found.known);
     return found;
 }
 

@@ -3,6 +3,8 @@
 
 #include <credence/report.hpp>
 
+#include "report/table.hpp"
+
 #include <string>
 #include <vector>
 
@@ -41,7 +43,7 @@ inline const char* const no_trials_note =
 struct FailureCounts {
     std::int64_t trials = 0, left_out = 0, diverged = 0;
 };
-/// How failed trials are treated, such as `are left out of its figures`, and those that diverged.
+/// How failed trials are treated, such as `are left out of its numbers`, and those that diverged.
 struct FailureWords {
     std::string left_out, diverged;
 };
@@ -53,15 +55,19 @@ std::vector<std::string> failure_lines(const std::string& arm, const FailureCoun
 /// or keeps no trials.
 std::vector<std::string> warnings_of(const Report& report);
 
+/// An arm's verdict, and how many of its trials failed; `-` where it has not run yet.
+Cell verdict_cell(const ArmReport& arm);
+Cell failed_cell(const ArmReport& arm);
+
 /// The column of that name; the first one where there is none.
 const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name);
 
 /// A column's name in words, with its unit.
-std::string figure_title(const std::string& column, const std::string& unit);
+std::string column_title(const std::string& column, const std::string& unit);
 
 /// The component groups that get a line: those with several components, and the features (or other numbered groups)
 /// that are farthest off.
-std::vector<const GroupEvidence*> shown_blocks(const Evidence& evidence);
+std::vector<const GroupEvidence*> shown_groups(const Evidence& evidence);
 
 /// Statistics of the values that are not NaN.
 double mean_of(const std::vector<double>& values);
@@ -71,7 +77,7 @@ struct WorstDistribution {
     int step = 0, known = 0;     ///< known: steps with a distance
     double distance = 0, p = 0;  ///< p corrected for all of them
 };
-WorstDistribution worst_distribution(const DistributionEvidence& shape);
+WorstDistribution worst_distribution(const DistributionEvidence& distribution);
 
 /// Lags whose correlation is outside their joint bound.
 int lags_outside(const std::vector<Whiteness>& whiteness);

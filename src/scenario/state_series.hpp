@@ -1,6 +1,6 @@
 #pragma once
-// The series of a state that is judged by its errors and covariances alone: of a world of somebody's own, and of
-// a record.
+// The series of a state that is judged by its errors and covariances alone: of a user's own world, and of a
+// record.
 
 #include <credence/columns.hpp>
 

@@ -134,7 +134,7 @@ std::vector<SweepCoordinate> parse_coordinates(const std::string& text) {
         }
         const std::string key = trimmed(part.substr(0, equals));
         for (const SweepCoordinate& other : at)
-            if (other.key == key) throw refuse(key + " stands there twice");
+            if (other.key == key) throw refuse(key + " is given twice");
         if (!can_be_swept(key)) throw refuse("no grid can be over " + key);
         at.push_back({key, trimmed(part.substr(equals + 1))});
         if (at.back().value.empty()) throw refuse(key + " has no value");
@@ -178,7 +178,7 @@ std::vector<SweepAxis> parse_grid(const std::vector<std::string>& texts) {
         std::set<std::string> values;
         for (const std::string& value : axis.values)
             if (!values.insert(value).second)
-                throw invalid_sweep(text, value + " stands there twice", "Give each value once");
+                throw invalid_sweep(text, value + " is given twice", "Give each value once");
         points *= axis.values.size();  // no product overflows: the factor before is at most the limit
         if (points > most_swept_scenarios)
             throw invalid_sweep(text, "the grid has more than " + std::to_string(most_swept_scenarios) + " points",

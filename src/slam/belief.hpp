@@ -112,16 +112,16 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& l
 }
 
 /// Computes e' P^-1 e over the component ranges [i, last) of the state, for i = last - 2, last - 4 ... down to first,
-/// each with its own part of P [Bar-Shalom 2001, 5.4.2]. Calls told(i, error) with the squared error of the range [i,
+/// each with its own part of P [Bar-Shalom 2001, 5.4.2]. Calls visit(i, error) with the squared error of the range [i,
 /// last) and whether its P is positive definite. P is eliminated two rows at a time from its end, so that one
 /// elimination serves every range that ends at `last`. Of an odd number of rows, the first is eliminated by itself.
-template <class Real, int capacity, class First, class Last, class Told>
+template <class Real, int capacity, class First, class Last, class Visit>
 CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
-                                           Last last, Elimination<Real, capacity>& left, Told&& told) {
+                                           Last last, Elimination<Real, capacity>& left, Visit&& visit) {
     SquaredError<Real> sum{Real(0), all_lanes<Real>()};
     const auto add = [&](auto i, const SquaredError<Real>& part) {
         sum = {sum.value + part.value, both(sum.positive_definite, part.positive_definite)};
-        told(i, sum);
+        visit(i, sum);
     };
     each(zero, half(last - first), [&](auto pair) {
         const auto i = last - two * (pair + one);

@@ -26,9 +26,9 @@ std::uint64_t fnv1a(const std::string& text) {
 /// (Philox for every index takes three times as long.)
 class Words {
 public:
-    Words(std::uint64_t root_seed, const std::string& figure, int resample) {
+    Words(std::uint64_t root_seed, const std::string& column, int resample) {
         const PhiloxKeys keys(static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32));
-        const std::uint64_t hash = fnv1a(figure);
+        const std::uint64_t hash = fnv1a(column);
         const auto block = philox<std::uint64_t>(
             {{0, static_cast<std::uint64_t>(resample), hash & 0xffffffff, hash >> 32 | 0xf0000}}, keys);
         key_ = (block.word[0] & 0xffffffff) << 32 | (block.word[1] & 0xffffffff);
@@ -88,12 +88,12 @@ double resampled_mean(const std::vector<Part>& parts, const Words& words) {
 
 template <class Part>
 std::vector<double> resampled_means(const std::vector<Part>& parts, std::uint64_t root_seed,
-                                    const std::string& figure) {
+                                    const std::string& column) {
     std::vector<double> means(bootstrap_resamples);
     [[maybe_unused]] const bool worth_threads = parts.size() > 100;
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (int b = 0; b < bootstrap_resamples; ++b)
-        means[static_cast<std::size_t>(b)] = resampled_mean(parts, Words(root_seed, figure, b));
+        means[static_cast<std::size_t>(b)] = resampled_mean(parts, Words(root_seed, column, b));
     return means;
 }
 
@@ -130,14 +130,14 @@ double centre_of(std::vector<double> values) {
 }  // namespace
 
 Interval bootstrap_mean_interval(const std::vector<double>& by_trial, std::uint64_t root_seed,
-                                 const std::string& figure, double alpha) {
+                                 const std::string& column, double alpha) {
     const double centre = centre_of(by_trial);
     if (std::isnan(centre)) return {nan, nan};
     std::vector<BlockPart> blocks;
     if (by_trial.size() >= fewest_blocks * block_size) blocks = blocks_of(by_trial, centre);
     std::vector<double> means = blocks.size() >= fewest_blocks
-                                    ? resampled_means(blocks, root_seed, figure)
-                                    : resampled_means(trials_of(by_trial, centre), root_seed, figure);
+                                    ? resampled_means(blocks, root_seed, column)
+                                    : resampled_means(trials_of(by_trial, centre), root_seed, column);
     return {centre + quantile(means, alpha / 2), centre + quantile(means, 1 - alpha / 2)};
 }
 

@@ -25,6 +25,6 @@ inline constexpr int bootstrap_resamples = 2000;
 ///
 /// Equal values give {value, value}; fewer than two, or one that is infinite, give {NaN, NaN}.
 Interval bootstrap_mean_interval(const std::vector<double>& by_trial, std::uint64_t root_seed,
-                                 const std::string& figure, double alpha = 0.05);
+                                 const std::string& column, double alpha = 0.05);
 
 }  // namespace credence

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "statistics/conditioning.hpp"
+
 namespace credence {
 
 namespace {
@@ -102,7 +104,7 @@ MatrixXd resolved_basis(const MatrixXd& sum_of_C, const DirectionLimits& limits)
     const auto d = static_cast<double>(sum_of_C.rows());
     const MatrixXd mean = sum_of_C * (d / sum_of_C.trace());  // its diagonal is 1
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(mean);
-    const double least = d * limits.epsilon / (0.01 * limits.margin);
+    const double least = d * limits.epsilon / (rounding_share * limits.margin);
     const Eigen::Index left_out = (solver.eigenvalues().array() < least).count();
     if (left_out == 0) return MatrixXd::Identity(mean.rows(), mean.cols());
     return solver.eigenvectors().rightCols(mean.cols() - left_out);

@@ -63,8 +63,9 @@ struct DirectionsAccepted {
 DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& sums,
                                      const DirectionLimits& limits = {});
 
-/// The coordinates in which P can be told from 0 to 1 % of the margin: an orthonormal basis [d, d - left_out] of the
-/// eigenvectors of the mean standardised P whose eigenvalue is at least d epsilon / (0.01 margin).
+/// The coordinates in which rounding may change a ratio by a tenth of the margin at most: an orthonormal basis
+/// [d, d - left_out] of the eigenvectors of the mean standardised P whose eigenvalue is at least
+/// d epsilon / (rounding_share margin) [conditioning.hpp].
 Eigen::MatrixXd resolved_basis(const Eigen::MatrixXd& sum_of_C, const DirectionLimits& limits);
 
 }  // namespace credence

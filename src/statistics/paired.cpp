@@ -62,7 +62,7 @@ double variance(std::vector<double> values) {
 }  // namespace
 
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
-                                const std::string& figure) {
+                                const std::string& column) {
     std::vector<double> differences, paired_a, paired_b;
     std::vector<double> by_trial(std::min(a.size(), b.size()), nan);  // the bootstrap resamples blocks by trial
     for (std::size_t i = 0; i < by_trial.size(); ++i) {
@@ -75,7 +75,7 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     PairedComparison comparison;
     comparison.pairs = static_cast<std::int64_t>(differences.size());
     comparison.difference = summarise(differences);
-    comparison.bootstrap95 = bootstrap_mean_interval(by_trial, root_seed, figure);
+    comparison.bootstrap95 = bootstrap_mean_interval(by_trial, root_seed, column);
     count_wins(differences, comparison);
     test_signed_ranks(differences, comparison);
     const double deviation = comparison.difference.standard_deviation;

@@ -31,7 +31,7 @@ double spread_of(const ExactMoments& values) {
 }
 
 /// A column of an arm's block, NaN where a trial failed.
-std::vector<double> figures_of(const ArmBlock& arm, std::size_t column, std::size_t status, std::size_t trials) {
+std::vector<double> values_of(const ArmBlock& arm, std::size_t column, std::size_t status, std::size_t trials) {
     const auto begin = arm.columns.begin() + static_cast<std::ptrdiff_t>(column * trials);
     std::vector<double> values(begin, begin + static_cast<std::ptrdiff_t>(trials));
     for (std::size_t i = 0; i < trials; ++i)
@@ -179,7 +179,7 @@ std::vector<ArmAggregates> aggregates_of(const std::vector<Column>& columns, con
     for (std::size_t c = 0; c < columns.size(); ++c) {
         if (!is_reported(columns[c])) continue;
         std::vector<std::vector<double>> values;
-        for (const ArmBlock& arm : block.arms) values.push_back(figures_of(arm, c, status, trials));
+        for (const ArmBlock& arm : block.arms) values.push_back(values_of(arm, c, status, trials));
         for (std::size_t a = 0; a < values.size(); ++a) {
             aggregates[a].columns[c] = exact_moments(values[a]);
             for (std::size_t b = 0; b < a; ++b) aggregates[a].differences[b][c] = differences_of(values[a], values[b]);

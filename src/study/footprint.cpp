@@ -24,13 +24,13 @@ ScenarioFootprint footprint_of(const ScenarioResults& results, std::int64_t tria
     const std::int64_t cells = all_series * results.steps(), numbers = results.steps() * (results.state_size() + 1),
                        moments = results.moment_count();
     const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
-    const std::int64_t shape = distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
+    const std::int64_t distribution = distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
     // A thread's running sums of octets, their squares and the series not yet folded; and details of its block, in the
     // engine's order and in that of the results. (This memory is free again when the blocks are committed.)
     const std::int64_t detailed_blocks = std::min<std::int64_t>(threads, (kept + block_size - 1) / block_size);
     const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * (numbers + moments) * 16 * detailed_blocks;
     return {totals_size(results, kept), arms * (threads * cells * 150 + of_details),
-            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (all_series + 20) * 1500 + kept * (numbers * 4 + moments * 8) + shape)};
+            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (all_series + 20) * 1500 + kept * (numbers * 4 + moments * 8) + distribution)};
 }
 
 }  // namespace

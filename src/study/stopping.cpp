@@ -51,8 +51,8 @@ double excess(const GoalState& state) {
 }
 
 /// predicted_trials of one state that is not met.
-std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimAnalysis& look, const StoppingRule& rule) {
-    const double share = static_cast<double>(state.count) / static_cast<double>(look.trials);
+std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimAnalysis& analysis, const StoppingRule& rule) {
+    const double share = static_cast<double>(state.count) / static_cast<double>(analysis.trials);
     const auto enough = [&](std::int64_t trials, int number) {
         return half_width_of(state.standard_deviation, share * static_cast<double>(trials), number) <= state.allowed;
     };
@@ -60,7 +60,7 @@ std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimA
     std::int64_t trials = rule.first_analysis;
     for (int number = 1;; ++number) {
         if (number == at_the_ceiling && enough(rule.ceiling, number)) return rule.ceiling;
-        if (trials > look.trials && enough(trials, number)) return trials;
+        if (trials > analysis.trials && enough(trials, number)) return trials;
         if (trials > std::numeric_limits<std::int64_t>::max() / 2) return std::nullopt;
         trials *= 2;
     }
@@ -71,11 +71,11 @@ std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimA
 double analysis_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
 
 std::vector<std::int64_t> analysis_trials(std::int64_t ceiling, std::int64_t first) {
-    std::vector<std::int64_t> looks;
+    std::vector<std::int64_t> analyses;
     for (std::int64_t trials = first; trials < ceiling; trials = trials > ceiling / 2 ? ceiling : 2 * trials)
-        looks.push_back(trials);
-    looks.push_back(ceiling);
-    return looks;
+        analyses.push_back(trials);
+    analyses.push_back(ceiling);
+    return analyses;
 }
 
 GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number) {
@@ -102,35 +102,35 @@ GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, in
     return decide_from(moments, goal, number);
 }
 
-InterimAnalysis look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
+InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
     for (const ScenarioResults& results : study.scenarios)
         if (results.trials < trials || (results.keep == Keep::aggregates && results.trials > trials))
-            throw std::logic_error("a look at trials that are not there, or not by themselves");
-    InterimAnalysis look{trials, number, analysis_alpha(number), {}, true};
+            throw std::logic_error("an interim analysis of trials that are not there");
+    InterimAnalysis analysis{trials, number, analysis_alpha(number), {}, true};
     for (const StoppingGoal& goal : goals)
         for (const StoppingSubject& subject : subjects_of(goal, study)) {
-            look.states.push_back(subject.results->keep == Keep::trials
+            analysis.states.push_back(subject.results->keep == Keep::trials
                                       ? decide(values_of(subject, trials), goal, number)
                                       : decide_from(aggregates_of(subject), goal, number));
-            look.states.back().name = name_of(subject);
-            look.met = look.met && look.states.back().met();
+            analysis.states.back().name = name_of(subject);
+            analysis.met = analysis.met && analysis.states.back().met();
         }
-    return look;
+    return analysis;
 }
 
-std::optional<std::int64_t> predicted_trials(const InterimAnalysis& look, const StoppingRule& rule) {
-    std::int64_t most = look.trials;
-    for (const GoalState& state : look.states) {
+std::optional<std::int64_t> predicted_trials(const InterimAnalysis& analysis, const StoppingRule& rule) {
+    std::int64_t most = analysis.trials;
+    for (const GoalState& state : analysis.states) {
         if (state.met()) continue;
-        const std::optional<std::int64_t> trials = predicted_for(state, look, rule);
+        const std::optional<std::int64_t> trials = predicted_for(state, analysis, rule);
         if (!trials) return std::nullopt;
         most = std::max(most, *trials);
     }
     return most;
 }
 
-const GoalState& widest(const InterimAnalysis& look) {
-    return *std::max_element(look.states.begin(), look.states.end(),
+const GoalState& widest(const InterimAnalysis& analysis) {
+    return *std::max_element(analysis.states.begin(), analysis.states.end(),
                              [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
 }
 
@@ -138,17 +138,17 @@ namespace {
 
 /// An interrupted run decides nothing, and makes no further interim analysis.
 InterimAnalysis interrupted_look(std::int64_t trials, int number) {
-    InterimAnalysis look{trials, number, analysis_alpha(number), {}, false};
-    look.interrupted = true;
-    return look;
+    InterimAnalysis analysis{trials, number, analysis_alpha(number), {}, false};
+    analysis.interrupted = true;
+    return analysis;
 }
 
 }  // namespace
 
-InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& look) {
+InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis) {
     InterimAnalysis last;
     for (const std::int64_t trials : analysis_trials(rule.ceiling, rule.first_analysis)) {
-        last = look(trials, last.number + 1);
+        last = analysis(trials, last.number + 1);
         if (last.met || last.interrupted) break;
     }
     return last;
@@ -166,9 +166,9 @@ InterimAnalysis run_until(Study& study, const StoppingRule& rule, RunOptions opt
             return InterimAnalysis{trials, number, analysis_alpha(number), {}, false};
         run_study(study, options);
         if (!study.complete) return interrupted_look(trials, number);
-        InterimAnalysis look = look_at(study, rule.goals, aggregates ? options.trials : trials, number);
-        if (after_analysis) after_analysis(look);
-        return look;
+        InterimAnalysis analysis = analysis_of(study, rule.goals, aggregates ? options.trials : trials, number);
+        if (after_analysis) after_analysis(analysis);
+        return analysis;
     });
 }
 

@@ -9,7 +9,6 @@
 // probability sum_j alpha_j <= 5 % at most (Bonferroni over the analyses), whatever made the study stop there; alpha
 // spent at analyses fixed in advance: [Jennison and Turnbull 2000, ch. 7]. Each interval is so by itself: several
 // together are not corrected for their number. Between analyses no data are examined.
-// together are not corrected for their number. Between looks nothing is looked at.
 
 #include <credence/statistics.hpp>
 #include <credence/study.hpp>
@@ -89,19 +88,19 @@ GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int numb
 /// Interim analysis `number` at the first `trials` trials of every scenario; further trials are ignored, but where no
 /// trial is kept there must not be any. Throws as check_goals does; throws std::logic_error if a scenario has fewer
 /// trials, or more than can be ignored.
-InterimAnalysis look_at(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
+InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
 
 /// The trial count at which every unmet state is expected to be small enough: the next analysis, that at the ceiling or
 /// one beyond it, at which t sd / sqrt(n) <= allowed if mean, sd and the share of NaN values stay the same; that of the
 /// given analysis if it is met. Nothing if no 64-bit number of trials is expected to suffice.
-std::optional<std::int64_t> predicted_trials(const InterimAnalysis& look, const StoppingRule& rule);
+std::optional<std::int64_t> predicted_trials(const InterimAnalysis& analysis, const StoppingRule& rule);
 
 /// The state that is widest relative to its goal; states without an interval come first.
-const GoalState& widest(const InterimAnalysis& look);
+const GoalState& widest(const InterimAnalysis& analysis);
 
-/// Calls `look` with the trials and the number of each interim analysis in turn, until one is met or the ceiling is
+/// Calls `analysis` with the trials and the number of each interim analysis in turn, until one is met or the ceiling is
 /// reached; returns the last one.
-InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& look);
+InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis);
 
 /// Grows the study from analysis to analysis (run_study) until the goals are met or the ceiling is reached; returns the
 /// last analysis. Trials that a study has beyond an analysis are neither used by it nor discarded: the analysis is the

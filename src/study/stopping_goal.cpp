@@ -56,7 +56,7 @@ std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& c
         if (columns[c].name == goal.metric) return c;
         names.push_back(columns[c].name);
     }
-    throw refused(goal.text, "there is no figure " + goal.metric, did_you_mean(goal.metric, names));
+    throw refused(goal.text, "there is no column " + goal.metric, did_you_mean(goal.metric, names));
 }
 
 /// The scenario's arm of that name, or its only arm of that controller; nothing where it has no such arm.
@@ -95,7 +95,7 @@ StoppingGoal parse_goal(const std::string& text) {
     goal.metric = trimmed(text.substr(0, equals));
     parse_half_width(goal, trimmed(text.substr(equals + 1)));
     parse_arms(goal);
-    if (goal.metric.empty()) throw refused(text, "no figure stands before the =");
+    if (goal.metric.empty()) throw refused(text, "there is no name before the =");
     return goal;
 }
 

@@ -10,32 +10,33 @@ namespace credence {
 
 namespace {
 
-/// The first trials: enough to know the spread, and few enough for a report of many arms.
-TrialMoments first_trials(const TrialMoments& all) {
+/// The first trials: enough to know the spread, and few enough for a report of many arms. Groups that no trial has are
+/// left out.
+TrialMoments first_trials(const Evidence& evidence) {
     constexpr std::size_t most = 1024;
-    const std::size_t count = std::min(most, all.trials());
-    TrialMoments first{all.components, all.groups, {}, {}};
-    first.trial.assign(all.trial.begin(), all.trial.begin() + static_cast<std::ptrdiff_t>(count));
-    first.values.assign(all.values.data(), all.values.data() + count * all.size());
+    const TrialMoments& all = *evidence.moments;
+    std::vector<int> groups;
+    for (int g = 0; g < all.groups; ++g)
+        if (evidence.groups[static_cast<std::size_t>(g)].run.count > 0) groups.push_back(g);
+    TrialMoments first{all.components, static_cast<int>(groups.size()), {}, {}};
+    for (std::size_t i = 0; i < std::min(most, all.trials()); ++i) {
+        double* to = first.append(all.trial[i]);
+        for (const int g : groups) *to++ = all.X(i, g);
+        std::copy(all.row(i) + all.groups, all.row(i) + all.size(), to);
+    }
     return first;
-}
-
-/// To two digits.
-double rounded(double trials) {
-    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(trials)) - 1));
-    return std::round(trials / unit) * unit;
 }
 
 }  // namespace
 
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
-    if (!evidence.moments || evidence.blocks.empty() || !evidence.joint) return {};
-    const std::vector<int> state = uncertain_components(evidence, evidence.blocks.front().components);
+    if (!evidence.moments || evidence.groups.empty() || !evidence.joint) return {};
+    const std::vector<int> state = uncertain_components(evidence, evidence.groups.front().components);
     constexpr std::uint64_t seed = 1;  // the same advice for the same trials
-    const std::optional<Advice> advice = trials_for_consistent(first_trials(*evidence.moments), state, seed,
-                                                               {limits.margin, limits.direction, limits.bias});
+    const std::optional<Advice> advice =
+        trials_for_consistent(first_trials(evidence), state, seed, {limits.margin, limits.direction, limits.bias});
     if (!advice) return {};
-    return {rounded(advice->range.low), rounded(advice->trials), rounded(advice->range.high)};
+    return {to_two_digits(advice->range.low), to_two_digits(advice->trials), to_two_digits(advice->range.high)};
 }
 
 }  // namespace credence

@@ -2,8 +2,8 @@
 
 #include "statistics/goodness.hpp"
 #include "statistics/whiteness.hpp"
-
 #include "verdict/consistency_parts.hpp"
+#include "verdict/judgement.hpp"
 
 namespace credence {
 
@@ -30,15 +30,17 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
         const Side side = side_of(corrected, margin);
         if (side == Side::inside) continue;
         (side == Side::above ? above : below) = true;
-        verdict.findings.push_back({name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, corrected, "NIS/m"});
+        verdict.findings.push_back({Subject::innovations, name_of(side), "innovations (" + nis.part + ")",
+                                    "over all steps", nis.ratio, corrected, "NIS/m"});
     }
     const double lags = static_cast<double>(evidence.whiteness.size()),
                  quantile = evidence.whiteness.empty() ? 0 : normal_quantile(0.025 / lags);
     for (const Whiteness& lag : evidence.whiteness) {
         all_inside = all_inside && lag.known();
         if (lag.known() && std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
-            verdict.findings.push_back({"correlated", "innovations", "lag " + std::to_string(lag.lag), lag.scaled,
-                                        interval_of(lag), "relative correlation"});
+            verdict.findings.push_back({Subject::whiteness, "correlated", "innovations",
+                                        "lag " + std::to_string(lag.lag), lag.scaled, interval_of(lag),
+                                        "relative correlation"});
     }
     if (above && below) verdict.verdict = Verdict::mixed;
     else if (above) verdict.verdict = Verdict::optimistic;
@@ -60,8 +62,8 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
         lags.push_back(lag.lag);
     }
     if (worst == nullptr) return;
-    verdict.cautions.push_back({"correlated", "innovations", listed("lag", lags), worst->scaled, interval_of(*worst),
-                                "relative correlation"});
+    verdict.cautions.push_back({Subject::whiteness, "correlated", "innovations", listed("lag", lags), worst->scaled,
+                                interval_of(*worst), "relative correlation"});
 }
 
 /// Innovations of the wrong size beside a consistent state: NEES does not show them.
@@ -69,28 +71,29 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
     for (const NisEvidence& nis : evidence.nis)
         if (const Side side = side_of(nis.ratio95, verdict.limits.margin); side != Side::inside)
-            verdict.cautions.push_back(
-                {name_of(side), "innovations (" + nis.part + ")", "over all steps", nis.ratio, nis.ratio95, "NIS/m"});
+            verdict.cautions.push_back({Subject::innovations, name_of(side), "innovations (" + nis.part + ")",
+                                        "over all steps", nis.ratio, nis.ratio95, "NIS/m"});
 }
 
 /// A distance from chi-square that is significantly beyond the margin: Massart's bound on the distance of N values from
 /// their own distribution, sqrt(ln(2/alpha)/(2 N)) [Massart 1990], corrected over the steps. A deviation that the size
 /// of P already explains is not reported twice.
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict) {
+    if (is_rounded(evidence.groups.front(), verdict.limits)) return;
     for (const Finding& finding : verdict.findings)
-        if (finding.where == evidence.blocks.front().block) return;
+        if (finding.where == evidence.groups.front().name) return;
     std::vector<int> steps;
     Estimate worst;
-    for (std::size_t k = 0; k < evidence.shape.distance.size(); ++k) {
-        const double count = evidence.blocks.front().step[k].count, alpha = 0.05 / evidence.steps;
-        const Estimate distance{evidence.shape.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
+    for (std::size_t k = 0; k < evidence.distribution.distance.size(); ++k) {
+        const double count = evidence.groups.front().step[k].count, alpha = 0.05 / evidence.steps;
+        const Estimate distance{evidence.distribution.distance[k], std::sqrt(std::log(2 / alpha) / (2 * count))};
         if (!(distance.interval().low > verdict.limits.margin)) continue;
         steps.push_back(static_cast<int>(k) + 1);
         if (distance.value > worst.value) worst = distance;
     }
     if (!steps.empty())
-        verdict.cautions.push_back({"misshapen", evidence.blocks.front().block, steps_text(steps), worst.value,
-                                    worst.interval(), "distance from chi-square"});
+        verdict.cautions.push_back({Subject::distribution, "misshapen", evidence.groups.front().name,
+                                    steps_text(steps), worst.value, worst.interval(), "distance from chi-square"});
 }
 
 }  // namespace credence

@@ -16,13 +16,14 @@ namespace {
 class GroupJudge {
 public:
     GroupJudge(const Evidence& evidence, std::size_t group, Judgement& judgement)
-        : evidence_(evidence), group_(evidence.blocks[group]), place_(static_cast<int>(group)), judgement_(judgement) {
+        : evidence_(evidence), group_(evidence.groups[group]), place_(static_cast<int>(group)), judgement_(judgement) {
         for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
             if (const double trial = evidence_.moments->X(i, place_); !std::isnan(trial)) trials_.push_back(trial);
     }
 
     void judge() {
         if (!(group_.run.count > 0) && evidence_.trials > 0) return;  // a record that does not give this group's NEES
+        if (is_rounded(group_, judgement_.limits())) return leave_out();
         over_steps();
         at_steps();
     }
@@ -30,17 +31,32 @@ public:
 private:
     double margin() const { return judgement_.limits().margin; }
 
+    void leave_out() {
+        char text[160];
+        if (std::isfinite(group_.rounding))
+            std::snprintf(text, sizeof text, "rounding alone may change it by %.2g %%", 100 * group_.rounding);
+        else
+            std::snprintf(text, sizeof text, "P cannot be told from singular");
+        judgement_.not_shown("conditioning: NEES of " + group_.name + " is left out, because " + text, false);
+    }
+
     void over_steps() {
         const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
-        const auto groups = static_cast<int>(evidence_.blocks.size());
-        const MeanClaim claim = claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps),
-                                              level_of_group(levels::run, place_, groups) / 2, margin());
+        const auto groups = static_cast<int>(evidence_.groups.size());
+        const double level = level_of_group(levels::run, place_, groups) / 2;
+        const MeanClaim claim =
+            claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps), level, margin());
         if (claim.above || claim.below)
-            judgement_.add(claim.above ? Side::above : Side::below, {"", group_.block, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
-        const std::string what = "NEES/dim of " + group_.block;
+            judgement_.add(claim.above ? Side::above : Side::below,
+                           {Subject::size, "", group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
+        else if (std::optional<Suspicion> looks = suspicion_of(sample, level, margin()))
+            judgement_.suspect({Subject::size, looks->what, group_.name, looks->value, "NEES/dim", looks->trials});
+        const std::string what = "NEES/dim of " + group_.name;
         const Acceptance acceptance = accept_mean(sample, margin());
         if (claim.tails)
-            judgement_.not_shown(what + " looks too small, but rare large errors that were not seen could explain it" + tail_text());
+            judgement_.not_shown(
+                what + " looks too small, but rare large errors that were not seen could explain it" + tail_text(),
+                true);
         judgement_.accept(acceptance, what + (acceptance == Acceptance::tails ? tail_text() : ""));
     }
 
@@ -64,7 +80,7 @@ private:
     }
 
     void at_steps() {
-        const double tests = static_cast<double>(evidence_.blocks.size()) * evidence_.steps;
+        const double tests = static_cast<double>(evidence_.groups.size()) * evidence_.steps;
         Found found[2];
         for (std::size_t k = 0; k < group_.step.size(); ++k) {
             if (!(group_.step[k].count > 1)) continue;
@@ -74,7 +90,8 @@ private:
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                judgement_.add(side, {"", group_.block, steps_text(steps.steps), steps.value, steps.interval, "NEES/dim"});
+                judgement_.add(side, {Subject::step, "", group_.name, steps_text(steps.steps), steps.value,
+                                      steps.interval, "NEES/dim"});
     }
 
     const Evidence& evidence_;
@@ -86,10 +103,10 @@ private:
 
 Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     Judgement judgement(limits);
-    for (std::size_t group = 0; group < evidence.blocks.size(); ++group) GroupJudge(evidence, group, judgement).judge();
+    for (std::size_t group = 0; group < evidence.groups.size(); ++group) GroupJudge(evidence, group, judgement).judge();
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
-    if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state");
+    if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state", false);
     return judgement.consistency(evidence);
 }
 
@@ -97,7 +114,7 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1) return judge_single_trial(evidence, limits);
     Consistency verdict = judge_trials(evidence, limits);
-    if (evidence.blocks.empty() || evidence.trials == 0) return verdict;
+    if (evidence.groups.empty() || evidence.trials == 0) return verdict;
     caution_about_whiteness(evidence, verdict);
     caution_about_innovations(evidence, verdict);
     caution_about_distribution(evidence, verdict);
@@ -125,10 +142,13 @@ void Judgement::accept(Acceptance acceptance, const std::string& what) {
     (acceptance == Acceptance::tails ? tails_ : unknown_).push_back(what);
 }
 
-void Judgement::not_shown(const std::string& why) {
+void Judgement::not_shown(const std::string& why, bool more_trials_help) {
     all_shown_ = false;
+    more_trials_help_ = more_trials_help_ && more_trials_help;
     reasons_.push_back(why);
 }
+
+void Judgement::suspect(Suspicion suspicion) { suspicions_.push_back(std::move(suspicion)); }
 
 Consistency Judgement::consistency(const Evidence& evidence) {
     Consistency verdict;
@@ -138,7 +158,7 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     if (above_ && below_) verdict.verdict = Verdict::mixed;
     else if (above_) verdict.verdict = Verdict::optimistic;
     else if (below_) verdict.verdict = Verdict::pessimistic;
-    else if (all_shown_ && !evidence.blocks.empty()) verdict.verdict = Verdict::consistent;
+    else if (all_shown_ && !evidence.groups.empty()) verdict.verdict = Verdict::consistent;
     if (verdict.verdict != Verdict::undecided || evidence.trials == 0) return verdict;
     verdict.reasons = std::move(reasons_);
     const auto list = [&](const std::vector<std::string>& names, const std::string& why) {
@@ -151,7 +171,8 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     };
     list(unknown_, ": too few trials to show that it is within its margin");
     list(tails_, ": within its margin, but for trials as large as the largest that were seen");
-    verdict.trials_needed = trials_needed(evidence, limits_);
+    verdict.suspicions = std::move(suspicions_);
+    if (more_trials_help_) verdict.trials_needed = trials_needed(evidence, limits_);
     return verdict;
 }
 
@@ -173,7 +194,13 @@ const std::string& verdict_name(Verdict verdict) {
     return names[static_cast<int>(verdict)];
 }
 
-Interval over_steps95(const GroupEvidence& block) { return t_interval(block.run); }
+const std::string& subject_name(Subject subject) {
+    static const std::string names[] = {"size",        "step",      "direction",   "bias",
+                                        "innovations", "whiteness", "distribution"};
+    return names[static_cast<int>(subject)];
+}
+
+Interval over_steps95(const GroupEvidence& group) { return t_interval(group.run); }
 
 bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
     constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
@@ -186,16 +213,21 @@ Consistency judge(const Evidence& evidence, const Limits& limits) {
         verdict.verdict = Verdict::failed;
         verdict.reasons.clear();
         verdict.trials_needed = {};
+        verdict.suspicions.clear();
     }
     return verdict;
+}
+
+std::string when_text(const Finding& finding) {
+    return (finding.about == Subject::direction ? "direction " : "") + finding.when;
 }
 
 std::string sentence(const Finding& finding) {
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%s %.3g (%.3g to %.3g)", finding.measure.c_str(), finding.value,
                   finding.interval.low, finding.interval.high);
-    const std::string where = finding.what == "biased" ? "component " + finding.where : finding.where;
-    return finding.what + ": " + where + ", " + finding.when + ", " + numbers;
+    const std::string where = (finding.about == Subject::bias ? "component " : "") + finding.where;
+    return finding.what + ": " + where + ", " + when_text(finding) + ", " + numbers;
 }
 
 }  // namespace credence

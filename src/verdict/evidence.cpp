@@ -154,7 +154,7 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
     return worst;
 }
 
-DistributionEvidence shape_evidence(const ScenarioResults& results, const ArmResults& arm) {
+DistributionEvidence distribution_evidence(const ScenarioResults& results, const ArmResults& arm) {
     DistributionEvidence evidence;
     evidence.exact = !arm.distribution_distance.empty();
     for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k) {
@@ -211,7 +211,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     evidence.joint = results.has_joint_covariance;
     for (std::size_t f = 0; f < results.all_series.size(); ++f) {
         const Series& series = results.all_series[f];
-        if (series.role == SeriesRole::nees) evidence.blocks.push_back(block_evidence(results, arm, f));
+        if (series.role == SeriesRole::nees) evidence.groups.push_back(group_evidence(results, arm, f));
         if (series.role == SeriesRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
         if (series.role == SeriesRole::standardised_error)
             evidence.bias.push_back(bias_evidence(results, series, arm, arm.totals[f]));
@@ -220,11 +220,13 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     }
     evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
                                            correlated_trials(results, arm));
-    evidence.shape = shape_evidence(results, arm);
+    evidence.distribution = distribution_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);
     evidence.worst = worst_trials(results, arm);
     add_largest_errors(results, arm, evidence.bias);
-    evidence.moments = trial_moments(results, arm, evidence.blocks);
+    evidence.moments = trial_moments(results, arm, evidence.groups);
+    evidence.epsilon = results.epsilon;
+    add_rounding(evidence);
     return evidence;
 }
 

@@ -58,10 +58,10 @@ const SeriesTotals* totals_of(const ScenarioResults& results, const ArmResults& 
 
 /// RMSE and its prediction. The ratio's interval uses the error of the mean square only, to first order: the prediction
 /// varies far less from trial to trial.
-Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& block) {
+Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& group) {
     Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
-    const SeriesTotals* error = totals_of(results, arm, SeriesRole::squared_error, block, accuracy.unit);
-    const SeriesTotals* variance = totals_of(results, arm, SeriesRole::variance, block, accuracy.unit);
+    const SeriesTotals* error = totals_of(results, arm, SeriesRole::squared_error, group, accuracy.unit);
+    const SeriesTotals* variance = totals_of(results, arm, SeriesRole::variance, group, accuracy.unit);
     if (error == nullptr || variance == nullptr) return accuracy;
     for (std::size_t k = 0; k < error->sum.size(); ++k) {
         accuracy.rmse.push_back(std::sqrt(moments_at(arm, *error, k, 1).mean));
@@ -87,7 +87,7 @@ template <class Ratios>
 void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
     const Series& series = results.all_series[f];
     const SeriesTotals& totals = arm.totals[f];
-    evidence.block = series.part;
+    evidence.name = series.part;
     evidence.dimension = series.dimension;
     evidence.run = run_moments(arm, totals, results.steps(), 1.0 / series.dimension);
     std::vector<double> sums;
@@ -133,11 +133,11 @@ void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
     }
 }
 
-GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
+GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
     GroupEvidence evidence;
     fill_ratios(results, arm, f, evidence);
     for (const ComponentGroup& group : results.scenario.groups)
-        for (int j = 0; group.name == evidence.block && j < group.count; ++j) evidence.components.push_back(group.component(j));
+        for (int j = 0; group.name == evidence.name && j < group.count; ++j) evidence.components.push_back(group.component(j));
     for (std::size_t k = 0; k < evidence.step.size(); ++k) {
         const Moments& step = evidence.step[k];
         const double whole = evidence.dimension,
@@ -146,7 +146,7 @@ GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& a
         evidence.variance_ratio.push_back(deviation * deviation / (2 * dimension));
     }
     evidence.coverage = coverage_of(arm, arm.totals[f]);
-    evidence.accuracy = accuracy_of(results, arm, evidence.block);
+    evidence.accuracy = accuracy_of(results, arm, evidence.name);
     return evidence;
 }
 

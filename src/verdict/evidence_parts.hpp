@@ -15,9 +15,12 @@ Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio);
 
 /// The component group of the nees series f.
-GroupEvidence block_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
 /// The group and chart of the series f of role nees_in_chart.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+
+/// Sets what rounding may have done to each group's NEES.
+void add_rounding(Evidence& evidence);
 
 }  // namespace credence

@@ -27,13 +27,16 @@ void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) 
 }
 
 /// The errors have the size that P says, and yet some directions are far too large.
-void hint_at_chart(const Evidence& evidence, const Consistency& verdict, std::vector<std::string>& hints) {
+void hint_at_chart(const Evidence& evidence, Consistency& verdict) {
     const std::vector<double>& spectrum = verdict.directions.spectrum;
-    const double size = evidence.blocks.front().accuracy.ratio;
+    const double size = evidence.groups.front().accuracy.ratio;
     if (spectrum.size() < 2 || !(std::abs(size - 1) < 0.03)) return;
-    if (spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)
-        hints.push_back(with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error in "
-                                    "the chart and frame of P, and is a correlation missing?", size));
+    if (!(spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)) return;
+    verdict.chart_doubted = true;
+    verdict.hints.push_back(
+        with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error "
+                    "in the chart and frame of P, and is a correlation missing?",
+                    size));
 }
 
 /// Errors of an angle beyond half a turn.
@@ -50,10 +53,10 @@ void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
         verdict.hints.push_back("the correlation of innovations was not tested: none are so few steps apart (a record of version 2 "
                                 "counts the measurements between them)");
+    hint_at_angles(evidence, verdict.hints);
     if (verdict.findings.empty()) return;
     hint_at_scale(verdict, verdict.hints);
-    hint_at_chart(evidence, verdict, verdict.hints);
-    hint_at_angles(evidence, verdict.hints);
+    hint_at_chart(evidence, verdict);
 }
 
 }  // namespace credence

@@ -14,6 +14,11 @@ namespace credence {
 
 namespace {
 
+std::string component_name(int j, const std::vector<BiasEvidence>& components) {
+    const auto place = static_cast<std::size_t>(j);
+    return place < components.size() ? components[place].component : "x" + std::to_string(j);
+}
+
 /// `0.71 x - 0.71 y`
 std::string name_of(const Direction& direction, const std::vector<BiasEvidence>& components) {
     std::string text = direction.approximate ? "about " : "";
@@ -22,8 +27,7 @@ std::string name_of(const Direction& direction, const std::vector<BiasEvidence>&
         char weight[32];
         std::snprintf(weight, sizeof weight, "%.2f", std::abs(entry.weight));
         text += i == 0 ? (entry.weight < 0 ? "-" : "") : entry.weight < 0 ? " - " : " + ";
-        const auto j = static_cast<std::size_t>(entry.component);
-        text += std::string(weight) + " " + (j < components.size() ? components[j].component : "x" + std::to_string(j));
+        text += std::string(weight) + " " + component_name(entry.component, components);
     }
     return text;
 }
@@ -35,38 +39,64 @@ std::vector<double> spectrum_of(const FoldSums& sums) {
     return {solver.eigenvalues().begin(), solver.eigenvalues().end()};
 }
 
-std::string why_unknown(const Evidence& evidence) {
-    const int size = evidence.blocks.front().dimension;
+/// The loadings of a direction with the names of components.
+std::vector<Loading> loadings_of(const Direction& direction, const std::vector<BiasEvidence>& components) {
+    std::vector<Loading> loadings;
+    for (const DirectionEntry& entry : direction.entries)
+        loadings.push_back({component_name(entry.component, components), entry.weight});
+    return loadings;
+}
+
+/// Withholds `consistent`, because there are no directions.
+void leave_out_directions(const Evidence& evidence, Judgement& judgement) {
+    const int size = evidence.groups.front().dimension;
+    std::string& why = judgement.directions.unknown;
+    why = "directions need " + std::to_string(static_cast<int>(direction_trials)) + " trials";
+    if (!evidence.moments) why = "directions are not in this file";
     if (size > largest_moment_state)
-        return "directions are computed for states of up to " + std::to_string(largest_moment_state) + " components, and this has " +
-               std::to_string(size);
-    if (!evidence.moments) return "directions are not in this file";
-    return "directions need " + std::to_string(static_cast<int>(direction_trials)) + " trials";
+        why = "directions are computed for states of up to " + std::to_string(largest_moment_state) +
+              " components, and this has " + std::to_string(size);
+    judgement.not_shown(why, evidence.moments != nullptr);
+}
+
+DirectionLimits limits_of(const Evidence& evidence, const Judgement& judgement) {
+    return {judgement.limits().margin, judgement.limits().direction, evidence.epsilon};
 }
 
 /// A group's directions, and the findings in them.
 void judge_group(const Evidence& evidence, const GroupEvidence& group, const GroupMoments& moments, const FoldSums& sums,
                  double level, Judgement& judgement) {
-    const GroupDirections found = find_directions(moments, sums, level, {judgement.limits().margin, judgement.limits().direction});
-    if (found.left_out > 0 && group.block != evidence.blocks.front().block)
-        judgement.not_shown("conditioning: P of " + group.block + " cannot be told from singular in " +
-                            std::to_string(found.left_out) + " directions");
+    const GroupDirections found = find_directions(moments, sums, level, limits_of(evidence, judgement));
     if (found.state != GroupDirections::State::known) return;
     const auto add = [&](Side side, const Direction& direction, std::vector<DirectionOfGroup>& all) {
-        all.push_back({group.block, name_of(direction, evidence.bias), direction.ratio.mean, direction.bounds});
+        all.push_back({group.name, name_of(direction, evidence.bias), direction.ratio.mean, direction.bounds, level,
+                       loadings_of(direction, evidence.bias)});
+        const std::string &name = all.back().name, measure = "squared error over P's";
         if (direction.finding)
-            judgement.add(side, {"", group.block, "direction " + all.back().name, direction.ratio.mean, direction.bounds,
-                                 "squared error over P's"});
+            return judgement.add(
+                side, {Subject::direction, "", group.name, name, direction.ratio.mean, direction.bounds, measure});
+        const std::optional<Suspicion> looks = suspicion_of(direction.ratio, level, judgement.limits().margin);
+        if (looks && looks->what == credence::name_of(side))
+            judgement.suspect(
+                {Subject::direction, looks->what, group.name + ", " + name, looks->value, measure, looks->trials});
     };
     add(Side::above, found.largest, judgement.directions.largest);
     add(Side::below, found.smallest, judgement.directions.smallest);
 }
 
-void accept_state(const GroupMoments& state, const FoldSums& sums, Judgement& judgement) {
-    const DirectionsAccepted accepted = accept_directions(state, sums, {judgement.limits().margin, judgement.limits().direction});
+void accept_state(const Evidence& evidence, const GroupMoments& state, const FoldSums& sums, Judgement& judgement) {
+    if (sums.trials() < direction_trials)
+        return judgement.not_shown(
+            "directions need " + std::to_string(static_cast<int>(direction_trials)) +
+                " trials in which every two components are in the state together, and there are " +
+                std::to_string(static_cast<int>(sums.trials())),
+            true);
+    const DirectionsAccepted accepted = accept_directions(state, sums, limits_of(evidence, judgement));
     judgement.directions.range = accepted.bounds;
     if (accepted.left_out > 0)
-        judgement.not_shown("conditioning: P cannot be told from singular in " + std::to_string(accepted.left_out) + " directions");
+        judgement.not_shown("conditioning: P cannot be told from singular in " + std::to_string(accepted.left_out) +
+                                (accepted.left_out == 1 ? " direction" : " directions"),
+                            false);
     judgement.accept(accepted.acceptance, "directions");
 }
 
@@ -76,21 +106,21 @@ std::vector<int> uncertain_components(const Evidence& evidence, const std::vecto
     std::vector<int> uncertain;
     for (const int j : components) {
         const auto place = static_cast<std::size_t>(j);
-        if (place >= evidence.bias.size() || evidence.bias[place].largest_error > rounding_error) uncertain.push_back(j);
+        const bool known = place < evidence.bias.size();
+        if (known && evidence.trials > 0 && !(evidence.bias[place].run.count > 0)) continue;  // no trial has it
+        if (!known || evidence.bias[place].largest_error > rounding_error) uncertain.push_back(j);
     }
     return uncertain;
 }
 
 void judge_directions(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.blocks.empty() || evidence.blocks.front().dimension < 2 || !evidence.joint) return;
+    if (evidence.groups.empty() || evidence.groups.front().dimension < 2 || !evidence.joint) return;
     std::vector<const GroupEvidence*> groups;
-    for (const GroupEvidence& group : evidence.blocks)
+    for (const GroupEvidence& group : evidence.groups)
         if (uncertain_components(evidence, group.components).size() >= 2) groups.push_back(&group);
     if (groups.empty()) return;
-    if (!evidence.moments || static_cast<double>(evidence.moments->trials()) < direction_trials) {
-        judgement.directions.unknown = why_unknown(evidence);
-        return judgement.not_shown(judgement.directions.unknown);
-    }
+    if (!evidence.moments || static_cast<double>(evidence.moments->trials()) < direction_trials)
+        return leave_out_directions(evidence, judgement);
     judgement.directions.trials = static_cast<double>(evidence.moments->trials());
     for (std::size_t g = 0; g < groups.size(); ++g) {
         const GroupMoments moments = group_moments(*evidence.moments, uncertain_components(evidence, groups[g]->components));
@@ -99,7 +129,7 @@ void judge_directions(const Evidence& evidence, Judgement& judgement) {
         judge_group(evidence, *groups[g], moments, sums, level, judgement);
         if (g > 0) continue;
         judgement.directions.spectrum = spectrum_of(sums);
-        accept_state(moments, sums, judgement);
+        accept_state(evidence, moments, sums, judgement);
     }
 }
 

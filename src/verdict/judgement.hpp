@@ -1,12 +1,13 @@
 #pragma once
 // The verdict while its parts are judged: findings against consistency, and what was or was not shown for it.
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "statistics/directions.hpp"
 #include "statistics/mean_bounds.hpp"
 #include "verdict/consistency_parts.hpp"
-
-#include <string>
-#include <vector>
 
 namespace credence {
 
@@ -20,8 +21,9 @@ public:
     void add_bias(Finding finding);
     /// Whether something was shown to lie within its margin; `what` names it.
     void accept(Acceptance acceptance, const std::string& what);
-    /// `consistent` is withheld, for this reason.
-    void not_shown(const std::string& why);
+    /// `consistent` is withheld, for this reason, which more trials may remove or not.
+    void not_shown(const std::string& why, bool more_trials_help);
+    void suspect(Suspicion suspicion);
 
     DirectionsFound directions;
 
@@ -32,10 +34,23 @@ private:
     Limits limits_;
     std::vector<Finding> findings_;
     std::vector<std::string> reasons_, unknown_, tails_;
-    bool above_ = false, below_ = false, all_shown_ = true;
+    std::vector<Suspicion> suspicions_;
+    bool above_ = false, below_ = false, all_shown_ = true, more_trials_help_ = true;
 };
 
-/// Those of these components that are not known exactly: the others have no error to be too large or too small.
+/// Whether rounding may change a group's NEES by more than a share of the margin: then nothing is said by it.
+bool is_rounded(const GroupEvidence& group, const Limits& limits);
+
+/// A number of trials to two digits.
+double to_two_digits(double trials);
+
+/// A mean that looks wrong at 90 % and is not shown to be: how many trials would show it at `level`, one-sided. Nothing
+/// where it does not look wrong.
+std::optional<Suspicion> suspicion_of(const PositiveSample& sample, double level, double margin);
+std::optional<Suspicion> suspicion_of_bias(const Moments& z, double level, double margin);
+
+/// Those of these components that some trial has and that are not known exactly: the others have no error to be too
+/// large or too small.
 std::vector<int> uncertain_components(const Evidence& evidence, const std::vector<int>& components);
 
 /// Directions of every group of two or more components.
@@ -44,7 +59,7 @@ void judge_directions(const Evidence& evidence, Judgement& judgement);
 /// Mean errors against the margin of the bias, in sigmas.
 void judge_bias(const Evidence& evidence, Judgement& judgement);
 
-/// How many trials would do [docs/statistics.md, Advice]; 0 below 30 trials.
+/// How many trials would do [docs/statistics.md, Advice], to two digits; 0 below 30 trials.
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);
 
 }  // namespace credence

@@ -61,7 +61,7 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
         for (Assignment& one : read_line(line, origin, number, section)) {
             const auto [first, is_new] = lines.emplace(one.key, number);
             if (!is_new)
-                throw InputError(place(origin, number) + "repeated key " + printable(one.key) + " (it stands in line " +
+                throw InputError(place(origin, number) + "repeated key " + printable(one.key) + " (it is in line " +
                                  std::to_string(first->second) + " already). Keep one of them.");
             all.push_back(std::move(one));
         }

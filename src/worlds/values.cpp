@@ -38,7 +38,7 @@ std::vector<Enum> parse_names(const std::string& name, const std::string& value,
     for (const std::string& part : split_list(value)) {
         const Enum one = static_cast<Enum>(parse_choice(name, part, names));
         if (std::find(values.begin(), values.end(), one) != values.end())
-            throw invalid_value(name, value, part + " stands there twice", "Name each once");
+            throw invalid_value(name, value, part + " is given twice", "Name each once");
         values.push_back(one);
     }
     if (values.empty()) throw invalid_value(name, value, "it is empty", "Give at least one of " + joined(names));
@@ -108,7 +108,7 @@ EdgeSettings parse_graph(const std::string& value) {
             throw invalid_value("edges.graph", value, "'" + pair + "' does not go from a lower to a higher feature",
                                 "Write pairs as `0-1`");
         if (std::find(edges.list.begin(), edges.list.end(), edge) != edges.list.end())
-            throw invalid_value("edges.graph", value, "'" + pair + "' stands there twice", "Name each edge once");
+            throw invalid_value("edges.graph", value, "'" + pair + "' is given twice", "Name each edge once");
         edges.list.push_back(edge);
     }
     if (edges.list.empty()) throw invalid_value("edges.graph", value, "it is empty", "Write none for no edges");

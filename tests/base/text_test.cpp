@@ -1,4 +1,5 @@
 // Numbers and lists as text.
+// Kind: foreign files.
 
 #include "catch.hpp"
 

@@ -68,7 +68,7 @@ def check_cells(cells, expected, what):
 
 
 def check_figures(tables, arm):
-    found = table(tables, f"{arm['scenario']}: figures of a trial")
+    found = table(tables, f"{arm['scenario']}: columns of the trials")
     groups = {
         "trace_P": "trace(P), last step",
         "mean_trace_P": "trace(P), mean",
@@ -100,49 +100,49 @@ def check_figures(tables, arm):
 
 def check_blocks(tables, arm, single):
     group = "" if single else arm["arm"]
-    blocks = rows(table(tables, f"{arm['scenario']}: blocks of the state"), group)
+    groups = rows(table(tables, f"{arm['scenario']}: groups of the state"), group)
     coverage = rows(table(tables, f"{arm['scenario']}: coverage"), group)
-    shown = [block for block in arm["blocks"] if block["block"] in blocks]  # the ten farthest off
-    expect(len(shown) == min(10, len(arm["blocks"])), f"{arm['arm']}: {len(shown)} blocks are shown")
-    for block in shown:
-        name, accuracy = block["block"], block["accuracy"]
+    shown = [group for group in arm["groups"] if group["group"] in groups]  # the ten farthest off
+    expect(len(shown) == min(10, len(arm["groups"])), f"{arm['arm']}: {len(shown)} groups are shown")
+    for group in shown:
+        name, accuracy = group["group"], group["accuracy"]
         check_cells(
-            [cell for i, cell in enumerate(blocks[name]) if i not in (4, 5, 6)],
+            [cell for i, cell in enumerate(groups[name]) if i not in (4, 5, 6)],
             [
-                [block["dimension"]],
-                [block["nees_ratio"]],
-                block["ci95"],
-                [block["se"]],
+                [group["dimension"]],
+                [group["nees_ratio"]],
+                group["ci95"],
+                [group["se"]],
                 [accuracy["rmse"]],
                 [accuracy["rmse_ratio"]],
                 accuracy["rmse_ratio_ci95"],
             ],
-            f"{arm['arm']} block {name}",
+            f"{arm['arm']} group {name}",
         )
-        out = f"{block['anees']['steps_outside_simultaneous']} of {block['anees']['steps']}"
-        expect(blocks[name][4]["text"] == out, f"{arm['arm']} {name}: steps out {blocks[name][4]['text']}, not {out}")
+        out = f"{group['anees']['steps_outside_simultaneous']} of {group['anees']['steps']}"
+        expect(groups[name][4]["text"] == out, f"{arm['arm']} {name}: steps out {groups[name][4]['text']}, not {out}")
         check_cells(
-            coverage[name], [[level["mean"]] for level in block["coverage"]], f"{arm['arm']} coverage of {name}"
+            coverage[name], [[level["mean"]] for level in group["coverage"]], f"{arm['arm']} coverage of {name}"
         )
-        check_steps(tables, arm, block)
+        check_steps(tables, arm, group)
 
 
-def check_steps(tables, arm, block):
-    found = table(tables, f"{arm['scenario']}, {arm['arm']}: block {block['block']} by step")
+def check_steps(tables, arm, group):
+    found = table(tables, f"{arm['scenario']}, {arm['arm']}: group {group['group']} by step")
     expect(
-        len(found["rows"]) >= min(60, len(block["variance_ratio"])) // 2,
+        len(found["rows"]) >= min(60, len(group["variance_ratio"])) // 2,
         f"{found['caption']}: {len(found['rows'])} rows",
     )
     for row in found["rows"]:
         k = int(row["head"]) - 1
-        low, high = block["anees"]["simultaneous_band95"][k]
+        low, high = group["anees"]["simultaneous_band95"][k]
         expected = [
-            short(block["anees"]["ratio"][k]),
-            short(block["anees_se"][k]),
+            short(group["anees"]["ratio"][k]),
+            short(group["anees_se"][k]),
             None,
             None,
             short(low) + " to " + short(high),
-            short(block["variance_ratio"][k]),
+            short(group["variance_ratio"][k]),
         ]
         for cell, text in zip(row["cells"], expected):
             if text is not None:
@@ -201,15 +201,15 @@ def check_pairs(tables, arm):
 def check_hovers(charts, arm):
     """The marks of the verdict's picture and of NEES by step say what the JSON says."""
     hovers = {text for one in charts if one["title"].startswith(arm["scenario"] + ":") for text in one["hovers"]}
-    for block in arm["blocks"][:10] if len(arm["blocks"]) <= 10 else arm["blocks"][:1]:
-        low, high = block["ci95"]
+    for group in arm["groups"][:10] if len(arm["groups"]) <= 10 else arm["groups"][:1]:
+        low, high = group["ci95"]
         if low is not None:
-            says = f"{arm['arm']}, {block['block']}: NEES/dim {short(block['nees_ratio'])}"
+            says = f"{arm['arm']}, {group['group']}: NEES/dim {short(group['nees_ratio'])}"
             says += f", 95 % {short(low)} to {short(high)}"
             expect(says in hovers, f"no mark says: {says}")
-        last = len(block["anees"]["ratio"])
-        low, high = block["anees"]["simultaneous_band95"][-1]
-        says = f"{arm['arm']}, step {last}: {short(block['anees']['ratio'][-1])}"
+        last = len(group["anees"]["ratio"])
+        low, high = group["anees"]["simultaneous_band95"][-1]
+        says = f"{arm['arm']}, step {last}: {short(group['anees']['ratio'][-1])}"
         says += f" (joint band {short(low)} to {short(high)})"
         expect(says in hovers, f"no mark says: {says}")
 

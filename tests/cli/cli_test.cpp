@@ -1,4 +1,5 @@
 // The program as its user meets it.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "program.hpp"
@@ -72,10 +73,19 @@ TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file
     CHECK(here.credence("report credence.h5").exit_code == 0);
     CHECK(here.credence("report credence.h5 >/dev/full").exit_code == 1);
     CHECK(here.credence("show >/dev/full").exit_code == 1);
-    const Outcome rows = here.shell("grep -c '^ekf-straight-constant,' t.csv");
+    const auto count = [&](const std::string& pattern) {
+        return std::stoi(here.shell("grep -c '" + pattern + "' t.csv").out);
+    };
+    const int rows = count("^ekf-straight-constant,"), of_directions = count(",direction_");
     // 2 arms and their pair, 6 figures each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9
     // components.
-    CHECK(rows.out == std::to_string(18 + 2 * (8 * (2 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2)) + "\n");
+    CHECK(rows - of_directions == 18 + 2 * (8 * (3 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2));
+    // Directions of the 7 groups of two components or more, and those of all 9 components; shares are as many as
+    // matter.
+    for (const char* name : {"direction_largest:[^:,]*,", "direction_smallest:[^:,]*,", "direction_level:"})
+        CHECK(count(std::string(",") + name) == 2 * 7);
+    CHECK(count(",direction_spectrum:") == 2 * 9);
+    CHECK(count(",direction_largest:all:") > 2);
 }
 
 TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives",
@@ -107,6 +117,22 @@ TEST_CASE("cli: resume starts where there is nothing, ends at once where all is 
     CHECK_THAT(shown.out, Contains("greedy - fixed") && Contains("has these trials already"));
     check_refused(here.credence(run + "--seed 2"), "its root seed is 1, not 2");
     check_refused(here.credence(run + "--set noise.walk=0.31"), "noise.walk is 0.3 there and 0.31 here");
+}
+
+TEST_CASE("cli: resume without a scenario goes on with the study of the file, or of the journal of a run that was killed") {
+    const Workplace here;
+    const std::string run = "run " + seed_scenario("ekf-straight-constant") + " --seed 7 --set noise.walk=0.25 --quiet ";
+    REQUIRE(here.credence(run + "--trials 700 -o whole.h5").exit_code == 0);
+    REQUIRE(here.credence(run + "--trials 300 -o grown.h5").exit_code == 0);
+    REQUIRE(here.credence("run --resume --trials 700 --quiet -o grown.h5").exit_code == 0);
+    CHECK(here.shell("h5diff --exclude-path /run whole.h5 grown.h5").exit_code == 0);
+
+    CHECK(here.shell("timeout -s KILL 2 " CREDENCE_PROGRAM " " + run + "--trials 1e8 --keep aggregates -o killed.h5").exit_code != 0);
+    REQUIRE(here.shell("test -e killed.h5.journal -a ! -e killed.h5").exit_code == 0);
+    CHECK_THAT(here.credence("run --resume --dry-run -o killed.h5").out, Contains("scenarios: 1, trials of each: "));
+
+    check_refused(here.credence("run --resume --seed 7 -o grown.h5"), "--seed needs a scenario");
+    check_refused(here.credence("run --resume -o nothing.h5"), "nothing.h5: the file: cannot be found");
 }
 
 TEST_CASE("cli: a file that exists is kept unless --overwrite is given") {

@@ -22,11 +22,11 @@ TEST_CASE("cli: run --until stops at the first interim analysis for a loose goal
     const Outcome run = here.credence(loose);
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
-    CHECK_THAT(run.out, Contains("stopped at look 1, 300 trials: as precise as asked. Intervals at 97.5 %") &&
+    CHECK_THAT(run.out, Contains("stopped at interim analysis 1, 300 trials: as precise as asked. Intervals at 97.5 %") &&
                             Contains("trace_P of kf-circle-constant/fixed.kf  0.56 ± 0.16, asked") &&
                             Contains("unseen of kf-circle") && Contains("asked ± 0.5"));
     CHECK(lines(run.err) == 1);
-    CHECK_THAT(run.err, Contains("look 1, 300 trials: ") && Contains("; precise enough"));
+    CHECK_THAT(run.err, Contains("interim analysis 1, 300 trials: ") && Contains("; precise enough"));
     CHECK(here.credence(loose + "--quiet -o quiet.h5").err.empty());
     CHECK(here.shell("h5diff --exclude-path /run credence.h5 quiet.h5").exit_code == 0);
 }
@@ -36,9 +36,9 @@ TEST_CASE("cli: run --until continues to a later interim analysis, with the numb
     const Outcome run = here.credence(kalman + "--until trace_P=7%");
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
-    CHECK_THAT(run.err, Contains("look 1, 4096 trials: trace_P of kf-circle-constant/fixed.kf 0.4") &&
+    CHECK_THAT(run.err, Contains("interim analysis 1, 4096 trials: trace_P of kf-circle-constant/fixed.kf 0.4") &&
                             Contains("; about 8192 trials are needed\nlook 2, 8192 trials: "));
-    CHECK_THAT(run.out, Contains("stopped at look 2, 8192 trials") && Contains("at 98.75 %"));
+    CHECK_THAT(run.out, Contains("stopped at interim analysis 2, 8192 trials") && Contains("at 98.75 %"));
     CHECK_THAT(here.shell("h5dump -H -d /kf-circle-constant/fixed.kf/trace_P credence.h5").out, Contains("( 8192 )"));
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("cli: run --until that is not precise enough at its ceiling says so, k
                             Contains("it needs about "));
     const Outcome shown = here.credence(kalman + "--until trace_P=0.5% --trials 300 --resume");
     CHECK(shown.exit_code == 0);
-    CHECK_THAT(shown.out, Contains("stopped at look 1, 300 trials: not as precise as asked") && Contains(": not met") &&
+    CHECK_THAT(shown.out, Contains("stopped at interim analysis 1, 300 trials: not as precise as asked") && Contains(": not met") &&
                               Contains("credence.h5 has these trials already"));
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("cli: run --until with a file that has more judges its first trials, a
     const std::string before = here.read("credence.h5");
     const Outcome run = here.credence(kalman + "--until trace_P=80% --trials 300 --resume");
     CHECK(run.exit_code == 0);
-    CHECK_THAT(run.out, Contains("stopped at look 1, 300 trials") && Contains("has these trials already"));
+    CHECK_THAT(run.out, Contains("stopped at interim analysis 1, 300 trials") && Contains("has these trials already"));
     CHECK(here.read("credence.h5") == before);
 }
 

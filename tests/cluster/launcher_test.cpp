@@ -100,7 +100,7 @@ TEST_CASE("launcher: a batch script is one process, though Slurm counts its task
 }
 
 TEST_CASE("launcher: what names no shard is refused") {
-    CHECK_THAT(refused({}), Contains("invalid --shard auto (no task of a Slurm array") && Contains("give --shard I/N"));
+    CHECK_THAT(refused({}), Contains("invalid --shard auto (the variables of a task of a Slurm array") && Contains("give --shard I/N"));
     // --array=1,3,7: its numbers do not say which of the three a task is.
     for (const char* id : {"1", "3", "7"})
         CHECK_THAT(refused({{"SLURM_ARRAY_TASK_ID", id},
@@ -145,7 +145,7 @@ TEST_CASE(
     const std::string run = " run small.ini --trials 1000 --quiet ";
     const Outcome nowhere = here.credence(run + "--shard auto -o x.h5");
     CHECK(nowhere.exit_code == 2);
-    CHECK_THAT(nowhere.err, Contains("credence run: invalid --shard auto (no task of a Slurm array"));
+    CHECK_THAT(nowhere.err, Contains("credence run: invalid --shard auto (the variables of a task of a Slurm array"));
     const std::string task =
         "SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_MAX=8 SLURM_ARRAY_TASK_STEP=2 "
         "SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_ID=6 " CREDENCE_PROGRAM;

@@ -1,4 +1,5 @@
 // Files and journals of aggregates that are damaged or hostile are refused by name and place.
+// Kind: foreign files.
 
 #include "files/hdf5/read.hpp"
 #include "journal_forged.hpp"

@@ -229,26 +229,26 @@ TEST_CASE("aggregates: arms of one file are compared from totals, arms of severa
 
 TEST_CASE("aggregates: a precision is reached at the analysis at which the trials reach it; past ones are left out") {
     StoppingRule rule{{parse_goal("trace_P=2%"), parse_goal("trace_P[greedy-fixed]=0.02")}, 4096, 256};
-    const auto until = [&](Study& study, std::vector<std::int64_t>* looks = nullptr) {
-        return run_until(study, rule, {0, 1, {}}, [&](const InterimAnalysis& look) {
-            if (looks != nullptr) looks->push_back(look.trials);
+    const auto until = [&](Study& study, std::vector<std::int64_t>* analyses = nullptr) {
+        return run_until(study, rule, {0, 1, {}}, [&](const InterimAnalysis& analysis) {
+            if (analyses != nullptr) analyses->push_back(analysis.trials);
         });
     };
     Study trials = small(1, Keep::trials).study(), aggregates = small(1).study();
-    std::vector<std::int64_t> looks;
-    const InterimAnalysis expected = until(trials), found = until(aggregates, &looks);
+    std::vector<std::int64_t> analyses;
+    const InterimAnalysis expected = until(trials), found = until(aggregates, &analyses);
     CHECK(found.trials == expected.trials);
     CHECK(found.met == expected.met);
-    REQUIRE(looks.size() > 2);
+    REQUIRE(analyses.size() > 2);
     for (std::size_t i = 0; i < found.states.size(); ++i) {
         CHECK(found.states[i].name == expected.states[i].name);
         CHECK(found.states[i].half_width == Approx(expected.states[i].half_width).epsilon(1e-12));
     }
     // A study that has them already continues with the next analysis, and spends no more than its share.
     Study begun = run(300, Keep::aggregates);
-    looks.clear();
-    const InterimAnalysis later = until(begun, &looks);
-    CHECK(looks.front() == 512);
+    analyses.clear();
+    const InterimAnalysis later = until(begun, &analyses);
+    CHECK(analyses.front() == 512);
     CHECK(later.trials == expected.trials);
     CHECK(later.alpha == expected.alpha);
     rule.ceiling = 256;
@@ -259,14 +259,14 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
     const TemporaryFolder folder;
     const std::string path = folder / "x.h5";
     const auto check = [&](const Study& expected) {
-        const Snapshot look = RunWatch(path).look();
-        REQUIRE(look.scenarios.size() == expected.scenarios.size());
+        const Snapshot snapshot = RunWatch(path).snapshot();
+        REQUIRE(snapshot.scenarios.size() == expected.scenarios.size());
         for (std::size_t s = 0; s < expected.scenarios.size(); ++s) {
             const ScenarioResults& results = expected.scenarios[s];
-            CHECK(look.scenarios[s].trials == results.trials);
-            CHECK(look.scenarios[s].blocks == results.blocks.count());
+            CHECK(snapshot.scenarios[s].trials == results.trials);
+            CHECK(snapshot.scenarios[s].blocks == results.blocks.count());
             for (std::size_t a = 0; a < results.arms.size(); ++a) {
-                const WatchedArm& arm = look.scenarios[s].arms[a];
+                const WatchedArm& arm = snapshot.scenarios[s].arms[a];
                 for (std::size_t f = 0; f < arm.columns.size(); ++f) {
                     const Moments moments = moments_of(results.arms[a].aggregates.columns[watched_columns(results.columns)[f]]);
                     CHECK(arm.columns[f].count == moments.count);

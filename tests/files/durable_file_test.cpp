@@ -1,4 +1,5 @@
 // Files when the system refuses: existing files are unchanged, and no temporary ones are left.
+// Kind: foreign files.
 
 #include "files/system/durable_file.hpp"
 #include "files/system/system_file.hpp"

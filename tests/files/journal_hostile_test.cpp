@@ -1,4 +1,5 @@
 // Forged journals with right checksums: they are refused.
+// Kind: foreign files.
 
 #include "journal_forged.hpp"
 #include "of_scenarios.hpp"
@@ -130,7 +131,7 @@ TEST_CASE("journal: an invalid status is refused when it is read") {
     for (const char status : {'\x09', '\xff', '\x80'}) {
         Record bad = made.record;
         bad.values[at + 1] = status;
-        CHECK(says(made.said({bad}), "holds a status that is none"));
+        CHECK(says(made.said({bad}), "holds an unknown status"));
     }
 }
 

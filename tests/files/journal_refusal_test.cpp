@@ -1,4 +1,5 @@
 // Journals of other studies are refused, and the message names the difference.
+// Kind: foreign files.
 
 #include "journal_support.hpp"
 

@@ -1,4 +1,5 @@
 // Records for `judge`: every number against NumPy and SciPy, and the ways in which other programs write.
+// Kind: foreign files.
 
 #include "numeric/chi_square.hpp"
 
@@ -191,7 +192,7 @@ TEST_CASE("record: parts of any size, within a trial and over several, are the s
             CAPTURE(name, part_numbers);
             const std::string path = reference_path(name);
             check_record(hdf5::read_file(path, "", [&](const Handle& root) {
-                             return read_record(RecordFile(root, part_numbers), path);
+                             return read_record(RecordReader(FileSource(root), part_numbers), path);
                          }), record_series().at(name));
         }
 }
@@ -240,10 +241,10 @@ TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {
 
 TEST_CASE("record: parts hold whole chunks where they fit, so that each is decompressed once") {
     hdf5::read_file(reference_path("singles"), "", [](const Handle& root) {
-        const RecordFile file(root, 20 * 5 * (4 + 16));  // of 50 trials in chunks of 7
+        const RecordReader file(FileSource(root), 20 * 5 * (4 + 16));  // of 50 trials in chunks of 7
         CHECK(file.part_at(0, 0).trials == 14);
         CHECK(file.part_at(42, 0).trials == 8);
-        CHECK(RecordFile(root, 3 * 5 * (4 + 16)).part_at(0, 0).trials == 3);
+        CHECK(RecordReader(FileSource(root), 3 * 5 * (4 + 16)).part_at(0, 0).trials == 3);
         return 0;
     });
 }

@@ -1,5 +1,6 @@
 // Records for `judge`: what cannot be judged is refused by dataset, trial and step, in words for the program
 // that wrote it.
+// Kind: foreign files.
 
 #include "judgement_support.hpp"
 

@@ -80,11 +80,11 @@ void check_near(const std::vector<double>& ours, const std::vector<double>& reco
 }
 
 void check_blocks(const Evidence& run, const Evidence& record) {
-    REQUIRE(run.blocks.size() == record.blocks.size());
-    for (std::size_t b = 0; b < run.blocks.size(); ++b) {
-        const GroupEvidence &ours = run.blocks[b], &theirs = record.blocks[b];
-        INFO(ours.block);
-        CHECK(ours.block == theirs.block);
+    REQUIRE(run.groups.size() == record.groups.size());
+    for (std::size_t b = 0; b < run.groups.size(); ++b) {
+        const GroupEvidence &ours = run.groups[b], &theirs = record.groups[b];
+        INFO(ours.name);
+        CHECK(ours.name == theirs.name);
         check_near(ours.run.mean, theirs.run.mean);
         check_near(ours.run.standard_error, theirs.run.standard_error);
         check_near(ours.anees.ratio, theirs.anees.ratio);
@@ -123,9 +123,9 @@ TEST_CASE("judge: a run's trajectories, written as a record, give the run's evid
         for (std::size_t j = 0; j < run.bias.size(); ++j)
             for (std::size_t k = 0; k < run.bias[j].step.size(); ++k)
                 CHECK(run.bias[j].step[k].mean == Approx(record.bias[j].step[k].mean).margin(1e-9));
-        for (std::size_t k = 0; k < run.shape.distance.size(); ++k) {
-            CHECK(run.shape.distance[k] <= record.shape.distance[k] + 1e-12);  // the run has it on 4096 cells
-            CHECK(run.shape.distance[k] >= record.shape.distance[k] - 1.0 / 4096);
+        for (std::size_t k = 0; k < run.distribution.distance.size(); ++k) {
+            CHECK(run.distribution.distance[k] <= record.distribution.distance[k] + 1e-12);  // the run has it on 4096 cells
+            CHECK(run.distribution.distance[k] >= record.distribution.distance[k] - 1.0 / 4096);
         }
         CHECK(run.credibility.nci == Approx(record.credibility.nci).epsilon(1e-5));  // errors kept in single precision
         CHECK(run.credibility.inclination == Approx(record.credibility.inclination).epsilon(1e-4));

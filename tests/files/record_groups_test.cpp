@@ -51,11 +51,11 @@ TEST_CASE("record 2: without anything new it says the numbers of version 1 to th
     check_same(a.distribution_distance, b.distribution_distance);
     CHECK(a.products.count == b.products.count);
     const Evidence of_a = evidence_of(old.results, a), of_b = evidence_of(record.results, b);
-    for (std::size_t g = 0; g < of_a.blocks.size(); ++g) {
-        CHECK(of_a.blocks[g].run.mean == of_b.blocks[g].run.mean);
-        CHECK(of_a.blocks[g].run.standard_error == of_b.blocks[g].run.standard_error);
-        check_same(of_a.blocks[g].anees.ratio, of_b.blocks[g].anees.ratio);
-        check_same(of_a.blocks[g].variance_ratio, of_b.blocks[g].variance_ratio);
+    for (std::size_t g = 0; g < of_a.groups.size(); ++g) {
+        CHECK(of_a.groups[g].run.mean == of_b.groups[g].run.mean);
+        CHECK(of_a.groups[g].run.standard_error == of_b.groups[g].run.standard_error);
+        check_same(of_a.groups[g].anees.ratio, of_b.groups[g].anees.ratio);
+        check_same(of_a.groups[g].variance_ratio, of_b.groups[g].variance_ratio);
     }
     CHECK(record.results.not_judged.empty());
     CHECK(record.results.has_joint_covariance);

@@ -60,7 +60,7 @@ TEST_CASE("record 2: the whole state has at each step the dimension that it has 
     CHECK(record.trouble_count == 0);
     const ArmResults& arm = record.results.arms.front();
     const Evidence evidence = evidence_of(record.results, arm);
-    const GroupEvidence& all = evidence.blocks.front();
+    const GroupEvidence& all = evidence.groups.front();
     std::vector<double> run_means;
     for (int trial = 0; trial < trials; ++trial) run_means.push_back(0);
     for (int k = 0; k < steps; ++k) {
@@ -122,7 +122,7 @@ TEST_CASE("record 2: a group is judged at the steps where it is whole") {
             const auto at = static_cast<std::size_t>(k);
             CHECK(totals.present[at] == count);
             CHECK(std::abs(totals.sum[at].rounded() - sum) <= 1e-11 * sum);
-            CHECK(evidence.blocks[g + 1].step[at].count == static_cast<double>(count));
+            CHECK(evidence.groups[g + 1].step[at].count == static_cast<double>(count));
         }
         CHECK(totals.runs == trials);
     }
@@ -142,8 +142,8 @@ TEST_CASE("record 2: a group that no trial has at any step is not judged, and ke
     CHECK(record.trouble_count == 0);
     CHECK(totals_named(record, "nees_landmark").runs == 0);
     const Evidence evidence = evidence_of(record.results, record.results.arms.front());
-    CHECK(std::isnan(evidence.blocks[2].run.mean));
-    CHECK(evidence.blocks[0].run.count == trials);
+    CHECK(std::isnan(evidence.groups[2].run.mean));
+    CHECK(evidence.groups[0].run.count == trials);
 }
 
 TEST_CASE("record 2: a NaN that is not of a component outside the state fails its trial") {

@@ -132,7 +132,7 @@ TEST_CASE("store: what outside tools need to know is in the file") {
     CHECK(hdf5::read_text(variable("trace_P"), "units") == "dm^2 + rad^2");
     CHECK(hdf5::read_text(variable("trace_P_step_square_total"), "units") == "(dm^2 + rad^2)^2");
     CHECK(hdf5::read_text(variable("nees_pose_total"), "role") == "nees");
-    CHECK(hdf5::read_text(variable("nees_pose_total"), "figure") == "nees_pose");
+    CHECK(hdf5::read_text(variable("nees_pose_total"), "series") == "nees_pose");
     CHECK(hdf5::read_number<std::int32_t>(variable("nees_pose_total"), "dimension") == 3);
     CHECK(hdf5::read_text(variable("nis_rows_run_square_total"), "role") == "rows");
     CHECK(hdf5::read_text(variable("component"), "component_names") == "theta r_x r_y f0_x f0_y f1_x f1_y f2_x f2_y");

@@ -40,7 +40,7 @@ TEST_CASE("schema: a file of version 2 is reported, without directions") {
         CHECK(then.arms[a].consistency.directions.unknown == "directions are not in this file");
         CHECK(now.arms[a].consistency.directions.unknown.empty());
         CHECK(then.arms[a].consistency.verdict != Verdict::consistent);
-        CHECK(then.arms[a].evidence.blocks.front().run.mean == now.arms[a].evidence.blocks.front().run.mean);
+        CHECK(then.arms[a].evidence.groups.front().run.mean == now.arms[a].evidence.groups.front().run.mean);
     }
 }
 

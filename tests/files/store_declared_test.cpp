@@ -1,4 +1,5 @@
 // Results of worlds that this program does not have: the file says enough of itself, or is refused.
+// Kind: foreign files.
 
 #include "store_damage.hpp"
 #include "study_support.hpp"
@@ -32,9 +33,9 @@ Study unknown_world() {
 const std::string own_arm = "/mine/kf";
 
 const std::vector<Damage> damages{
-    {"/mine@blocks: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "blocks"); }},
-    {"/mine@blocks: `beyond 3:9` goes beyond the 4 components", [](auto& r) { set_text(r, "/mine", "blocks", "beyond 3:9"); }},
-    {"/mine@blocks: names two groups", [](auto& r) { set_text(r, "/mine", "blocks", "a 0:1, a 1:2"); }},
+    {"/mine@groups: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "groups"); }},
+    {"/mine@groups: `beyond 3:9` goes beyond the 4 components", [](auto& r) { set_text(r, "/mine", "groups", "beyond 3:9"); }},
+    {"/mine@groups: names two groups", [](auto& r) { set_text(r, "/mine", "groups", "a 0:1, a 1:2"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "p_x p_y"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "a b c \x1b"); }},
     {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_units", ""); }},

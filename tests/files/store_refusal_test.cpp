@@ -1,4 +1,5 @@
 // Damaged, foreign and hostile files are refused by name and place, before anything is computed.
+// Kind: foreign files.
 
 #include "store_damage.hpp"
 #include "of_scenarios.hpp"

@@ -61,7 +61,7 @@ TEST_CASE("stored run: a symbolic link and the file that it leads to have one jo
         CHECK_FALSE(std::filesystem::exists(here.journal));
         CHECK(says(refusal<InputError>([&] { second.begin(3); }), "another program is writing it"));
         CHECK(says(refused(real, here.asked), "another program is writing it"));
-        CHECK(RunWatch(here.path).look().state == RunState::running);
+        CHECK(RunWatch(here.path).snapshot().state == RunState::running);
     }
     run_to_end(here.path, here.asked);
     CHECK(std::filesystem::is_symlink(here.path));

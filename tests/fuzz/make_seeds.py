@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 FOR_OTHERS = ("long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
-              "flag_meanings", "figure", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
+              "flag_meanings", "series", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
 
 
 def copy_attributes(source, target):
@@ -43,12 +43,15 @@ def copy_results(path, target, libver):
         copy_group(source, copy)
 
 
-def write(path, datasets, libver=("earliest", "v108"), blocks=None, **options):
+def write(path, datasets, libver=("earliest", "v108"), blocks=None, attributes=(), **options):
     with h5py.File(path, "w", libver=libver) as file:
         for name, values in datasets.items():
             file.create_dataset(name, data=values, track_times=False, **options)
         if blocks is not None:
             file.attrs["blocks"] = blocks
+        for name, value in attributes:
+            *place, name = name.rsplit("/", 1)
+            (file[place[0]] if place else file).attrs[name] = value
 
 
 def noise(poses, features, edges=0):
@@ -127,12 +130,44 @@ def write_judge(folder):
     write(folder / "ragged.h5", ragged)
 
 
+def write_second(folder):
+    """Records of version 2: a state that grows, parts without the whole, poses, rows in groups."""
+    version = ("record_version", np.int32(2))
+    grows = record(3, 4, 3, 2)
+    grows["error"][:, :2, 2] = np.nan
+    grows["covariance"][:, :2, 2, :] = grows["covariance"][:, :2, :, 2] = np.nan
+    grows["time"] = np.arange(4) / 2
+    write(folder / "second-grows.h5", grows, attributes=[
+        version, ("groups", "outer 0 2, first 0"), ("row_groups", "gps 0, baro 1"),
+        ("component_names", "x, y, z"), ("component_units", ["m", "m", "rad"])])
+    variances = record(3, 2, 3)
+    variances["covariance"] = np.full((3, 2, 3), 1.5)
+    variances["steps"] = np.array([2, 1, 2], dtype=np.int32)
+    write(folder / "second-variances.h5", variances, attributes=[version, ("groups", "pose 0:2")])
+    parts = {"error": record(2, 2, 3)["error"],
+             "group/pose/covariance": record(2, 2, 2)["covariance"].astype("f4"),
+             "group/rest/nees": np.ones((2, 2))}
+    write(folder / "second-parts.h5", parts,
+          attributes=[version, ("groups", "pose 1 0, rest 2"), ("group/rest/nees/dimension", np.int32(1))])
+    write(folder / "second-nees.h5", {"nees": np.ones((2, 3))}, attributes=[version, ("nees/dimension", np.int32(2))])
+    poses = {name: np.zeros((2, 2, 8)) for name in ("truth", "estimate")}
+    poses["truth"][..., 3] = poses["estimate"][..., 3] = 1
+    poses["estimate"][..., 0] = 0.5
+    poses["covariance"] = record(2, 2, 7)["covariance"]
+    write(folder / "second-poses.h5", poses, attributes=[
+        version, ("manifold", "SE3 x R1"), ("chart", "local"), ("quaternion", "wxyz")])
+    plane = {name: np.full((1, 2, 4), 0.25) for name in ("truth", "estimate")}
+    plane["covariance"] = record(1, 2, 4)["covariance"]
+    write(folder / "second-plane.h5", plane, attributes=[version, ("manifold", "SE2 x SO2"), ("chart", "global")])
+
+
 def main(results, seeds):
     for path in sorted(results.glob("*.h5")):
         copy_results(path, seeds / "results" / path.name, ("v108", "v108"))
     copy_results(results / "heading.h5", seeds / "results" / "earliest.h5", ("earliest", "v108"))
     write_noise(seeds / "noise")
     write_judge(seeds / "judge")
+    write_second(seeds / "judge")
 
 
 if __name__ == "__main__":

@@ -123,10 +123,10 @@ def ratio_numbers(a, b):
 
 
 def resolved_basis(predicted, limits):
-    """Orthonormal basis of the directions in which P can be told from 0 to 1 % of the margin."""
+    """Orthonormal basis of the directions in which rounding may change a ratio by a tenth of the margin at most."""
     d = len(predicted)
     values, vectors = np.linalg.eigh(predicted * d / np.trace(predicted))
-    kept = values >= d * limits.epsilon / (0.01 * limits.margin)
+    kept = values >= d * limits.epsilon / (0.1 * limits.margin)
     return np.eye(d) if kept.all() else vectors[:, kept]
 
 

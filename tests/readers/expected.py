@@ -32,7 +32,7 @@ def of_study(arm):
     yield f"{path}/status", "failed", arm["failed"]
     yield f"{path}/status", "attribute:flag_meanings", STATUS
     yield f"{path}/status_pose", "missing", arm["trials"] - arm["failed"]
-    whole = arm["blocks"][0]
+    whole = arm["groups"][0]
     for step in (1, 10, 19):
         yield f"{path}/nees_total", f"ratio_at_{step}", whole["anees"]["ratio"][step - 1]
     yield f"{path}/nees_covered", "share_at_7", whole["coverage"][2]["share"][6]

@@ -1,5 +1,5 @@
 """Prints chi_square.json: errors and innovations drawn by NumPy for a filter that is right, and what SciPy says of them:
-every figure of the evidence, computed from the values and not from totals, for tests/calibration_reference_test.cpp.
+every figure of the evidence, computed from the values and not from totals, for tests/calibration_reference_long_test.cpp.
 
     /usr/bin/python3 tests/reference/make_chi_square.py > tests/reference/chi_square.json
 
@@ -14,7 +14,7 @@ from record_figures import CELLS, LEVELS, plain
 from scipy import stats
 
 TRIALS, STEPS, N, ROWS = 200, 5, 4, 4
-BLOCKS = {"all": (0, 4), "pose": (0, 2), "features": (2, 4)}
+GROUPS = {"all": (0, 4), "pose": (0, 2), "features": (2, 4)}
 SIGMA = np.array([0.5, 0.75, 1, 1.5, 3])  # by step, the same for every component: P = sigma^2 I
 LAGS = STEPS - 1
 
@@ -66,13 +66,13 @@ def accuracy(errors):
             "interval": np.sqrt(np.array(t_interval(squares.mean(axis=1), 0.05)) / predicted.mean())}
 
 
-def block(name, errors):
-    first, end = BLOCKS[name]
+def group(name, errors):
+    first, end = GROUPS[name]
     dimension = end - first
     nees = ((errors[:, :, first:end] / SIGMA[None, :, None]) ** 2).sum(axis=2)
     over_steps = nees.mean(axis=1) / dimension
-    return {"block": name, "dimension": dimension, "run": moments(over_steps), "interval": t_interval(over_steps, 0.05),
-            "corrected_interval": t_interval(over_steps, 0.05 / (len(BLOCKS) * (STEPS + 1))),
+    return {"group": name, "dimension": dimension, "run": moments(over_steps), "interval": t_interval(over_steps, 0.05),
+            "corrected_interval": t_interval(over_steps, 0.05 / (len(GROUPS) * (STEPS + 1))),
             "step": [moments(nees[:, k] / dimension) for k in range(STEPS)],
             "anees": banded(nees.sum(axis=0), np.full(STEPS, TRIALS * dimension)),
             "coverage": [coverage(nees, dimension, level) for level in LEVELS],
@@ -101,7 +101,7 @@ def whiteness(innovations):
     return result
 
 
-def shape(nees):
+def distribution(nees):
     exact = [stats.kstest(nees[:, k], stats.chi2(N).cdf) for k in range(STEPS)]
     cells = []
     for k in range(STEPS):
@@ -132,6 +132,6 @@ bias = [{"component": j, "step": [moments(errors[:, k, j] / SIGMA[k]) for k in r
 
 print(json.dumps(plain({
     "trials": TRIALS, "sigma": SIGMA, "draws": draws.ravel(), "innovations": innovations.ravel(),
-    "blocks": [block(name, errors) for name in BLOCKS], "nis": nis(innovations), "whiteness": whiteness(innovations),
-    "bias": bias, "shape": shape(whole), "credibility": credibility(errors, whole),
+    "groups": [group(name, errors) for name in GROUPS], "nis": nis(innovations), "whiteness": whiteness(innovations),
+    "bias": bias, "distribution": distribution(whole), "credibility": credibility(errors, whole),
 })).replace("], \"", "],\n\""))

@@ -2,6 +2,7 @@
 
 #include "catch.hpp"
 
+#include "report/format.hpp"
 #include "report/html/chart.hpp"
 #include <credence/histogram.hpp>
 #include "report/html/html.hpp"
@@ -29,7 +30,7 @@ TEST_CASE("html: any text from outside is escaped") {
           "b");
     CHECK(escaped("a\xC2\x9B\xE2\x80\xAE").text() == "a\xEF\xBF\xBD\xEF\xBF\xBD");  // CSI, right to left
     CHECK(escaped("\xFF<").text() == "\xEF\xBF\xBD&lt;");  // not UTF-8
-    CHECK_THAT(HtmlTable("<b>", {"<i>"}).row(escaped("<u>"), {}).html().text(),
+    CHECK_THAT(html_of(Table("<b>", {"<i>"}).row({"<u>"})).text(),
                !Contains("<b>") && !Contains("<i>") && !Contains("<u>"));
     Svg svg(10, 10);
     svg.text({1, 1}, Anchor::start, "<b>");
@@ -38,14 +39,14 @@ TEST_CASE("html: any text from outside is escaped") {
 }
 
 TEST_CASE("html: a number is shown rounded and carries its exact value") {
-    CHECK(number_html(0.1, 2).text() == "<data value=\"0.1\">0.10</data>");
-    CHECK(number_html(none, 2).text() == "-");
-    CHECK_THAT(number_html(1.0 / 3, 4).text(), Contains("\"0.3333333333333333\">0.3333<"));
-    CHECK(interval_html({none, 1}, 2).text() == "-");
+    CHECK(html_of(number_cell(0.1, 2)).text() == "<data value=\"0.1\">0.10</data>");
+    CHECK(html_of(number_cell(none, 2)).text() == "-");
+    CHECK_THAT(html_of(number_cell(1.0 / 3, 4)).text(), Contains("\"0.3333333333333333\">0.3333<"));
+    CHECK(html_of(interval_cell({none, 1}, 2)).text() == "-");
     CHECK(short_number(0.123456) == "0.12346");
     CHECK(short_number(276634) == "276634");
     CHECK(short_number(3) == "3");
-    CHECK(count_html(12345678).text() == "<data value=\"12345678\">12345678</data>");
+    CHECK(html_of(count_cell(12345678)).text() == "<data value=\"12345678\">12345678</data>");
     CHECK(short_number(2e-7) == "2e-07");
     CHECK(short_number(none) == "-");
     CHECK(with_powers("dm^2 + rad^2") == "dm² + rad²");

@@ -39,11 +39,11 @@ TEST_CASE("charts: the evidence is the series' totals over their dimension") {
     for (const ArmResults& arm : results.arms) {
         const Evidence evidence = evidence_of(results, arm);
         REQUIRE(evidence.charts.size() == 2);
-        for (const auto& [chart, name, block, dimension] :
+        for (const auto& [chart, name, group, dimension] :
              {std::tuple{evidence.charts[0], "nees_invariant", "all", 9},
               std::tuple{evidence.charts[1], "nees_invariant_pose", "pose", 3}}) {
             CHECK(chart.chart == "invariant");
-            CHECK(chart.block == block);
+            CHECK(chart.name == group);
             CHECK(chart.dimension == dimension);
             const SeriesTotals& totals = arm.totals[column_named(results, name)];
             double sum = 0;
@@ -55,7 +55,7 @@ TEST_CASE("charts: the evidence is the series' totals over their dimension") {
             }
             CHECK(chart.run.mean == Approx(sum).epsilon(1e-13));
         }
-        CHECK(evidence.charts[0].run.mean != evidence.blocks[0].run.mean);
+        CHECK(evidence.charts[0].run.mean != evidence.groups[0].run.mean);
     }
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("charts: text, JSON and CSV show them; scenarios without another estim
     CHECK_THAT(report_text(report), Contains("NEES/dim in the invariant chart, not judged: all "));
     const Json arm = Json::parse(report_json(report)).front();
     REQUIRE(arm["other_charts"].size() == 2);
-    CHECK(arm["other_charts"][1]["block"] == "pose");
+    CHECK(arm["other_charts"][1]["group"] == "pose");
     CHECK(arm["other_charts"][1]["chart"] == "invariant");
     CHECK(arm["other_charts"][1]["nees_ratio"].get<double>() == report.arms[0].evidence.charts[1].run.mean);
     CHECK_THAT(report_csv(report), Contains(",nees_per_dimension_invariant:all,") &&

@@ -4,6 +4,7 @@
 #include "program.hpp"
 #include "study_support.hpp"
 
+#include "report/format.hpp"
 #include "report/html/html.hpp"
 #include <credence/report.hpp>
 #include <credence/text.hpp>
@@ -97,7 +98,7 @@ TEST_CASE("page: every number of the JSON is on it") {
     const std::set<std::string> shown = numbers_of(page_of(small_report()));
     std::vector<std::string> missing;
     Json changed = arms.front();  // the test itself: a missing number is detected
-    changed["blocks"][0]["anees"]["ratio"][2] = 0.123456789;
+    changed["groups"][0]["anees"]["ratio"][2] = 0.123456789;
     missing_numbers(changed, "", shown, missing);
     CHECK(missing.size() == 1);
 }
@@ -107,7 +108,7 @@ TEST_CASE("page: verdicts, findings and why come before tables, tables before ch
     const std::string page = page_of(report);
     std::size_t last = 0;
     for (const char* part :
-         {"<h1>", "<h2 id=\"verdict\">", "<h3>Findings</h3>", "<h3>Figures</h3>", "<h3>Is the covariance right?</h3>",
+         {"<h1>", "<h2 id=\"verdict\">", "<h3>Findings</h3>", "<h3>Columns of the trials</h3>", "<h3>Is the covariance right?</h3>",
           ">Charts</h3>", "<h3>Scenario</h3>", "<h2 id=\"provenance\">", "<h2 id=\"again\">", "<h2 id=\"terms\">"}) {
         CAPTURE(part);
         CHECK(count_of(page, part) == 1);

@@ -1,14 +1,13 @@
 // The report has the values of the study.
 
-#include "catch.hpp"
-#include "study_support.hpp"
-
+#include <cmath>
 #include <credence/error.hpp>
 #include <credence/report.hpp>
-
+#include <credence/text.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
+#include "catch.hpp"
+#include "study_support.hpp"
 
 using namespace credence;
 using Catch::Contains;
@@ -93,18 +92,33 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
     CHECK(arms[0]["failed"] == 300);
     CHECK(arms[0]["trace_P"]["mean"].is_null());
     CHECK(arms[1]["trace_P"]["mean"] == report.arms[1].columns[column_trace_P].summary.mean);
-    CHECK(arms[1]["blocks"].size() == 8);  // all, pose, heading, position, features, 3 features
+    CHECK(arms[1]["groups"].size() == 8);  // all, pose, heading, position, features, 3 features
     const std::string csv = report_csv(report);
     std::int64_t evidence_rows = 0;
     for (const ArmReport& arm : report.arms) {
         const auto count = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
         const Evidence& e = arm.evidence;
         const std::int64_t steps = e.steps;
-        // A block: NEES, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by step; NCI and I2.
-        evidence_rows += count(e.blocks) * (2 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
-                         count(e.bias) * steps + steps + 2;
+        // A direction of a group: its ratio and a row for each of its components; a level a group; the spectrum.
+        const DirectionsFound& directions = arm.consistency.directions;
+        std::int64_t direction_rows = count(directions.largest) + count(directions.spectrum);
+        for (const auto* list : {&directions.largest, &directions.smallest})
+            for (const DirectionOfGroup& one : *list) direction_rows += 1 + count(one.loadings);
+        if (arm.failed_trials() < 100) CHECK(direction_rows > 20);
+        // A group: NEES, its rounding, RMSE, and by step NEES, four levels of coverage and the variance; NIS and by
+        // step; NCI and I2.
+        evidence_rows += count(e.groups) * (3 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
+                         count(e.bias) * steps + steps + 2 + direction_rows;
     }
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6 * (4 + 2) + evidence_rows);
+    const DirectionOfGroup& largest = report.arms[1].consistency.directions.largest.front();
+    CHECK_THAT(csv, Contains(",direction_largest:all,1," + to_text(largest.ratio) + ",," +
+                             to_text(largest.interval.low) + "," + to_text(largest.interval.high) + ","));
+    CHECK_THAT(csv, Contains(",direction_largest:all:" + largest.loadings[0].component + ",1," +
+                             to_text(largest.loadings[0].weight)));
+    const Json same = arms[1]["directions"]["largest"][0];
+    CHECK(same["loadings"][largest.loadings[0].component] == largest.loadings[0].weight);
+    CHECK(same["level"] == largest.level);
     CHECK_THAT(csv, Contains("heading-straight,fixed.ekf,300,300,trace_P,dm^2 + rad^2,,,,,,,,,"));
 }
 

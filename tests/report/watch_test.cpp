@@ -28,21 +28,21 @@ TEST_CASE("watch: after every commit a snapshot has the means of the trials so f
         run_and_die(path, asked, 1);
         const std::string bytes = bytes_of(journal);
         const std::int64_t before = bytes_read();
-        const Snapshot look = watch.look();
+        const Snapshot snapshot = watch.snapshot();
         const std::int64_t appended = static_cast<std::int64_t>(bytes.size()) - size, read = bytes_read() - before;
         size += appended;
         CAPTURE(commit, size, appended, read);
         // Once for the checksum and once for the columns; the header, and what /proc says.
         CHECK(read < 2 * appended + 20000);
-        CHECK(look.state == RunState::running);
-        CHECK(look.trials == 1100);
-        CHECK(look.trials_asked() == 2200);
+        CHECK(snapshot.state == RunState::running);
+        CHECK(snapshot.trials == 1100);
+        CHECK(snapshot.trials_asked() == 2200);
         CHECK(bytes_of(journal) == bytes);
-        check_says(look, opened(path, asked).study());
+        check_says(snapshot, opened(path, asked).study());
     }
     CHECK(size > 1000000);
     run_to_end(path, asked);
-    const Snapshot last = watch.look();
+    const Snapshot last = watch.snapshot();
     CHECK(last.state == RunState::complete);
     CHECK(last.trials_done() == 2200);
     check_says(last, read_results(path).study);
@@ -63,13 +63,13 @@ TEST_CASE("watch: a journal cut anywhere is followed up to its last whole commit
         const auto whole = std::upper_bound(ends.begin(), ends.end(), size) - ends.begin();
         const std::int64_t trials[] = {0, 0, 256, 512, 600};
         CAPTURE(size);
-        for (const Snapshot& look : {growing.look(), RunWatch(path).look()}) {
-            CHECK(look.state == (whole == 0 ? RunState::begun : RunState::running));
-            CHECK(look.trials_done() == trials[whole]);
+        for (const Snapshot& snapshot : {growing.snapshot(), RunWatch(path).snapshot()}) {
+            CHECK(snapshot.state == (whole == 0 ? RunState::begun : RunState::running));
+            CHECK(snapshot.trials_done() == trials[whole]);
         }
     }
     put_bytes(journal, bytes);
-    check_says(growing.look(), undisturbed(asked));
+    check_says(growing.snapshot(), undisturbed(asked));
 }
 
 TEST_CASE("watch: a shard is shown with the trials that it will have") {
@@ -80,16 +80,16 @@ TEST_CASE("watch: a shard is shown with the trials that it will have") {
     RunWatch watch(path);
     const auto check = [&](std::int64_t trials, std::int64_t trials_asked, std::int64_t blocks,
                            std::int64_t blocks_asked, const Shard& shard) {
-        const Snapshot look = watch.look();
-        const WatchedScenario& scenario = look.scenarios.front();
-        CAPTURE(watch_text(look));
+        const Snapshot snapshot = watch.snapshot();
+        const WatchedScenario& scenario = snapshot.scenarios.front();
+        CAPTURE(watch_text(snapshot));
         CHECK(scenario.trials == trials);
         CHECK(scenario.trials_asked == trials_asked);
         CHECK(scenario.blocks == blocks);
         CHECK(scenario.blocks_asked == blocks_asked);
-        CHECK(look.shard.index == shard.index);
-        CHECK(look.shard.count == shard.count);
-        return look;
+        CHECK(snapshot.shard.index == shard.index);
+        CHECK(snapshot.shard.count == shard.count);
+        return snapshot;
     };
     check(0, 708, 0, 3, {1, 4});
     run_and_die(path, part, 2);
@@ -111,18 +111,18 @@ TEST_CASE("watch: a study that is grown is shown with what its file has, whose p
         const Asked asked = small(trials);
         for (const std::int64_t blocks : {0, 1, 2}) {
             run_and_die(path, asked, blocks);
-            const Snapshot look = watch.look();
+            const Snapshot snapshot = watch.snapshot();
             CAPTURE(trials, blocks);
-            CHECK(look.state == RunState::running);
-            CHECK(look.trials == trials);
-            check_says(look, opened(path, asked).study());
+            CHECK(snapshot.state == RunState::running);
+            CHECK(snapshot.trials == trials);
+            check_says(snapshot, opened(path, asked).study());
         }
         const std::string bytes = bytes_of(journal);
         run_to_end(path, asked);
-        check_says(watch.look(), undisturbed(asked));
+        check_says(watch.snapshot(), undisturbed(asked));
         // Killed between naming the file and removing the journal: all is in the file, the journal's blocks too.
         put_bytes(journal, bytes);
-        const Snapshot late = RunWatch(path).look();
+        const Snapshot late = RunWatch(path).snapshot();
         CHECK(late.state == RunState::running);
         CHECK(late.trials_done() >= opened(path, asked).study().scenarios.front().trials);
         std::filesystem::remove(journal);

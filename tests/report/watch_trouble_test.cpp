@@ -9,7 +9,7 @@ using namespace credence::test;
 namespace {
 
 std::string refused_look(const std::string& path) {
-    return refusal<InputError>([&] { RunWatch(path).look(); });
+    return refusal<InputError>([&] { RunWatch(path).snapshot(); });
 }
 
 }  // namespace
@@ -19,19 +19,19 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
     const std::string path = folder / "x.h5";
     RunWatch watch(path);
     run_and_die(path, small(1000), 3);
-    CHECK(watch.look().trials_done() == 3 * block_size);
-    CHECK_THAT(watch_text(watch.look()), Catch::Contains("\ntranslation-circle: not run yet, 1000 trials asked for\n"));
+    CHECK(watch.snapshot().trials_done() == 3 * block_size);
+    CHECK_THAT(watch_text(watch.snapshot()), Catch::Contains("\ntranslation-circle: not run yet, 1000 trials asked for\n"));
     Asked other = small(1000);
     for (const std::uint64_t seed : {2u, 3u, 3u}) {
         other.root_seed = seed;
         std::filesystem::remove(path + ".journal");
         run_and_die(path, other, 4);
-        check_says(watch.look(), opened(path, other).study());
+        check_says(watch.snapshot(), opened(path, other).study());
     }
     run_and_die(path, small(1000), 5, Start::overwrite);
-    const Snapshot look = watch.look();
-    CHECK(look.trials_done() == 1000 + block_size);  // all of the first scenario, whose last block is a partial one
-    check_says(look, opened(path, small(1000)).study());
+    const Snapshot snapshot = watch.snapshot();
+    CHECK(snapshot.trials_done() == 1000 + block_size);  // all of the first scenario, whose last block is a partial one
+    check_says(snapshot, opened(path, small(1000)).study());
 }
 
 TEST_CASE("watch: a journal that begins like the last one but has other commits is read from its start") {
@@ -40,15 +40,15 @@ TEST_CASE("watch: a journal that begins like the last one but has other commits 
     const std::string path = folder / "x.h5";
     RunWatch watch(path);
     run_and_die(path, asked, 2);  // a block a commit
-    CHECK(watch.look().trials_done() == 2 * block_size);
+    CHECK(watch.snapshot().trials_done() == 2 * block_size);
     std::filesystem::remove(path + ".journal");
     {
         StoredRun run = opened(path, asked);
         run_study(run.study(), {asked.trials, 1, {}, {}, after(4), &run.begin(asked.trials, 2)});  // two
     }
-    const Snapshot look = watch.look();
-    CHECK(look.trials_done() == 4 * block_size);
-    check_says(look, opened(path, asked).study());
+    const Snapshot snapshot = watch.snapshot();
+    CHECK(snapshot.trials_done() == 4 * block_size);
+    check_says(snapshot, opened(path, asked).study());
 }
 
 TEST_CASE("watch: a run is neither locked out nor kept waiting, and nothing is written") {
@@ -62,7 +62,7 @@ TEST_CASE("watch: a run is neither locked out nor kept waiting, and nothing is w
         const std::optional<JournalBytes> held = JournalBytes::open(journal);
         REQUIRE(held);
         StoredRun run = opened(path, asked);  // takes the lock
-        CHECK(RunWatch(path).look().trials_done() == 2 * block_size);
+        CHECK(RunWatch(path).snapshot().trials_done() == 2 * block_size);
     }
     CHECK(bytes_of(journal) == bytes);
     CHECK(std::filesystem::last_write_time(journal) == changed);
@@ -73,10 +73,10 @@ TEST_CASE("watch: failed trials are counted and left out of every mean") {
     const TemporaryFolder folder;
     const Study study = made_up_study();
     write_results(folder / "x.h5", study, run_facts);
-    const Snapshot look = RunWatch(folder / "x.h5").look();
-    CHECK(look.state == RunState::complete);
+    const Snapshot snapshot = RunWatch(folder / "x.h5").snapshot();
+    CHECK(snapshot.state == RunState::complete);
     for (std::size_t s = 0; s < study.scenarios.size(); ++s)
-        for (const WatchedArm& arm : look.scenarios[s].arms) {
+        for (const WatchedArm& arm : snapshot.scenarios[s].arms) {
             CHECK(arm.failed == 1);
             CHECK(arm.diverged == 1);
             CHECK(arm.columns.front().count == 4);
@@ -88,7 +88,7 @@ TEST_CASE("watch: where there is nothing, or nothing of credence, it says so") {
     const std::string path = folder / "x.h5";
     CHECK(says(refused_look(path), "nothing to watch: neither " + path + " nor " + path + ".journal is there. Check"));
     put_bytes(path + ".journal", "credence-jour");
-    CHECK(RunWatch(path).look().state == RunState::begun);
+    CHECK(RunWatch(path).snapshot().state == RunState::begun);
     put_bytes(path + ".journal", "something else altogether");
     CHECK(says(refused_look(path), "is not a journal of credence"));
     std::filesystem::remove(path + ".journal");
@@ -100,7 +100,7 @@ TEST_CASE("watch: where there is nothing, or nothing of credence, it says so") {
     std::filesystem::remove(path);
     RunWatch watch(path);
     run_and_die(path, small(1000), 2);
-    CHECK(watch.look().state == RunState::running);
+    CHECK(watch.snapshot().state == RunState::running);
     std::filesystem::remove(path + ".journal");
-    CHECK(says(refusal<InputError>([&] { watch.look(); }), "nothing to watch"));
+    CHECK(says(refusal<InputError>([&] { watch.snapshot(); }), "nothing to watch"));
 }

@@ -1,4 +1,5 @@
 // Sweeps: values and ranges, grids, names of points, and places as text.
+// Kind: foreign files.
 
 #include "catch.hpp"
 
@@ -76,7 +77,7 @@ TEST_CASE("sweep: what is no sweep is refused in one line that says why") {
         {{"noise.heading=1:1:3"}, "the ends of '1:1:3' are the same"},
         {{"noise.heading=0:2:3:log"}, "a range with log has ends above 0"},
         {{"noise.heading=-1:-2:3:log"}, "a range with log has ends above 0"},
-        {{"noise.heading=0.1,1e-1"}, "0.1 stands there twice"},
+        {{"noise.heading=0.1,1e-1"}, "0.1 is given twice"},
         {{"noise.heading=0.1", "noise.heading=0.2"}, "invalid --sweep=noise.heading=0.2 (noise.heading is swept twice)"},
         {{"scenario.name=a,b"}, "scenario.name changes nothing"},
         {{"scenario.title=a,b"}, "scenario.title changes nothing"},
@@ -130,7 +131,7 @@ TEST_CASE("sweep: a place survives the way through text, its numbers written as 
     CHECK(parse_coordinates("").empty());
     const std::vector<std::pair<std::string, std::string>> cases{
         {"noise.heading", "'noise.heading' names no key"}, {"1, noise.heading=1", "'1' names no key"},
-        {"noise.heading=", "noise.heading has no value"}, {"a.b=1, a.b=2", "a.b stands there twice"},
+        {"noise.heading=", "noise.heading has no value"}, {"a.b=1, a.b=2", "a.b is given twice"},
         {"scenario.name=a", "no grid can be over scenario.name"}};
     for (const auto& one : cases)
         CHECK_THAT(refusal([&] { parse_coordinates(one.first); }), Contains("invalid sweep.at=") && Contains(one.second));

@@ -1,4 +1,5 @@
 // Recorded noise: its layout, and the draws that it must cover.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "support.hpp"

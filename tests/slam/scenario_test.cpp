@@ -1,4 +1,5 @@
 // Every key of a scenario: its default, what it takes, what it refuses, and the way to text and back.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "support.hpp"

@@ -24,9 +24,9 @@ std::vector<StoppingGoal> goals(const std::vector<std::string>& texts) {
     return goals;
 }
 
-std::vector<std::string> names(const InterimAnalysis& look) {
+std::vector<std::string> names(const InterimAnalysis& analysis) {
     std::vector<std::string> names;
-    for (const GoalState& state : look.states) names.push_back(state.name);
+    for (const GoalState& state : analysis.states) names.push_back(state.name);
     return names;
 }
 
@@ -53,10 +53,10 @@ TEST_CASE("stopping: analyses are at 4096 trials, then doubled, and at the ceili
 TEST_CASE("stopping: the half-width is Student's at confidence 1 - 0.05 / 2^j") {
     // t sd / sqrt(8), with 7 degrees of freedom from the closed form of P(|T| <= t) [Abramowitz and Stegun 1964,
     // 26.7.3], solved by bisection. SciPy 1.10 agrees to 3e-9: its t.isf is no more exact there.
-    const int looks[] = {1, 2, 5};
+    const int analyses[] = {1, 2, 5};
     const double expected[] = {4.986172565902114, 5.853194823490297, 8.777396347882043};
     for (int i = 0; i < 3; ++i) {
-        const GoalState state = decide(sample, parse_goal("x=5.9"), looks[i]);
+        const GoalState state = decide(sample, parse_goal("x=5.9"), analyses[i]);
         CHECK(state.count == 8);
         CHECK_THAT(state.half_width, WithinRel(expected[i], 1e-9));
         CHECK(state.met() == (i < 2));
@@ -79,9 +79,9 @@ TEST_CASE("stopping: failed trials are left out, and too few values never suffic
 
 TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of the first trials only") {
     const Study study = small_study(1, 700, 2);
-    const InterimAnalysis look = look_at(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
-    CHECK(look.alpha == 0.00625);
-    CHECK(names(look) == std::vector<std::string>{
+    const InterimAnalysis analysis = analysis_of(study, goals({"trace_P=1%", "unseen[greedy-fixed]=1"}), 512, 3);
+    CHECK(analysis.alpha == 0.00625);
+    CHECK(names(analysis) == std::vector<std::string>{
         "trace_P of heading-straight/fixed.ekf", "trace_P of heading-straight/greedy.ekf",
         "trace_P of translation-circle/fixed.kf", "trace_P of translation-circle/greedy.kf",
         "unseen of heading-straight/greedy.ekf - fixed.ekf", "unseen of translation-circle/greedy.kf - fixed.kf"});
@@ -91,12 +91,12 @@ TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of t
         trace[i] = arms[1].columns[column_trace_P][i];
         difference[i] = arms[1].columns[column_unseen][i] - arms[0].columns[column_unseen][i];
     }
-    CHECK_THAT(look.states[3].mean, WithinRel(summarise(trace).mean, 1e-14));  // rounding of 512 terms
-    CHECK_THAT(look.states[3].half_width,
+    CHECK_THAT(analysis.states[3].mean, WithinRel(summarise(trace).mean, 1e-14));  // rounding of 512 terms
+    CHECK_THAT(analysis.states[3].half_width,
                WithinRel(t_quantile(0.00625, 511) * summarise(trace).standard_error, 1e-14));
-    CHECK(look.states[5].mean == summarise(difference).mean);  // of whole numbers
-    CHECK(names(look_at(study, goals({"unseen[greedy.kf-fixed]=1"}), 512, 1)).size() == 1);
-    CHECK_THROWS_AS(look_at(study, goals({"unseen=1"}), 701, 1), std::logic_error);
+    CHECK(analysis.states[5].mean == summarise(difference).mean);  // of whole numbers
+    CHECK(names(analysis_of(study, goals({"unseen[greedy.kf-fixed]=1"}), 512, 1)).size() == 1);
+    CHECK_THROWS_AS(analysis_of(study, goals({"unseen=1"}), 701, 1), std::logic_error);
 }
 
 TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm and in no pair") {
@@ -104,14 +104,14 @@ TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm an
     auto& columns = study.scenarios[0].arms[0].columns;
     columns[column_status][7] = static_cast<double>(Status::non_finite);
     columns[column_unseen][7] = -1;  // its fill value, a number
-    const InterimAnalysis look = look_at(study, goals({"unseen=1", "unseen[greedy-fixed]=1"}), 300, 1);
-    CHECK(look.states[0].count == 299);
-    CHECK(look.states[1].count == 300);
-    CHECK(look.states[4].count == 299);
-    CHECK(look.states[5].count == 300);
+    const InterimAnalysis analysis = analysis_of(study, goals({"unseen=1", "unseen[greedy-fixed]=1"}), 300, 1);
+    CHECK(analysis.states[0].count == 299);
+    CHECK(analysis.states[1].count == 300);
+    CHECK(analysis.states[4].count == 299);
+    CHECK(analysis.states[5].count == 300);
     double sum = 0;
     for (std::size_t i = 0; i < 300; ++i) sum += i == 7 ? 0 : columns[column_unseen][i];
-    CHECK(look.states[0].mean == sum / 299);
+    CHECK(analysis.states[0].mean == sum / 299);
 }
 
 TEST_CASE("stopping: the number of trials that it takes is predicted from the spread so far") {
@@ -153,44 +153,44 @@ TEST_CASE("stopping: a study stops at the first analysis that is precise enough,
     // Looks at 256, 512, 1024 and 2000.
     REQUIRE(half_width(256, 1) > 1.05 * half_width(512, 2));
     REQUIRE(half_width(512, 2) > 1.05 * half_width(1024, 3));
-    const auto stopped = [&](double width, std::vector<std::int64_t>& looks) {
+    const auto stopped = [&](double width, std::vector<std::int64_t>& analyses) {
         DeformableSettings scenario = small_scenarios()[0];
         scenario.arms.controllers = {Controller::fixed};
         Study study = new_study({scenario}, 1);
         const InterimAnalysis last = run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
-                                    [&](const InterimAnalysis& look) { looks.push_back(look.trials); });
+                                    [&](const InterimAnalysis& analysis) { analyses.push_back(analysis.trials); });
         CHECK(study.scenarios[0].trials == last.trials);  // no trials beyond the analysis
         CHECK(study.complete);
         return last;
     };
-    std::vector<std::int64_t> looks;
-    CHECK(stopped(1.01 * half_width(256, 1), looks).met);
-    CHECK(looks == std::vector<std::int64_t>{256});
-    looks.clear();
-    const InterimAnalysis third = stopped(1.01 * half_width(1024, 3), looks);
+    std::vector<std::int64_t> analyses;
+    CHECK(stopped(1.01 * half_width(256, 1), analyses).met);
+    CHECK(analyses == std::vector<std::int64_t>{256});
+    analyses.clear();
+    const InterimAnalysis third = stopped(1.01 * half_width(1024, 3), analyses);
     CHECK(third.met);
     CHECK(third.number == 3);
     CHECK_THAT(third.states[0].half_width, WithinRel(half_width(1024, 3), 1e-14));
-    CHECK(looks == std::vector<std::int64_t>{256, 512, 1024});
-    looks.clear();
-    const InterimAnalysis ceiling = stopped(0.5 * half_width(2000, 4), looks);
+    CHECK(analyses == std::vector<std::int64_t>{256, 512, 1024});
+    analyses.clear();
+    const InterimAnalysis ceiling = stopped(0.5 * half_width(2000, 4), analyses);
     CHECK_FALSE(ceiling.met);
     CHECK(ceiling.number == 4);
-    CHECK(looks == std::vector<std::int64_t>{256, 512, 1024, 2000});
-    looks.clear();
-    CHECK(stopped(1.01 * half_width(2000, 4), looks).met);  // the analysis at the ceiling counts too
-    CHECK(looks.back() == 2000);
+    CHECK(analyses == std::vector<std::int64_t>{256, 512, 1024, 2000});
+    analyses.clear();
+    CHECK(stopped(1.01 * half_width(2000, 4), analyses).met);  // the analysis at the ceiling counts too
+    CHECK(analyses.back() == 2000);
 }
 
 TEST_CASE("stopping: all goals must be met") {
     Study study = new_study(small_scenarios(), 1);
     const StoppingRule rule{goals({"unseen=1", "trace_P=1e-9"}), 300, 64};
-    const InterimAnalysis look = run_until(study, rule, {0, 2, {}});
-    CHECK_FALSE(look.met);
-    CHECK(look.trials == 300);
-    CHECK(look.states[0].met());
-    CHECK(widest(look).name.starts_with("trace_P of"));
-    CHECK_FALSE(look_at(study, goals({"trace_P=1e-9", "unseen=1"}), 300, 1).met);
+    const InterimAnalysis analysis = run_until(study, rule, {0, 2, {}});
+    CHECK_FALSE(analysis.met);
+    CHECK(analysis.trials == 300);
+    CHECK(analysis.states[0].met());
+    CHECK(widest(analysis).name.starts_with("trace_P of"));
+    CHECK_FALSE(analysis_of(study, goals({"trace_P=1e-9", "unseen=1"}), 300, 1).met);
 }
 
 TEST_CASE("stopping: any number of threads and any history stop at the same analysis, with the same study") {
@@ -198,26 +198,26 @@ TEST_CASE("stopping: any number of threads and any history stop at the same anal
     const auto grown = [&](std::int64_t had, int threads) {
         Study study = new_study(small_scenarios(), 1);
         if (had > 0) run_study(study, {had, 2, {}});
-        const InterimAnalysis look = run_until(study, rule, {0, threads, {}});
-        return std::pair(look, study);
+        const InterimAnalysis analysis = run_until(study, rule, {0, threads, {}});
+        return std::pair(analysis, study);
     };
-    const auto [look, study] = grown(0, 1);
-    REQUIRE(look.met);
-    REQUIRE(look.number > 1);
-    REQUIRE(look.trials < 2000);
+    const auto [analysis, study] = grown(0, 1);
+    REQUIRE(analysis.met);
+    REQUIRE(analysis.number > 1);
+    REQUIRE(analysis.trials < 2000);
     for (const int threads : {2, 5}) CHECK(same_results(grown(0, threads).second, study));
     for (const std::int64_t had : {1, 64, 65, 300}) CHECK(same_results(grown(had, 2).second, study));
     const auto [late, longer] = grown(2500, 2);  // more than the analysis needs: the same result, and not reduced
-    CHECK(late.trials == look.trials);
-    CHECK(late.states[0].half_width == look.states[0].half_width);
+    CHECK(late.trials == analysis.trials);
+    CHECK(late.states[0].half_width == analysis.states[0].half_width);
     CHECK(same_results(longer, small_study(1, 2500, 2)));
 }
 
 TEST_CASE("stopping: scenarios of different length are first brought to the longest") {
     Study study = new_study(small_scenarios(), 1);
     study.scenarios[1] = small_study(1, 300, 2).scenarios[1];
-    const InterimAnalysis look = run_until(study, {goals({"unseen=1e9"}), 3000, 64}, {0, 2, {}});
-    CHECK(look.trials == 64);
+    const InterimAnalysis analysis = run_until(study, {goals({"unseen=1e9"}), 3000, 64}, {0, 2, {}});
+    CHECK(analysis.trials == 64);
     CHECK(same_results(study, small_study(1, 300, 2)));
 }
 

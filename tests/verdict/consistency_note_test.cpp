@@ -26,14 +26,14 @@ Evidence evidence_of_values(const std::vector<double>& nees) {
     Evidence evidence;
     evidence.trials = static_cast<std::int64_t>(nees.size());
     evidence.steps = 1;
-    GroupEvidence block;
-    block.block = "all";
-    block.dimension = 1;
-    block.run = moments_from_sums(evidence.trials, sum, squares);
-    block.step = {block.run};
-    block.anees.degrees = {static_cast<double>(nees.size())};
-    evidence.blocks = {block};
-    evidence.shape = {{nan_value}, {nan_value}, false};
+    GroupEvidence group;
+    group.name = "all";
+    group.dimension = 1;
+    group.run = moments_from_sums(evidence.trials, sum, squares);
+    group.step = {group.run};
+    group.anees.degrees = {static_cast<double>(nees.size())};
+    evidence.groups = {group};
+    evidence.distribution = {{nan_value}, {nan_value}, false};
     return evidence;
 }
 

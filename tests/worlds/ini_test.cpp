@@ -1,4 +1,5 @@
 // Scenario files.
+// Kind: foreign files.
 
 #include "catch.hpp"
 #include "of_scenarios.hpp"
@@ -65,7 +66,7 @@ TEST_CASE("ini: a refusal names the file, the line and the key") {
     CHECK(starts(refusal("[noise]\nwalk = 1\nodometry = -1\n"), "x.ini:3: invalid noise.odometry=-1 (must be at least 0"));
     CHECK(starts(refusal("[noise]\nwalk = nan\n"), "x.ini:2: invalid noise.walk=nan"));
     CHECK(starts(refusal("\n[noise]\nwlak = 1\n"), "x.ini:3: unknown key noise.wlak. Did you mean noise.walk?"));
-    CHECK(starts(refusal("[noise]\nwalk = 1\n\nwalk = 2\n"), "x.ini:4: repeated key noise.walk (it stands in line 2 already)"));
+    CHECK(starts(refusal("[noise]\nwalk = 1\n\nwalk = 2\n"), "x.ini:4: repeated key noise.walk (it is in line 2 already)"));
     CHECK(starts(refusal("[noise]\nwalk = 1\n[sensor]\n[noise]\nwalk = 2\n"), "x.ini:5: repeated key noise.walk"));
     CHECK(starts(refusal("[noise]\njust some words\n"), "x.ini:2: broken line `just some words`"));
     CHECK(starts(refusal("[noise\nwalk = 1\n"), "x.ini:1: broken section `[noise`"));

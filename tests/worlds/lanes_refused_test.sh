@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 
 # compiles NAME CODE: whether a filter with this line compiles; its messages are in NAME.log.
 compiles() {
-  printf '%s\n' '#include <credence/own_lanes.hpp>' 'using namespace credence; using Real = Lane<4>;' \
+  printf '%s\n' '#include <credence/own_trial.hpp>' 'using namespace credence; using Real = Lane<4>;' \
     'Real filter(Real x, Real y, Eigen::Matrix<Real, 5, 5> S, Eigen::Matrix<Real, 5, 1> b) {' "$2" \
     'return x + y + S(0) + b(0); }' >"$work/$1.cpp"
   "$cxx" -std=c++20 -fsyntax-only -w -I"$source/include" -isystem "$eigen" "$work/$1.cpp" >"$work/$1.log" 2>&1

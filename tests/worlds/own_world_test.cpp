@@ -140,11 +140,11 @@ TEST_CASE("own world: the filter that knows its model is consistent, the calm on
     CHECK(report.arms[0].consistency.verdict == Verdict::consistent);
     CHECK(report.arms[1].consistency.verdict == Verdict::optimistic);
     const Evidence &kf = report.arms[0].evidence, &calm = report.arms[1].evidence;
-    REQUIRE(kf.blocks.size() == 3);
-    CHECK(kf.blocks[2].block == "velocity");
+    REQUIRE(kf.groups.size() == 3);
+    CHECK(kf.groups[2].name == "velocity");
     // Means of 4000 trials, each over 29 correlated steps: five standard errors.
-    for (const GroupEvidence& block : kf.blocks) CHECK(std::abs(block.run.mean - 1) < 5 * block.run.standard_error);
-    CHECK(calm.blocks[2].run.mean > 2 * calm.blocks[1].run.mean / 1.5);
+    for (const GroupEvidence& group : kf.groups) CHECK(std::abs(group.run.mean - 1) < 5 * group.run.standard_error);
+    CHECK(calm.groups[2].run.mean > 2 * calm.groups[1].run.mean / 1.5);
     CHECK(kf.nis.front().ratio == Approx(1).margin(0.02));
     CHECK(std::abs(kf.whiteness.front().correlation) < kf.whiteness.front().simultaneous_bound);
     CHECK(calm.whiteness.front().correlation > 5 * calm.whiteness.front().bound);

@@ -3,7 +3,7 @@
 // program finds those that it has. credence_add_world compiles each with CREDENCE_TARGET_OBJECT, CREDENCE_TARGET and
 // CREDENCE_LANES.
 
-#include <credence/own_lanes.hpp>
+#include <credence/detail/own_simulation.hpp>
 
 #include <memory>
 #include <vector>

@@ -88,7 +88,7 @@ def _of_scenario(scenario: Scenario, options: argparse.Namespace) -> Iterator[Jo
         "verdicts": [{"credence": options.credence}],
         "map": [{"credence": options.credence, "arm": arm} for arm in arms],
         "nees": [{}], "nis": [{}] if "nis" in first.series else [], "coverage": [{}],
-        "shape": [{}] if "nees_cells" in first else [], "accuracy": [{}],
+        "chi_square": [{}] if "nees_cells" in first else [], "accuracy": [{}],
         "distribution": [{"column": column} for column in columns],
         "paired": [{"column": column} for column in columns if pairs(list(arms))],
         "place": [{"trial": options.trial, "credence": options.credence}] if "place" in (options.kind or []) else []}

@@ -17,12 +17,12 @@ from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
 from .place import place
-from .steps import accuracy, coverage, nees, nis, shape
+from .steps import accuracy, chi_square, coverage, nees, nis
 from .style import Picture as Picture
 from .trials import distribution, paired
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
-    "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "shape": shape,
+    "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "chi_square": chi_square,
     "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map,
     "place": place}
 OF_TRIAL: dict[str, Callable[..., Picture]] = {
@@ -47,7 +47,7 @@ def plot(
         What to draw: of a study its first scenario, or its first grid where it has one; of a path to a trajectory file
         its first trial.
     kind : str, optional
-        Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``shape``, ``accuracy``, ``distribution``,
+        Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``chi_square``, ``accuracy``, ``distribution``,
         ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default),
         ``errors``, ``nees``.
     scenario : str, optional

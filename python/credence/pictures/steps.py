@@ -111,7 +111,7 @@ def coverage(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
     return picture
 
 
-def shape(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) -> Picture:
+def chi_square(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) -> Picture:
     """How the NEES of the whole state lies in its chi-square, over all steps: level at 1 if it is consistent."""
     picture, axis = style.one_panel(width)
     tails = {}

@@ -39,15 +39,15 @@ def _verdicts(parts: dict[str, dict[str, Any]]) -> str:
 def verdicts(scenario: Scenario, arms: Arms, width: float, *, credence: str | None = None) -> Picture:
     """NEES / dimension of every component group over all steps, with its 95 % interval, beside the margin."""
     parts = _report(scenario, arms, credence)
-    groups = [block["block"] for block in next(iter(parts.values()))["blocks"]]
+    groups = [group["group"] for group in next(iter(parts.values()))["groups"]]
     picture, axis = style.one_panel(width, min(220, 36 + len(groups) * max(6, 1.8 * len(parts))))
     margin, drawn = next(iter(parts.values()))["margin"], []
     axis.axvspan(1 - margin, 1 + margin, color=style.BAND, linewidth=0)
     axis.axvline(1, color=style.GREY, linewidth=0.6)
     entries = []
     for index, (name, part) in enumerate(parts.items()):
-        mean = np.array([block["nees_ratio"] for block in part["blocks"]], dtype=float)
-        ends = np.array([block["ci95"] for block in part["blocks"]], dtype=float).T
+        mean = np.array([group["nees_ratio"] for group in part["groups"]], dtype=float)
+        ends = np.array([group["ci95"] for group in part["groups"]], dtype=float).T
         bar = axis.errorbar(mean, np.arange(len(groups)) + style.aside(index, len(parts)), linestyle="none",
                             xerr=np.nan_to_num(np.abs(ends - mean)), elinewidth=1.1, **style.arm_mark(arms[name][0]))
         entries.append((bar, f"{name}: {part['verdict']}"))
@@ -68,8 +68,8 @@ def ratio_map(scenario: Scenario, arms: Arms, width: float, *, arm: str | None =
     """NEES / dimension of one arm by component group and step: blue is pessimistic, red is optimistic."""
     name = arm or next(iter(arms))
     part = _report(scenario, {name: arms[name]}, credence)[name]
-    groups = [block["block"] for block in part["blocks"]]
-    ratios = np.array([block["anees"]["ratio"] for block in part["blocks"]], dtype=float)
+    groups = [group["group"] for group in part["groups"]]
+    ratios = np.array([group["anees"]["ratio"] for group in part["groups"]], dtype=float)
     logs = np.log2(np.where(ratios > 0, ratios, np.nan))
     picture, axis = style.one_panel(width, 40 + 6.5 * len(groups))
     reach = float(np.clip(np.nanmax(np.abs(logs)), 0.25, DARKEST))

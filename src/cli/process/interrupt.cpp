@@ -13,11 +13,12 @@ constexpr int caught[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr int exit_at_once = 130;
 
 std::atomic<int> signal_that_came = 0;
+std::atomic<bool> ends_process = true;  ///< at the second signal
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch nothing else");
 struct sigaction before[3];
 
 extern "C" void note_signal(int signal) {
-    if (signal_that_came.exchange(signal) != 0) _exit(exit_at_once);
+    if (signal_that_came.exchange(signal) != 0 && ends_process) _exit(exit_at_once);
 }
 
 }  // namespace
@@ -36,6 +37,8 @@ Interrupt::Interrupt() {
 Interrupt::~Interrupt() {
     for (int i = 0; i < 3; ++i) sigaction(caught[i], &before[i], nullptr);
 }
+
+void Interrupt::keep_process() { ends_process = false; }
 
 bool Interrupt::came() { return signal_that_came != 0; }
 

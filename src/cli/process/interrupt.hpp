@@ -5,8 +5,8 @@
 
 namespace credence::cli {
 
-/// While an object exists, SIGINT, SIGTERM and SIGHUP ask the run to stop, and a second one of them ends the program at
-/// once with 130. A SIGHUP that was ignored, as nohup arranges it, stays ignored.
+/// While an object exists, SIGINT, SIGTERM and SIGHUP ask the run to stop, and a second one of them ends the process at
+/// once with 130, unless another program's process does the work. A SIGHUP that was ignored, as nohup arranges it, stays ignored.
 class Interrupt {
 public:
     Interrupt();
@@ -16,6 +16,8 @@ public:
 
     /// Whether a signal was received. Can be called from any thread.
     static bool came();
+    /// From now on a second signal only asks again: the process is not the program's own.
+    static void keep_process();
     /// Its name, such as SIGINT.
     static std::string name();
 };

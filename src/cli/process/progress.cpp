@@ -9,6 +9,8 @@ namespace credence::cli {
 
 namespace {
 
+std::function<void(const Progress&)> progress_listener;
+
 std::string formatted(const char* format, double value, const char* unit) {
     char text[64];
     std::snprintf(text, sizeof text, format, value);
@@ -24,11 +26,14 @@ std::string bytes_text(std::int64_t bytes) {
     return formatted("%.1f", value / 1e9, " GB");
 }
 
+void listen_to_progress(std::function<void(const Progress&)> listener) { progress_listener = std::move(listener); }
+
 ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {
     next_ = terminal_ ? 0.5 : 10;
 }
 
 void ProgressLine::operator()(const Progress& progress) {
+    if (progress_listener) return progress_listener(progress);
     if (quiet_ || progress.done == 0 || progress.seconds < next_) return;
     next_ = progress.seconds + (terminal_ ? 0.2 : 30);
     const double rate = static_cast<double>(progress.done) / progress.seconds;

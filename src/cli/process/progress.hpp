@@ -5,7 +5,13 @@
 
 #include "report/format.hpp"
 
+#include <functional>
+
 namespace credence::cli {
+
+/// Receives all progress from now on, whether a command is quiet or not, and the line is not drawn; empty: the line is.
+/// For those who call the program's functions from a program of their own.
+void listen_to_progress(std::function<void(const Progress&)> listener);
 
 class ProgressLine {
 public:

@@ -52,10 +52,25 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed) {
     return scenarios;
 }
 
+/// Takes the study from the file that is resumed.
+void take_stored(const Parsed& parsed, RunRequest& request) {
+    for (const char* option : {"set", "sweep", "seed", "keep"})
+        if (parsed.has(option))
+            throw InputError(std::string("--") + option +
+                             " needs a scenario (without one, the study in the file goes on as it is). Name one or more "
+                             "SCENARIO.ini, or leave it out.");
+    StudyDefinition stored = stored_definition(request.output);
+    request.scenarios = std::move(stored.scenarios);
+    request.root_seed = stored.root_seed;
+    request.keep = stored.keep;
+}
+
 }  // namespace
 
 RunRequest read_request(const Parsed& parsed) {
-    if (parsed.arguments.empty()) throw InputError("no scenario given. Name one or more SCENARIO.ini.");
+    const bool is_stored = parsed.arguments.empty() && parsed.has("resume");
+    if (parsed.arguments.empty() && !is_stored)
+        throw InputError("no scenario given. Name one or more SCENARIO.ini, or resume with --resume -o FILE.h5.");
     RunRequest request;
     request.options.shard = shard_of(parsed);
     request.output = output_of(parsed, request.options.shard);
@@ -75,7 +90,8 @@ RunRequest read_request(const Parsed& parsed) {
         throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
                          "one of them.");
     for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::scenario});
-    request.scenarios = scenarios_of(parsed);
+    if (is_stored) take_stored(parsed, request);
+    else request.scenarios = scenarios_of(parsed);
     return request;
 }
 

@@ -20,11 +20,11 @@ namespace credence::cli {
 const Command& run_command() {
     static const Command command{
         "run",
-        "SCENARIO.ini... [options]",
+        "SCENARIO.ini... [options] | --resume -o FILE.h5 [options]",
         "run a study: every scenario under all its arms",
         "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
         "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
-        "everything kept (exit code 3), and --resume goes on.\n",
+        "everything kept (exit code 3), and --resume goes on; without scenarios, with those of the file.\n",
         {output_option("results file (default credence.h5)", "FILE.h5"),
          {"trials", "N", "trials of each scenario (default 10000)"},
          {"seed", "N", "root seed, from 0 to 2^64 - 1 (default 1)"},
@@ -32,7 +32,7 @@ const Command& run_command() {
          set_option(),
          sweep_option(),
          {"until", "METRIC=HALFWIDTH",
-          "stop at the first look (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
+          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
           "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
           "all must be met",
           true},

@@ -29,18 +29,18 @@ std::string interval_text(const GoalState& state) {
     return formatted("%.*f", decimals, state.mean) + " ± " + formatted("%.*f", decimals, state.half_width);
 }
 
-std::string prediction_text(const InterimAnalysis& look, const StoppingRule& rule) {
-    const std::optional<std::int64_t> trials = predicted_trials(look, rule);
+std::string prediction_text(const InterimAnalysis& analysis, const StoppingRule& rule) {
+    const std::optional<std::int64_t> trials = predicted_trials(analysis, rule);
     if (!trials) return unreachable;
     return "about " + std::to_string(*trials) + " trials are needed" +
            (*trials > rule.ceiling ? ", more than the ceiling of " + std::to_string(rule.ceiling) : "");
 }
 
-std::string look_text(const InterimAnalysis& look, const StoppingRule& rule) {
-    const GoalState& state = widest(look);
-    return "look " + std::to_string(look.number) + ", " + std::to_string(look.trials) + " trials: " + state.name + " " +
+std::string analysis_text(const InterimAnalysis& analysis, const StoppingRule& rule) {
+    const GoalState& state = widest(analysis);
+    return "interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) + " trials: " + state.name + " " +
            interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " +
-           (look.met ? "precise enough" : prediction_text(look, rule));
+           (analysis.met ? "precise enough" : prediction_text(analysis, rule));
 }
 
 /// Progress over all interim analyses: trials that have been run, of those that the last analysis predicted.
@@ -53,14 +53,14 @@ public:
         line_({before_.done + now.done, before_.done + std::max(now.total, expected_), before_.seconds + now.seconds});
     }
 
-    void look_done(const InterimAnalysis& look, std::size_t scenarios) {
+    void analysis_done(const InterimAnalysis& analysis, std::size_t scenarios) {
         before_.done += now_.done;
         before_.seconds += now_.seconds;
         now_ = {};
-        const std::int64_t most = std::min(predicted_trials(look, rule_).value_or(rule_.ceiling), rule_.ceiling);
-        expected_ = (most - look.trials) * static_cast<std::int64_t>(scenarios);
+        const std::int64_t most = std::min(predicted_trials(analysis, rule_).value_or(rule_.ceiling), rule_.ceiling);
+        expected_ = (most - analysis.trials) * static_cast<std::int64_t>(scenarios);
         line_.finish();
-        if (!quiet_) say(wrapped(look_text(look, rule_)) + "\n");
+        if (!quiet_) say(wrapped(analysis_text(analysis, rule_)) + "\n");
     }
 
 private:
@@ -78,24 +78,24 @@ InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunO
     AnalysisProgress progress(request.quiet, rule);
     options.progress = [&](const Progress& now) { progress(now); };
     return run_until(study, rule, options,
-                     [&](const InterimAnalysis& look) { progress.look_done(look, study.scenarios.size()); });
+                     [&](const InterimAnalysis& analysis) { progress.analysis_done(analysis, study.scenarios.size()); });
 }
 
-std::string stopping_text(const InterimAnalysis& look) {
-    std::string text = "stopped at look " + std::to_string(look.number) + ", " + std::to_string(look.trials) +
-                       " trials: " + (look.met ? "" : "not ") + "as precise as asked. Intervals at " +
-                       formatted("%.*g", 6, 100 * (1 - look.alpha)) + " %, so that all looks together keep 95 %:\n";
+std::string stopping_text(const InterimAnalysis& analysis) {
+    std::string text = "stopped at interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) +
+                       " trials: " + (analysis.met ? "" : "not ") + "as precise as asked. Intervals at " +
+                       formatted("%.*g", 6, 100 * (1 - analysis.alpha)) + " %, so that all analyses together keep 95 %:\n";
     std::size_t width = 0;
-    for (const GoalState& state : look.states) width = std::max(width, state.name.size());
-    for (const GoalState& state : look.states)
+    for (const GoalState& state : analysis.states) width = std::max(width, state.name.size());
+    for (const GoalState& state : analysis.states)
         text += "  " + state.name + std::string(width - state.name.size() + 2, ' ') + interval_text(state) +
                 ", asked ± " + width_text(state.allowed) + (state.met() ? "" : ": not met") + "\n";
     return text;
 }
 
-std::string imprecision_text(const InterimAnalysis& look, const StoppingRule& rule) {
-    const GoalState& state = widest(look);
-    const std::optional<std::int64_t> trials = predicted_trials(look, rule);
+std::string imprecision_text(const InterimAnalysis& analysis, const StoppingRule& rule) {
+    const GoalState& state = widest(analysis);
+    const std::optional<std::int64_t> trials = predicted_trials(analysis, rule);
     const std::string needed = trials ? "it needs about " + std::to_string(*trials) + " trials" : unreachable;
     return "not as precise as asked at the ceiling of " + std::to_string(rule.ceiling) + " trials: " + state.name +
            " is " + interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " + needed + ".";

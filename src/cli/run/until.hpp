@@ -10,9 +10,9 @@ namespace credence::cli {
 InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunOptions options);
 
 /// The analysis and the count of trials at which the run stopped, and the interval of every requested mean there.
-std::string stopping_text(const InterimAnalysis& look);
+std::string stopping_text(const InterimAnalysis& analysis);
 
 /// The line for a run that reached its ceiling first: the widest mean, and the trials that it would need.
-std::string imprecision_text(const InterimAnalysis& look, const StoppingRule& rule);
+std::string imprecision_text(const InterimAnalysis& analysis, const StoppingRule& rule);
 
 }  // namespace credence::cli

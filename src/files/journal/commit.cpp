@@ -73,7 +73,7 @@ void get_values(ByteReader& from, ColumnType type, double* values, std::size_t c
         else if (type == ColumnType::integer) values[i] = from.get<std::int32_t>();
         else values[i] = from.get<std::int8_t>();
         if (type == ColumnType::status && !(values[i] >= 0 && values[i] < static_cast<double>(status_names().size())))
-            throw BadBytes("a status that is none");
+            throw BadBytes("an unknown status");
     }
 }
 

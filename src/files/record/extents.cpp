@@ -7,8 +7,6 @@ namespace credence {
 using hdf5::Error;
 using hdf5::Extents;
 using hdf5::extents_text;
-using hdf5::Handle;
-using hdf5::RealDataset;
 
 namespace {
 
@@ -33,7 +31,7 @@ std::string permuted(const std::string& name, std::size_t rank) {
 
 }  // namespace
 
-void require_squares(const PlacedExtents& vectors, const RealDataset& matrices, const std::string& vector_name,
+void require_squares(const PlacedExtents& vectors, const RecordDataset& matrices, const std::string& vector_name,
                      const std::string& matrix_name) {
     const Extents &v = vectors.extents, &M = matrices.extents();
     if (are_squares(M, v)) return;
@@ -58,7 +56,7 @@ void require_between(const PlacedExtents& dataset, std::size_t axis, hsize_t mos
                     "Write fewer of them, such as a part of the state, or every tenth step");
 }
 
-void require_same_steps(const PlacedExtents& vectors, const RealDataset& dataset, std::size_t rank,
+void require_same_steps(const PlacedExtents& vectors, const RecordDataset& dataset, std::size_t rank,
                         const std::string& written) {
     const Extents &e = vectors.extents, &v = dataset.extents();
     if (v.size() == rank && v.size() + 1 >= e.size() && std::equal(e.begin(), e.end() - 1, v.begin())) return;
@@ -66,24 +64,11 @@ void require_same_steps(const PlacedExtents& vectors, const RealDataset& dataset
                 "does not fit: it is " + extents_text(v) + " and " + vectors.place + " " + extents_text(e), written);
 }
 
-std::optional<RealDataset> optional_dataset(const Handle& root, const std::string& name, const std::string& other) {
-    const bool there = hdf5::has_link(root, name);
-    if (!there && hdf5::has_link(root, other))
-        throw Error(hdf5::place_of(root, name), "is missing, but " + hdf5::place_of(root, other) + " is there",
-                    "Write both, or neither");
-    if (!there) return std::nullopt;
-    return std::optional<RealDataset>(std::in_place, root, name);
-}
-
-const Handle& with_dataset(const Handle& root, const std::string& name) {
-    if (!hdf5::has_link(root, name)) return root;
-    const std::string place = hdf5::place_of(root, name);
-    const Handle object(H5Oopen(root.id(), hdf5::hard(root, name).c_str(), H5P_DEFAULT), H5Oclose, place,
-                        "cannot be opened");
-    if (H5Iget_type(object.id()) == H5I_GROUP)
-        throw Error(place, "is a group, not a dataset, as Octave's save makes it",
-                    "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
-    return root;
+DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other) {
+    if (source.has(name)) return source.open(name);
+    if (source.has(other))
+        throw Error(record_place(name), "is missing, but " + record_place(other) + " is there", "Write both, or neither");
+    return nullptr;
 }
 
 }  // namespace credence

@@ -1,9 +1,8 @@
 #pragma once
 // Checks of the extents of a record's datasets against each other. All functions throw hdf5::Error.
 
-#include "files/hdf5/slab.hpp"
+#include "files/record/source.hpp"
 
-#include <optional>
 #include <string>
 
 namespace credence {
@@ -15,24 +14,20 @@ struct PlacedExtents {
     hdf5::Extents extents;
     std::string place;
 };
-inline PlacedExtents placed(const hdf5::RealDataset& dataset) { return {dataset.extents(), dataset.place()}; }
+inline PlacedExtents placed(const RecordDataset& dataset) { return {dataset.extents(), dataset.place()}; }
 
 /// Throws where the matrices are not [..., n, n] to the vectors' [..., n]. The names are for the remedy.
-void require_squares(const PlacedExtents& vectors, const hdf5::RealDataset& matrices, const std::string& vector_name,
+void require_squares(const PlacedExtents& vectors, const RecordDataset& matrices, const std::string& vector_name,
                      const std::string& matrix_name);
 
 /// Throws unless the extent along an axis is from 1 to `most`.
 void require_between(const PlacedExtents& dataset, std::size_t axis, hsize_t most, const std::string& of_what);
 
 /// Throws unless the dataset has the trials and steps of `vectors` [..., n]; `written` is how to write it.
-void require_same_steps(const PlacedExtents& vectors, const hdf5::RealDataset& dataset, std::size_t rank,
+void require_same_steps(const PlacedExtents& vectors, const RecordDataset& dataset, std::size_t rank,
                         const std::string& written);
 
-/// The dataset, if it is there; throws if only `other` is.
-std::optional<hdf5::RealDataset> optional_dataset(const hdf5::Handle& root, const std::string& name,
-                                                  const std::string& other);
-
-/// Throws where `name` is a group, as Octave's own `save -hdf5` writes variables.
-const hdf5::Handle& with_dataset(const hdf5::Handle& root, const std::string& name);
+/// The dataset; null where neither it nor `other` is there. Throws where only one of them is.
+DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other);
 
 }  // namespace credence

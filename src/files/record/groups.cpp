@@ -3,7 +3,6 @@
 #include <credence/scenario.hpp>
 #include <credence/text.hpp>
 
-#include "files/hdf5/slab.hpp"
 
 #include <algorithm>
 
@@ -13,7 +12,7 @@ namespace {
 
 using hdf5::Error;
 
-constexpr std::size_t most_blocks = 1000;
+constexpr std::size_t most_groups = 1000;
 const std::string example = "Write the blocks as NAME FIRST:END, counted from 0 and END not included, such as "
                             "`pose 0:3, feature_1 3:5` for components 0, 1, 2 and 3, 4";
 
@@ -95,8 +94,8 @@ std::vector<NamedList> parse_lists(const std::string& text, const Listed& of, co
         for (std::size_t i = 1; i < words.size(); ++i) add_members(words[i], entry, of, place, list.members);
         if (std::ranges::any_of(lists, [&](const NamedList& other) { return other.name == list.name; }))
             throw Error(place, "names two groups " + quoted(list.name), "Give each group a name of its own");
-        if (lists.size() == most_blocks)
-            throw Error(place, "has more than " + std::to_string(most_blocks) + " groups", "Leave some out");
+        if (lists.size() == most_groups)
+            throw Error(place, "has more than " + std::to_string(most_groups) + " groups", "Leave some out");
         lists.push_back(std::move(list));
     }
     return lists;
@@ -113,11 +112,11 @@ ComponentGroup as_group(NamedList list) {
 }
 
 /// The texts of a list, of which there must be one for each component.
-std::vector<std::string> read_list(const hdf5::Handle& root, const std::string& name, int n) {
-    if (!hdf5::has_attribute(root, name)) return {};
-    std::vector<std::string> texts = split_list(hdf5::read_any_text(root, name));
+std::vector<std::string> read_list(const RecordSource& source, const std::string& name, int n) {
+    if (!source.has_attribute(name)) return {};
+    std::vector<std::string> texts = split_list(source.text(name));
     if (texts.size() != static_cast<std::size_t>(n))
-        throw Error(hdf5::attribute_place(root, name),
+        throw Error(record_attribute_place(name),
                     "has " + std::to_string(texts.size()) + " entries, and the state has " + std::to_string(n) +
                         " components",
                     "Write one for each component, with commas between them");
@@ -127,16 +126,16 @@ std::vector<std::string> read_list(const hdf5::Handle& root, const std::string& 
 }  // namespace
 
 std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place) {
-    std::vector<ComponentGroup> blocks{{"all", 0, n}};
+    std::vector<ComponentGroup> groups{{"all", 0, n}};
     for (const std::string& entry : split_list(text)) {
-        const ComponentGroup block = parse_block(entry, n, place);
-        if (std::any_of(blocks.begin(), blocks.end(), [&](const ComponentGroup& b) { return b.name == block.name; }))
-            throw Error(place, "names two blocks " + quoted(block.name), "Give each block a name of its own");
-        if (blocks.size() > most_blocks)
-            throw Error(place, "has more than " + std::to_string(most_blocks) + " blocks", "Leave some out");
-        blocks.push_back(block);
+        const ComponentGroup group = parse_block(entry, n, place);
+        if (std::ranges::find(groups, group.name, &ComponentGroup::name) != groups.end())
+            throw Error(place, "names two blocks " + quoted(group.name), "Give each block a name of its own");
+        if (groups.size() > most_groups)
+            throw Error(place, "has more than " + std::to_string(most_groups) + " blocks", "Leave some out");
+        groups.push_back(group);
     }
-    return blocks;
+    return groups;
 }
 
 void require_group_name(const std::string& name, const std::string& what, const std::string& place) {
@@ -165,35 +164,35 @@ std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std
     return groups;
 }
 
-std::vector<ComponentGroup> read_blocks(const hdf5::Handle& root, int n) {
-    const std::string name = "blocks", place = hdf5::attribute_place(root, name);
-    if (hdf5::has_attribute(root, name)) return parse_blocks(hdf5::read_any_text(root, name), n, place);
-    if (hdf5::has_link(root, name) || H5Aexists_by_name(root.id(), "error", name.c_str(), H5P_DEFAULT) > 0)
+std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n) {
+    const std::string name = "blocks", place = record_attribute_place(name);
+    if (source.has_attribute(name)) return parse_blocks(source.text(name), n, place);
+    if (source.has(name) || source.has_attribute(name, "error"))
         throw Error(place, "is missing, but there is a `blocks` elsewhere", "Make it an attribute of the root, `/`");
     return parse_blocks("", n, place);
 }
 
-std::vector<ComponentGroup> read_groups(const hdf5::Handle& root, int n) {
-    const bool groups = hdf5::has_attribute(root, "groups"), blocks = hdf5::has_attribute(root, "blocks");
-    const std::string place = hdf5::attribute_place(root, groups || !blocks ? "groups" : "blocks");
+std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
+    const bool groups = source.has_attribute("groups"), blocks = source.has_attribute("blocks");
+    const std::string place = record_attribute_place(groups || !blocks ? "groups" : "blocks");
     if (groups && blocks) throw Error(place, "is there, and `blocks` too", "Write one of them");
-    if (hdf5::has_link(root, "groups") && !groups)
+    if (source.has("groups") && !groups)
         throw Error(place, "is missing, but there is a `groups` elsewhere", "Make it an attribute of the root, `/`");
-    return parse_groups(groups || blocks ? hdf5::read_any_text(root, groups ? "groups" : "blocks") : "", n, place);
+    return parse_groups(groups || blocks ? source.text(groups ? "groups" : "blocks") : "", n, place);
 }
 
-std::vector<Component> read_components(const hdf5::Handle& root, int n) {
-    const std::vector<std::string> names = read_list(root, "component_names", n), units = read_list(root, "component_units", n);
+std::vector<Component> read_components(const RecordSource& source, int n) {
+    const std::vector<std::string> names = read_list(source, "component_names", n), units = read_list(source, "component_units", n);
     std::vector<Component> components;
     for (std::size_t j = 0; j < static_cast<std::size_t>(n) && (!names.empty() || !units.empty()); ++j) {
         Component component{names.empty() ? "x" + std::to_string(j) : names[j], units.empty() ? "" : units[j]};
-        if (!names.empty()) require_group_name(component.name, "component", hdf5::attribute_place(root, "component_names"));
+        if (!names.empty()) require_group_name(component.name, "component", record_attribute_place("component_names"));
         if (!units.empty() && (component.unit.empty() || component.unit.find_first_of(" \t\r\n") != std::string::npos))
-            throw Error(hdf5::attribute_place(root, "component_units"), quoted(component.unit) + " is no unit",
+            throw Error(record_attribute_place("component_units"), quoted(component.unit) + " is no unit",
                         "Write one word for each component, such as m/s, and 1 where it has no unit");
         for (const Component& other : components)
             if (other.name == component.name)
-                throw Error(hdf5::attribute_place(root, "component_names"), "names two components " + quoted(component.name),
+                throw Error(record_attribute_place("component_names"), "names two components " + quoted(component.name),
                             "Give each component a name of its own");
         components.push_back(std::move(component));
     }

@@ -1,7 +1,7 @@
 #pragma once
 // The attributes of a record that name component groups, groups of innovation rows, and components.
 
-#include "files/hdf5/handle.hpp"
+#include "files/record/source.hpp"
 #include "worlds/own/step.hpp"
 
 #include <string>
@@ -20,13 +20,13 @@ std::vector<ComponentGroup> parse_groups(const std::string& text, int n, const s
 std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std::string& place);
 
 /// The component groups of a record: of the attribute `groups`, or of `blocks` as earlier records call it.
-std::vector<ComponentGroup> read_groups(const hdf5::Handle& root, int n);
+std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);
 /// Those of version 1, of the attribute `blocks`.
-std::vector<ComponentGroup> read_blocks(const hdf5::Handle& root, int n);
+std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n);
 
 /// Names and units of the n components by the attributes `component_names` and `component_units`; empty without both. A
 /// component without a name is x0, x1 ..., one without a unit has an empty one.
-std::vector<Component> read_components(const hdf5::Handle& root, int n);
+std::vector<Component> read_components(const RecordSource& source, int n);
 
 /// Throws where a name cannot be that of a group of components (`what`: `group`).
 void require_group_name(const std::string& name, const std::string& what, const std::string& place);

@@ -3,7 +3,6 @@
 #include <credence/text.hpp>
 
 #include "base/nan.hpp"
-#include "files/hdf5/slab.hpp"
 
 #include <Eigen/Geometry>
 
@@ -57,10 +56,10 @@ Vector2d turned(double angle, const Vector2d& t) { return Eigen::Rotation2Dd(ang
 
 bool has_quaternion(int coordinates, int dimension) { return coordinates == dimension + 1; }
 
-std::string required_text(const hdf5::Handle& root, const std::string& name, const std::vector<std::string>& choices) {
-    const std::string place = hdf5::attribute_place(root, name), remedy = "Write " + joined(choices, " or ");
-    if (!hdf5::has_attribute(root, name)) throw Error(place, "is missing", remedy);
-    const std::string text = hdf5::read_any_text(root, name);
+std::string required_text(const RecordSource& source, const std::string& name, const std::vector<std::string>& choices) {
+    const std::string place = record_attribute_place(name), remedy = "Write " + joined(choices, " or ");
+    if (!source.has_attribute(name)) throw Error(place, "is missing", remedy);
+    const std::string text = source.text(name);
     if (std::ranges::find(choices, text) == choices.end())
         throw Error(place, "is `" + printable(text) + "`", remedy);
     return text;
@@ -79,12 +78,12 @@ Manifold::Factor Manifold::parse_factor(const std::string& text, const std::stri
     return {Kind::R, static_cast<int>(*size), static_cast<int>(*size)};
 }
 
-Manifold Manifold::read(const hdf5::Handle& root) {
-    const std::string name = "manifold", place = hdf5::attribute_place(root, name);
-    if (!hdf5::has_attribute(root, name)) throw Error(place, "is missing", manifold_example);
+Manifold Manifold::read(const RecordSource& source) {
+    const std::string name = "manifold", place = record_attribute_place(name);
+    if (!source.has_attribute(name)) throw Error(place, "is missing", manifold_example);
     Manifold manifold;
     bool quaternions = false;
-    for (const std::string& text : split_list(hdf5::read_any_text(root, name), 'x')) {
+    for (const std::string& text : split_list(source.text(name), 'x')) {
         const Factor factor = parse_factor(text, place);
         manifold.factors_.push_back(factor);
         manifold.coordinates_ += factor.coordinates;
@@ -92,9 +91,14 @@ Manifold Manifold::read(const hdf5::Handle& root) {
         quaternions = quaternions || has_quaternion(factor.coordinates, factor.dimension);
     }
     if (manifold.factors_.empty()) throw Error(place, "names no manifold", manifold_example);
-    if (quaternions) manifold.scalar_first_ = required_text(root, "quaternion", {"wxyz", "xyzw"}) == "wxyz";
-    if (required_text(root, "chart", {"local", "global"}) == "global") manifold.chart_ = ErrorChart::global;
+    if (quaternions) manifold.scalar_first_ = required_text(source, "quaternion", {"wxyz", "xyzw"}) == "wxyz";
+    if (required_text(source, "chart", {"local", "global"}) == "global") manifold.chart_ = ErrorChart::global;
     return manifold;
+}
+
+bool Manifold::has_charts() const {
+    return std::ranges::any_of(factors_,
+                               [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
 }
 
 void Manifold::error(const double* truth, const double* estimate, double* error) const {

@@ -1,7 +1,7 @@
 #pragma once
 // States on a manifold: the error in the tangent space, from a truth and an estimate [Sola, Deray, Atchuthan 2018].
 
-#include "files/hdf5/handle.hpp"
+#include "files/record/source.hpp"
 
 #include <string>
 #include <vector>
@@ -15,11 +15,16 @@ enum class ErrorChart { local, global };
 class Manifold {
 public:
     /// `text` such as `SE3 x R6`; `quaternion` wxyz or xyzw, needed for SO3 and SE3; `chart` local or global. Throws
-    /// hdf5::Error at the attribute of `root` that is wrong.
-    static Manifold read(const hdf5::Handle& root);
+    /// hdf5::Error at the attribute that is wrong.
+    static Manifold read(const RecordSource& source);
 
     int coordinates() const { return coordinates_; }  ///< q, of a truth and of an estimate
     int dimension() const { return dimension_; }      ///< n, of the error
+
+    ErrorChart chart() const { return chart_; }
+    /// Whether the error differs between the charts: angles and numbers alone have but one.
+    bool has_charts() const;
+    void take_other_chart() { chart_ = chart_ == ErrorChart::local ? ErrorChart::global : ErrorChart::local; }
 
     /// Writes the error [n]. In a factor of the product where a coordinate is not finite, all of it is so: NaN, or
     /// infinite.

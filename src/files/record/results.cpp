@@ -25,7 +25,7 @@ std::string scenario_name(const std::string& path) {
 
 /// In the order of RecordColumn.
 std::vector<Column> record_columns(const RecordShape& shape) {
-    const std::string unit = "unit of error squared", of = pose_block(shape) != 0 ? "the group pose" : "the whole state";
+    const std::string unit = "unit of error squared", of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
     std::vector<Column> columns{
         {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
         {"unseen", "not known of a record", "1", ColumnType::integer, nan},
@@ -88,9 +88,9 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
 
 }  // namespace
 
-std::size_t pose_block(const RecordShape& shape) {
+std::size_t pose_group(const RecordShape& shape) {
     const auto found = std::find_if(shape.groups.begin(), shape.groups.end(),
-                                    [](const ComponentGroup& block) { return block.name == "pose"; });
+                                    [](const ComponentGroup& group) { return group.name == "pose"; });
     return found == shape.groups.end() ? 0 : static_cast<std::size_t>(found - shape.groups.begin());
 }
 
@@ -106,6 +106,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.scenario.groups = shape.groups;
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
+    results.epsilon = std::max(results.epsilon, shape.covariance_epsilon);
     results.arms.push_back(empty_arm(results));
     return results;
 }

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< limit on the NEES values, and on the cells
 constexpr std::size_t most_troubles = 20;
+constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: where rounding may do more, NIS is left out
 
 std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
@@ -33,8 +34,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
-    for (const ComponentGroup& block : shape.groups)
-        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, block.count));
+    for (const ComponentGroup& group : shape.groups)
+        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
     if (shape.version == 1) return;
     for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
@@ -95,6 +96,10 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
     if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
         note(step, Status::diverged, beyond);
+    if (judge_.innovation_rounding() > accuracy_of_nis) {
+        judge_.leave_out_innovation(values, products_.now.data());
+        ++innovations_left_out_;
+    }
     judge_.forget_unknown(values);
     set_dimension(k);
     present_.push_back(k);
@@ -169,7 +174,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
         if (shape_.has_errors) {
             row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
-            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_block(shape_));
+            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
         row[RecordColumn::nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
@@ -240,6 +245,9 @@ void RecordTotals::add_distribution() {
 }
 
 Record RecordTotals::finish() {
+    if (innovations_left_out_ > 0)
+        record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
+                                             " steps are left out: their covariance cannot be inverted to 0.5 %.");
     if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
         arm().distribution_distance[k] = shape_.version == 1 ? chi_square_distance(std::move(nees_[k]), shape_.n)

@@ -3,7 +3,7 @@
 
 #include <credence/record.hpp>
 
-#include "files/record/file.hpp"
+#include "files/record/reader.hpp"
 #include "files/record/presence.hpp"
 #include "worlds/own/step.hpp"
 #include "files/record/row_products.hpp"
@@ -57,6 +57,7 @@ private:
     PresenceChecker presence_;                   ///< of version 2
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
+    std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
     std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
     std::vector<double> bounds_by_dimension_;    ///< [n + 1, levels] the same of a state of that dimension; 0: not known yet
@@ -73,7 +74,7 @@ private:
 };
 
 /// Reads a whole record, part by part. The result does not depend on the size of the parts.
-Record read_record(const RecordFile& file, const std::string& path,
-                         const std::function<void(const Progress&)>& progress = {});
+Record read_record(const RecordReader& reader, const std::string& path,
+                   const std::function<void(const Progress&)>& progress = {});
 
 }  // namespace credence

@@ -17,11 +17,11 @@ using hdf5::Error;
 using hdf5::Extents;
 using hdf5::Handle;
 
-std::vector<std::size_t> figure_columns(const ScenarioResults& results) {
-    std::vector<std::size_t> figures;
+std::vector<std::size_t> reported_columns(const ScenarioResults& results) {
+    std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < results.columns.size(); ++c)
-        if (is_reported(results.columns[c])) figures.push_back(c);
-    return figures;
+        if (is_reported(results.columns[c])) columns.push_back(c);
+    return columns;
 }
 
 /// One member of each of a list.
@@ -33,11 +33,11 @@ std::vector<T> each(const List& list, const Get& get) {
 }
 
 Dimension new_column_dimension(const Handle& group, const ScenarioResults& results) {
-    const std::vector<std::size_t> figures = figure_columns(results);
+    const std::vector<std::size_t> reported = reported_columns(results);
     const auto texts = [&](const std::string& separator, std::string Column::* member) {
-        return joined(each<std::string>(figures, [&](std::size_t c) { return results.columns[c].*member; }), separator);
+        return joined(each<std::string>(reported, [&](std::size_t c) { return results.columns[c].*member; }), separator);
     };
-    Dimension column = numbered<std::int32_t>(group, "column", 0, figures.size(), "figure of a trial");
+    Dimension column = numbered<std::int32_t>(group, "column", 0, reported.size(), "column of the trials");
     hdf5::write_text(column.scale, "column_names", texts(" ", &Column::name));
     hdf5::write_text(column.scale, "column_units", texts(", ", &Column::unit));
     return column;
@@ -70,7 +70,7 @@ void write_differences(const Handle& group, const Dimension& column, const Dimen
     std::vector<std::string> names;
     for (std::size_t b = 0; b < aggregates.differences.size(); ++b) {
         names.push_back(results.arms[b].name);
-        for (const std::size_t c : figure_columns(results)) totals.push_back(aggregates.differences[b][c]);
+        for (const std::size_t c : reported_columns(results)) totals.push_back(aggregates.differences[b][c]);
     }
     const Dimension other = numbered<std::int32_t>(group, "subtracted_arm", 0, names.size(), "arm that is subtracted");
     hdf5::write_text(other.scale, "arm_names", joined(names, " "));
@@ -82,8 +82,8 @@ void write_differences(const Handle& group, const Dimension& column, const Dimen
         hdf5::new_variable(group, name, each<std::int64_t>(totals, [&](auto& one) { return one.*member; }),
                            {&other, &column}, {long_name, "1"});
     };
-    write_trials("difference_below", &DifferenceTotals::below, "trials in which this arm's figure is lower");
-    write_trials("difference_above", &DifferenceTotals::above, "trials in which this arm's figure is higher");
+    write_trials("difference_below", &DifferenceTotals::below, "trials in which this arm's column is lower");
+    write_trials("difference_above", &DifferenceTotals::above, "trials in which this arm's column is higher");
 }
 
 /// Reads counts and exact totals as write_moments wrote them.
@@ -98,14 +98,14 @@ std::vector<ExactMoments> read_moments(const Handle& group, const std::string& n
 }
 
 void read_differences(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmAggregates& aggregates) {
-    const std::vector<std::size_t> figures = figure_columns(results);
-    const Extents extents{aggregates.differences.size(), figures.size()};
+    const std::vector<std::size_t> reported = reported_columns(results);
+    const Extents extents{aggregates.differences.size(), reported.size()};
     check_numbered<std::int32_t>(group, "subtracted_arm", 0, extents[0]);
     const std::vector<ExactMoments> moments = read_moments(group, "difference", extents, parts);
     const auto below = read_as<std::int64_t>(group, "difference_below", extents),
                above = read_as<std::int64_t>(group, "difference_above", extents);
     for (std::size_t i = 0; i < moments.size(); ++i)
-        aggregates.differences[i / figures.size()][figures[i % figures.size()]] = {moments[i], below[i], above[i]};
+        aggregates.differences[i / reported.size()][reported[i % reported.size()]] = {moments[i], below[i], above[i]};
 }
 
 }  // namespace
@@ -125,8 +125,8 @@ std::size_t largest_part_count(const ArmAggregates& aggregates) {
         largest = std::max({largest, moments.sum.parts().size(), moments.square_sum.parts().size()});
     };
     std::for_each(aggregates.columns.begin(), aggregates.columns.end(), note);
-    for (const std::vector<DifferenceTotals>& columns : aggregates.differences)
-        for (const DifferenceTotals& totals : columns) note(totals.difference);
+    for (const std::vector<DifferenceTotals>& arm : aggregates.differences)
+        for (const DifferenceTotals& totals : arm) note(totals.difference);
     return largest;
 }
 
@@ -158,19 +158,19 @@ void write_aggregates(const Handle& group, const Dimension& part, const Scenario
                       const ArmResults& arm) {
     write_statuses(group, arm.aggregates);
     const Dimension column = new_column_dimension(group, results);
-    write_moments(group, "column", {&column}, part, "figures of the trials that did not fail, where they have them",
-                  figure_columns(results), [&](std::size_t c) { return arm.aggregates.columns[c]; });
+    write_moments(group, "column", {&column}, part, "columns of the trials that did not fail, where they have them",
+                  reported_columns(results), [&](std::size_t c) { return arm.aggregates.columns[c]; });
     if (!arm.aggregates.differences.empty()) write_differences(group, column, part, results, arm.aggregates);
 }
 
 ArmAggregates read_aggregates(const Handle& group, const ScenarioResults& results, hsize_t parts) {
-    const std::vector<std::size_t> figures = figure_columns(results);
+    const std::vector<std::size_t> reported = reported_columns(results);
     ArmAggregates aggregates = empty_aggregates(results.columns, results.arms.size() + 1).back();
     check_numbered<std::int8_t>(group, "status_code", 0, aggregates.statuses.size());
     aggregates.statuses = read_as<std::int64_t>(group, "status_count", {aggregates.statuses.size()});
-    check_numbered<std::int32_t>(group, "column", 0, figures.size());
-    const std::vector<ExactMoments> columns = read_moments(group, "column", {figures.size()}, parts);
-    for (std::size_t i = 0; i < figures.size(); ++i) aggregates.columns[figures[i]] = columns[i];
+    check_numbered<std::int32_t>(group, "column", 0, reported.size());
+    const std::vector<ExactMoments> columns = read_moments(group, "column", {reported.size()}, parts);
+    for (std::size_t i = 0; i < reported.size(); ++i) aggregates.columns[reported[i]] = columns[i];
     if (!aggregates.differences.empty()) read_differences(group, results, parts, aggregates);
     if (const char* problem = problem_of(aggregates)) throw Error(hdf5::place_of(group, "status_count"), problem);
     if (aggregates.trials() != results.trials)

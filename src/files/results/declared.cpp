@@ -76,7 +76,7 @@ std::vector<Column> read_aggregated_columns(const Handle& arm) {
                                    units = split_list(hdf5::read_text(scale.object(), "column_units"));
     if (names.empty() || names.size() != units.size() || names.size() > most_columns ||
         !std::all_of(names.begin(), names.end(), names_something))
-        throw Error(scale.place(), "does not name the figures of trials and their units");
+        throw Error(scale.place(), "does not name the columns of the trials and their units");
     std::vector<Column> columns;
     for (std::size_t c = 0; c < names.size(); ++c)
         columns.push_back({names[c], names[c], printable(units[c]), ColumnType::real, nan});
@@ -108,8 +108,10 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
         throw Error(steps.place(), "is no list of steps");
     scenario.poses = static_cast<int>(steps.extents()[0]) + 1;
     scenario.components = read_components(arm);
-    scenario.groups = parse_groups(hdf5::read_text(group, "blocks"), static_cast<int>(scenario.components.size()),
-                                   hdf5::attribute_place(group, "blocks"));
+    // Schema version 2 has the name `blocks`.
+    const std::string groups = hdf5::has_attribute(group, "blocks") ? "blocks" : "groups";
+    scenario.groups = parse_groups(hdf5::read_text(group, groups), static_cast<int>(scenario.components.size()),
+                                   hdf5::attribute_place(group, groups));
     results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
     results.all_series = StateSeries(scenario.components, scenario.groups,
                                    hdf5::has_link(arm, "nis_total") ? Innovations::given : Innovations::none)

@@ -46,13 +46,11 @@ inline std::string components_text(const ComponentGroup& group) {
     return text;
 }
 
-/// The component groups of a state as the attribute `blocks` of a record has them: `pose 0:3, heading 0:1`, without the
-/// whole state.
-inline std::string blocks_text(const std::vector<ComponentGroup>& blocks) {
+/// The component groups of a state as the attribute `groups` has them: `pose 0:3, heading 0:1`, without the whole state.
+inline std::string groups_text(const std::vector<ComponentGroup>& groups) {
     std::vector<std::string> texts;
-    for (const ComponentGroup& block : blocks)
-        if (block.name != "all")
-            texts.push_back(block.name + " " + components_text(block));
+    for (const ComponentGroup& group : groups)
+        if (group.name != "all") texts.push_back(group.name + " " + components_text(group));
     return joined(texts);
 }
 
@@ -61,7 +59,7 @@ inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario&
     hdf5::write_text(group, "title", scenario.title);
     hdf5::write_text(group, "length_unit", scenario.length_unit);
     hdf5::write_text(group, "scenario", scenario_text(scenario));
-    hdf5::write_text(group, "blocks", blocks_text(scenario.groups));
+    hdf5::write_text(group, "groups", groups_text(scenario.groups));
     write_sweep(group, scenario.sweep);
     return group;
 }

@@ -71,7 +71,7 @@ std::string squared_unit(const std::string& unit) { return unit == "1" ? unit : 
 
 /// The attributes of a series beside its total.
 void write_role(const Handle& variable, const Series& series) {
-    hdf5::write_text(variable, "figure", series.name);
+    hdf5::write_text(variable, "series", series.name);
     hdf5::write_text(variable, "role", role_name(series.role));
     if (!series.part.empty()) hdf5::write_text(variable, "part_of", series.part);
     if (series.dimension > 0) hdf5::write_number<std::int32_t>(variable, "dimension", series.dimension);

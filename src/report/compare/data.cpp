@@ -76,7 +76,7 @@ std::string compare_json(const CompareReport& report) {
 
 std::string compare_csv(const CompareReport& report) {
     std::string text =
-        "scenario,a,b,figure,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
+        "scenario,a,b,name,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
         "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
     for (const ComparedPair& pair : report.pairs)
         for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) text += csv_row(pair, f);

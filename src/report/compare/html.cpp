@@ -32,16 +32,16 @@ Html conclusion_list(const CompareReport& report) {
 }
 
 Html means_table(const ComparedPair& pair) {
-    HtmlTable table(pair.comparison.scenario + ": means over the pairs",
-                    {"figure", "A = " + pair.comparison.a, "B = " + pair.comparison.b});
+    Table table(pair.comparison.scenario + ": means over the pairs",
+                    {"column", "A = " + pair.comparison.a, "B = " + pair.comparison.b});
     for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
         const ComparedColumn& one = pair.comparison.columns[f];
         const Interval& interval = one.paired.difference.ci95;
         const int digits = decimals_for(half_width(interval));
-        table.row(escaped(figure_words(one.name, one.unit)),
-                  {number_html(pair.a.mean[f], digits), number_html(pair.b.mean[f], digits)});
+        table.row(column_words(one.name, one.unit),
+                  {number_cell(pair.a.mean[f], digits), number_cell(pair.b.mean[f], digits)});
     }
-    return table.html();
+    return html_of(table);
 }
 
 /// The conclusions of the pairs.
@@ -65,15 +65,14 @@ Html pair_section(const ComparedPair& pair, std::size_t number) {
 }
 
 Html origin_part(const CompareReport& report, const std::string& made_by) {
-    HtmlTable table("Where the figures came from", {"side", "file", "study", "trials", "failed", "diverged"});
+    Table table("Where the numbers came from", {"side", "file", "study", "trials", "failed", "diverged"});
     for (const ComparedPair& pair : report.pairs) {
         table.group(pair.comparison.scenario);
         for (const auto& [name, side] : {std::pair(pair.comparison.a, &pair.a), std::pair(pair.comparison.b, &pair.b)})
-            table.row(escaped(name),
-                      {escaped(file_name(side->file)), escaped(side->source), escaped(std::to_string(side->trials)),
-                       escaped(std::to_string(side->failed)), escaped(std::to_string(side->diverged))});
+            table.row(name, {file_name(side->file), side->source, count_cell(static_cast<double>(side->trials)),
+                             count_cell(static_cast<double>(side->failed)), count_cell(static_cast<double>(side->diverged))});
     }
-    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + table.html() +
+    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + html_of(table) +
            element("p", escaped("Root seed " + std::to_string(report.root_seed) + ". Page made by " + made_by + ".")) +
            "\n</section>\n"_html;
 }

@@ -7,6 +7,7 @@
 
 #include "report/compare/words.hpp"
 #include "report/format.hpp"
+#include "report/table.hpp"
 #include "report/words.hpp"
 
 namespace credence {
@@ -58,40 +59,34 @@ std::string conclusions(const CompareReport& report) {
 }
 
 std::string row_label(const ComparedColumn& column) {
-    return "    " + padded(column.unit == "1" ? column.name : column.name + " [" + column.unit + "]", 30, false);
+    return "  " + (column.unit == "1" ? column.name : column.name + " [" + column.unit + "]");
 }
 
 /// The table of the differences' sizes.
-std::string sizes(const ComparedPair& pair) {
-    std::string text = "  " + padded("how much", 32, false) + padded("A", 11) + padded("B", 11) +
-                       padded("A - B ± 95 %", 22) + padded("bootstrap 95 %", 24) + padded("median", 12) + "\n";
+Table sizes(const ComparedPair& pair) {
+    Table table("", {"how much", "A", "B", "A - B ± 95 %", "bootstrap 95 %", "median"});
     for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
         const ComparedColumn& column = pair.comparison.columns[f];
         const PairedComparison& paired = column.paired;
         const int digits = decimals_of(paired);
-        text += row_label(column) + padded(number(pair.a.mean[f], digits), 11) +
-                padded(number(pair.b.mean[f], digits), 11) +
-                padded(with_interval(paired.difference.mean, paired.difference.ci95), 22) +
-                padded(bracketed(paired.bootstrap95, digits), 24) +
-                padded(number(paired.difference.median, digits), 12) +
-                (paired.pairs == pair.pairs() ? "" : "\n      of " + std::to_string(paired.pairs) + " pairs") + "\n";
+        table.row({row_label(column), number_cell(pair.a.mean[f], digits), number_cell(pair.b.mean[f], digits),
+                   mean_cell(paired.difference.mean, paired.difference.ci95), interval_cell(paired.bootstrap95, digits),
+                   number_cell(paired.difference.median, digits)});
+        if (paired.pairs != pair.pairs()) table.group("    of " + std::to_string(paired.pairs) + " pairs");
     }
-    return text;
+    return table;
 }
 
 /// The table of the differences' certainty and regularity.
-std::string tests(const ComparedPair& pair) {
-    std::string text = "  " + padded("how surely", 32, false) + padded("A below", 11) + padded("A above", 11) +
-                       padded("equal", 10) + padded("Wilcoxon z", 12) + padded("p (Holm)", 12) + padded("d_z", 9) +
-                       padded("reduction", 15) + "\n";
+Table tests(const ComparedPair& pair) {
+    Table table("", {"how surely", "A below", "A above", "equal", "Wilcoxon z", "p (Holm)", "d_z", "reduction"});
     for (const ComparedColumn& column : pair.comparison.columns) {
         const PairedComparison& paired = column.paired;
-        text += row_label(column) + padded(percent(paired.wins_a), 11) + padded(percent(paired.wins_b), 11) +
-                padded(percent(paired.ties), 10) + padded(number(paired.wilcoxon_z, 2), 12) +
-                padded(p_text(column.holm_p), 12) + padded(number(paired.effect_size, 3), 9) +
-                padded(number(paired.variance_reduction, 2), 15) + "\n";
+        table.row({row_label(column), share_cell(paired.wins_a), share_cell(paired.wins_b), share_cell(paired.ties),
+                   number_cell(paired.wilcoxon_z, 2), p_cell(column.holm_p), number_cell(paired.effect_size, 3),
+                   number_cell(paired.variance_reduction, 2)});
     }
-    return text;
+    return table;
 }
 
 }  // namespace
@@ -107,7 +102,7 @@ std::string compare_head(const CompareReport& report) {
     text += report.of_records ? "Both of a pair are of the same run"
                               : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
     return text + ". Intervals are two-sided 95 %" +
-           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all figures below"
+           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
                    : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: credence run --keep trials") +
            (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
 }
@@ -186,7 +181,7 @@ std::string pair_head(const ComparedPair& pair) {
 std::string compare_text(const CompareReport& report) {
     std::string text = compare_head(report) + compare_notes(report) + "\n" + conclusions(report);
     for (const ComparedPair& pair : report.pairs)
-        text += pair_head(pair) + (pair.not_run() ? "" : sizes(pair) + tests(pair));
+        text += pair_head(pair) + (pair.not_run() ? "" : table_text(sizes(pair)) + table_text(tests(pair)));
     return text +
            "\nd_z: mean of the differences / their standard deviation. reduction: (V_A + V_B) / V_(A-B): arms with "
            "draws of their own\nwould need that many times the trials. nees_ratio and nis_ratio are best at 1.\n";

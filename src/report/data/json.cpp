@@ -50,7 +50,7 @@ Json accuracy_json(const Accuracy& accuracy) {
 /// The members for a group's NEES in any chart.
 template <class Ratios>
 Json ratios_json(const Ratios& of) {
-    return {{"block", of.block},
+    return {{"group", of.name},
             {"dimension", of.dimension},
             {"nees_ratio", of.run.mean},
             {"se", of.run.standard_error},
@@ -59,11 +59,12 @@ Json ratios_json(const Ratios& of) {
             {"anees_se", each_json(of.step, [](const Moments& step) { return step.standard_error; })}};
 }
 
-Json block_json(const GroupEvidence& block) {
-    Json json = ratios_json(block);
-    json["variance_ratio"] = block.variance_ratio;
-    json["coverage"] = each_json(block.coverage, coverage_json);
-    json["accuracy"] = accuracy_json(block.accuracy);
+Json group_json(const GroupEvidence& group) {
+    Json json = ratios_json(group);
+    json["rounding"] = group.rounding;
+    json["variance_ratio"] = group.variance_ratio;
+    json["coverage"] = each_json(group.coverage, coverage_json);
+    json["accuracy"] = accuracy_json(group.accuracy);
     return json;
 }
 
@@ -102,12 +103,12 @@ Json credibility_json(const CredibilityEvidence& evidence) {
 }  // namespace
 
 Json evidence_json(const Evidence& evidence) {
-    Json json{{"blocks", each_json(evidence.blocks, block_json)},
+    Json json{{"groups", each_json(evidence.groups, group_json)},
               {"nis", each_json(evidence.nis, nis_json)},
               {"whiteness", each_json(evidence.whiteness, whiteness_json)},
               {"bias", each_json(evidence.bias, bias_json)},
-              {"shape",
-               {{"exact", evidence.shape.exact}, {"distance", evidence.shape.distance}, {"p", evidence.shape.p}}},
+              {"distribution",
+               {{"exact", evidence.distribution.exact}, {"distance", evidence.distribution.distance}, {"p", evidence.distribution.p}}},
               {"credibility", credibility_json(evidence.credibility)}};
     if (!evidence.charts.empty()) json["other_charts"] = each_json(evidence.charts, chart_json);
     return json;

@@ -38,9 +38,33 @@ Json figure_json(const ColumnReport& column) {
 Json findings_json(const std::vector<Finding>& findings) {
     Json json = Json::array();
     for (const Finding& finding : findings)
-        json.push_back({{"what", finding.what}, {"where", finding.where}, {"when", finding.when},
-                        {"measure", finding.measure}, {"value", finding.value}, {"interval", interval_json(finding.interval)},
+        json.push_back({{"what", finding.what},
+                        {"about", subject_name(finding.about)},
+                        {"where", finding.where},
+                        {"when", when_text(finding)},
+                        {"measure", finding.measure},
+                        {"value", finding.value},
+                        {"interval", interval_json(finding.interval)},
                         {"text", sentence(finding)}});
+    return json;
+}
+
+Json suspicions_json(const std::vector<Suspicion>& suspicions) {
+    Json json = Json::array();
+    for (const Suspicion& one : suspicions)
+        json.push_back({{"what", one.what},
+                        {"about", subject_name(one.about)},
+                        {"where", one.where},
+                        {"measure", one.measure},
+                        {"value", one.value},
+                        {"trials", one.trials.value},
+                        {"trials_range", {one.trials.low, one.trials.high}}});
+    return json;
+}
+
+Json loadings_json(const std::vector<Loading>& loadings) {
+    Json json = Json::object();
+    for (const Loading& one : loadings) json[one.component] = one.weight;
     return json;
 }
 
@@ -50,7 +74,12 @@ Json directions_json(const DirectionsFound& directions) {
     const auto list = [](const std::vector<DirectionOfGroup>& all) {
         Json json = Json::array();
         for (const DirectionOfGroup& one : all)
-            json.push_back({{"group", one.group}, {"direction", one.name}, {"ratio", one.ratio}, {"interval", interval_json(one.interval)}});
+            json.push_back({{"group", one.group},
+                            {"direction", one.name},
+                            {"ratio", one.ratio},
+                            {"interval", interval_json(one.interval)},
+                            {"level", one.level},
+                            {"loadings", loadings_json(one.loadings)}});
         return json;
     };
     return {{"trials", directions.trials}, {"range95", interval_json(directions.range)}, {"spectrum", directions.spectrum},
@@ -78,6 +107,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};
     for (const WorstTrial& one : arm.evidence.worst.trials)
         json["worst_trials"]["trials"].push_back({{"trial", one.trial}, {"nees_ratio", one.nees_ratio}, {"step", one.step}});
+    json["suspicions"] = suspicions_json(arm.consistency.suspicions);
     json["findings"] = findings_json(arm.consistency.findings);
     json["cautions"] = findings_json(arm.consistency.cautions);
     json.update(evidence_json(arm.evidence));
@@ -110,9 +140,9 @@ public:
     EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
 
     std::string text() {
-        for (const GroupEvidence& block : arm_.evidence.blocks) add_block(block);
+        for (const GroupEvidence& group : arm_.evidence.groups) add_group(group);
         for (const ChartEvidence& chart : arm_.evidence.charts) {
-            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.block;
+            const std::string name = "nees_per_dimension_" + chart.chart + ":" + chart.name;
             add_moments(name, chart.run);
             for (std::size_t k = 0; k < chart.step.size(); ++k)
                 add_moments(name + ":" + std::to_string(k + 1), chart.step[k]);
@@ -127,7 +157,14 @@ public:
         for (const BiasEvidence& bias : arm_.evidence.bias)
             for (std::size_t k = 0; k < bias.step.size(); ++k)
                 add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
-        add_steps("distance_from_chi_square", arm_.evidence.shape.distance, {});
+        for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
+            add_direction("direction_largest:", one);
+        for (const DirectionOfGroup& one : arm_.consistency.directions.smallest)
+            add_direction("direction_smallest:", one);
+        for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
+            add("direction_level:" + one.group, one.level, nan, none);
+        add_steps("direction_spectrum", arm_.consistency.directions.spectrum, {});
+        add_steps("distance_from_chi_square", arm_.evidence.distribution.distance, {});
         add("nci", arm_.evidence.credibility.nci, nan, none);
         add("inclination", arm_.evidence.credibility.inclination, nan, none);
         return text_;
@@ -148,14 +185,21 @@ private:
         for (std::size_t k = 0; k < values.size(); ++k)
             add(column + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
     }
-    void add_block(const GroupEvidence& block) {
-        add_moments("nees_per_dimension:" + block.block, block.run);
-        for (std::size_t k = 0; k < block.step.size(); ++k)
-            add_moments("nees_per_dimension:" + block.block + ":" + std::to_string(k + 1), block.step[k]);
-        add("rmse_ratio:" + block.block, block.accuracy.ratio, nan, block.accuracy.ratio_ci95);
-        for (const Coverage& level : block.coverage)
-            add_steps("coverage_" + to_text(level.level) + ":" + block.block, level.share, level.interval);
-        add_steps("variance_ratio:" + block.block, block.variance_ratio, {});
+    /// The ratio with its corrected interval, and a row for each component's share.
+    void add_direction(const std::string& name, const DirectionOfGroup& direction) {
+        add(name + direction.group, direction.ratio, nan, direction.interval);
+        for (const Loading& one : direction.loadings)
+            add(name + direction.group + ":" + one.component, one.weight, nan, none);
+    }
+    void add_group(const GroupEvidence& group) {
+        add_moments("nees_per_dimension:" + group.name, group.run);
+        for (std::size_t k = 0; k < group.step.size(); ++k)
+            add_moments("nees_per_dimension:" + group.name + ":" + std::to_string(k + 1), group.step[k]);
+        add("nees_rounding:" + group.name, group.rounding, nan, none);
+        add("rmse_ratio:" + group.name, group.accuracy.ratio, nan, group.accuracy.ratio_ci95);
+        for (const Coverage& level : group.coverage)
+            add_steps("coverage_" + to_text(level.level) + ":" + group.name, level.share, level.interval);
+        add_steps("variance_ratio:" + group.name, group.variance_ratio, {});
     }
 
     const ArmReport& arm_;
@@ -174,7 +218,7 @@ std::string report_json(const Report& report) {
 std::string report_csv(const Report& report) {
     const SweepColumns sweep(report);
     std::string text =
-        "scenario,arm,trials,failed,figure,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
+        "scenario,arm,trials,failed,name,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
         "published,percentile,verdict" + sweep.heads() + ",failed_trials\n";
     for (const ArmReport& arm : report.arms) {
         const std::string end =

@@ -4,6 +4,7 @@
 
 #include "embedded/terms.hpp"
 #include "report/html/page.hpp"
+#include "report/sweep.hpp"
 
 #include <algorithm>
 
@@ -11,8 +12,8 @@ namespace credence::page {
 
 namespace {
 
-HtmlTable& add(HtmlTable& table, const std::string& name, const std::string& value) {
-    return table.row(escaped(name), {escaped(value)});
+Table& add(Table& table, const std::string& name, const std::string& value) {
+    return table.row(name, {value});
 }
 
 std::string fact(const RunFacts& facts, const std::string& name) {
@@ -52,7 +53,7 @@ Html scenario_part(const Part& part) {
 }
 
 Html provenance(const Report& report, const PageOrigin& origin) {
-    HtmlTable table("Where the figures came from", {"fact", "value"});
+    Table table("Where the numbers came from", {"fact", "value"});
     add(table, "file", origin.file);
     if (report.root_seed) {
         add(table, "source", report.source);
@@ -70,7 +71,7 @@ Html provenance(const Report& report, const PageOrigin& origin) {
         add(table, name, value);
     }
     add(table, "page made by", origin.made_by);
-    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + table.html() +
+    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + html_of(table) +
            "</section>\n"_html;
 }
 

@@ -39,9 +39,9 @@ struct Rows {
     }
 };
 
-const GroupEvidence* block_named(const ArmReport& arm, const std::string& name) {
-    for (const GroupEvidence& block : arm.evidence.blocks)
-        if (block.block == name) return &block;
+const GroupEvidence* group_named(const ArmReport& arm, const std::string& name) {
+    for (const GroupEvidence& group : arm.evidence.groups)
+        if (group.name == name) return &group;
     return nullptr;
 }
 
@@ -50,18 +50,18 @@ Rows rows_of(const Part& part) {
     Rows rows{{}, part.arms.size()};
     for (const ArmReport* arm : part.arms) {
         if (!rows.names.empty() || arm->evidence.trials == 0) continue;
-        for (const GroupEvidence* block : shown_blocks(arm->evidence)) rows.names.push_back(block->block);
+        for (const GroupEvidence* group : shown_groups(arm->evidence)) rows.names.push_back(group->name);
     }
     return rows;
 }
 
-/// Calls visit(row, arm, block) for each component group that an arm has.
+/// Calls visit(row, arm, group) for each component group that an arm has.
 template <class Visit>
-void each_block(const Part& part, const Rows& rows, const Visit& visit) {
+void each_group(const Part& part, const Rows& rows, const Visit& visit) {
     for (std::size_t row = 0; row < rows.names.size(); ++row)
         for (std::size_t arm = 0; arm < part.arms.size(); ++arm)
-            if (const GroupEvidence* block = block_named(*part.arms[arm], rows.names[row]))
-                if (!std::isnan(block->run.mean)) visit(row, arm, *block);
+            if (const GroupEvidence* group = group_named(*part.arms[arm], rows.names[row]))
+                if (!std::isnan(group->run.mean)) visit(row, arm, *group);
 }
 
 std::string interval_text(const Interval& interval) {
@@ -118,9 +118,9 @@ Html equivalence_chart(const Part& part) {
     const double margin = part.report.limits.margin;
     Range range;
     for (const double end : {1 - 1.6 * margin, 1 + 1.6 * margin}) range.include(end);
-    each_block(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& block) {
-        range.include(block.run.mean);
-        if (const Interval interval = over_steps95(block); interval.low > 0)
+    each_group(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& group) {
+        range.include(group.run.mean);
+        if (const Interval interval = over_steps95(group); interval.low > 0)
             range.include(interval.low), range.include(interval.high);
     });
     if (rows.names.empty()) return {};
@@ -131,26 +131,26 @@ Html equivalence_chart(const Part& part) {
     Axes{x, {ScaleKind::linear, 0, 1, rows.bottom(), top}, "NEES/dim, mean over the steps, 95 % interval", "", 5, 0}
         .draw(svg);
     std::string described;
-    each_block(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& block) {
-        const Interval interval = over_steps95(block);
+    each_group(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& group) {
+        const Interval interval = over_steps95(group);
         const double y = rows.y(row, arm);
-        const std::string says = part.arms[arm]->arm + ", " + block.block + ": NEES/dim " +
-                                 short_number(block.run.mean) + interval_text(interval);
+        const std::string says = part.arms[arm]->arm + ", " + group.name + ": NEES/dim " +
+                                 short_number(group.run.mean) + interval_text(interval);
         svg.line({x(interval.low), y}, {x(interval.high), y}, "whisker " + series_class(arm), says);
-        svg.mark({x(block.run.mean), y}, arm, says);
+        svg.mark({x(group.run.mean), y}, arm, says);
         described += says + ". ";
     });
     return chart(
-        "NEES/dim by block against the margin",
-        svg.html(part.id("equivalence"), part.scenario.name + ": NEES/dim by block against the margin", described));
+        "NEES/dim by group against the margin",
+        svg.html(part.id("equivalence"), part.scenario.name + ": NEES/dim by group against the margin", described));
 }
 
 Html coverage_chart(const Part& part) {
     const Rows rows = rows_of(part);
     if (rows.names.empty()) return {};
     double least = 0.4;
-    each_block(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& block) {
-        for (const Coverage& level : block.coverage) least = std::min(least, level.over_steps);
+    each_group(part, rows, [&](std::size_t, std::size_t, const GroupEvidence& group) {
+        for (const Coverage& level : group.coverage) least = std::min(least, level.over_steps);
     });
     const Scale x{ScaleKind::normal, std::max(0.0, least - 0.05), 0.9997, left, right};
     Svg svg(width, rows.bottom() + 36);
@@ -164,23 +164,23 @@ Html coverage_chart(const Part& part) {
     svg.text({left, 12}, Anchor::start, "◀ covers too little");
     svg.text({right, 12}, Anchor::end, "too much ▶");
     std::string described;
-    each_block(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& block) {
-        described += part.arms[arm]->arm + ", " + block.block + ": ";
-        for (const Coverage& level : block.coverage) {
+    each_group(part, rows, [&](std::size_t row, std::size_t arm, const GroupEvidence& group) {
+        described += part.arms[arm]->arm + ", " + group.name + ": ";
+        for (const Coverage& level : group.coverage) {
             const std::string says =
                 number(100 * level.over_steps, 2) + " % instead of " + to_text(100 * level.level) + " %";
             svg.mark({x(level.over_steps), rows.y(row, arm)}, arm,
-                     part.arms[arm]->arm + ", " + block.block + ": covers " + says);
+                     part.arms[arm]->arm + ", " + group.name + ": covers " + says);
             described += says + (level.level < 0.99 ? ", " : ". ");
         }
     });
     return chart("Coverage, mean over the steps",
-                 svg.html(part.id("coverage"), part.scenario.name + ": coverage by block", described));
+                 svg.html(part.id("coverage"), part.scenario.name + ": coverage by group", described));
 }
 
 Html charts(const Part& part) {
     const std::string over_all =
-        "The verdict: a block whose interval lies wholly in the shaded region is within the margin. "
+        "The verdict: a group whose interval lies wholly in the shaded region is within the margin. "
         "Coverage: a filter that is right has its marks on the lines.";
     const std::string by_step =
         "Shaded: the 95 % band of a consistent filter, for a step by itself (dark) and for all steps "
@@ -201,7 +201,7 @@ Html charts(const Part& part) {
                                   whiteness_chart(part)) +
                       chart_group("What trials end with",
                                   "Bars: share of the trials. The filled mark is the mean, the bar over it the median; "
-                                  "a published single run stands as a dashed line.",
+                                  "a dashed line marks a published single run.",
                                   distribution_charts(part)) +
                       chart_group("Differences of pairs",
                                   "Trial by trial, with the same draws. Left of 0 the first arm is lower. The mark is "

@@ -1,3 +1,4 @@
+#include "report/format.hpp"
 #include "report/html/curves.hpp"
 
 #include "report/html/chart.hpp"

@@ -88,6 +88,13 @@ Html ellipse_chart(const Part& part, std::size_t i) {
                  svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
 }
 
+/// `0.70711 x, -0.70711 y`
+std::string shares_text(const std::vector<Loading>& loadings) {
+    std::vector<std::string> shares;
+    for (const Loading& one : loadings) shares.push_back(short_number(one.weight) + " " + one.component);
+    return joined(shares);
+}
+
 }  // namespace
 
 Html direction_charts(const Part& part) {
@@ -99,37 +106,36 @@ Html direction_charts(const Part& part) {
 }
 
 Html direction_tables(const Part& part) {
-    HtmlTable table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
-                    {"arm, group", "direction", "ratio", "interval, corrected"});
-    HtmlTable spectrum(part.scenario.name + ": all directions of the whole state",
+    Table table(
+        part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
+        {"arm, group", "direction", "ratio", "interval, corrected", "shares of the components, in sigmas"});
+    Table spectrum(part.scenario.name + ": all directions of the whole state",
                        {"arm", "ratios", "every direction within, 95 %", "from these trials"});
     for (const ArmReport* arm : part.arms) {
         const DirectionsFound& found = arm->consistency.directions;
         for (const auto* all : {&found.largest, &found.smallest})
             for (const DirectionOfGroup& one : *all)
-                table.row(escaped(arm->arm + ", " + one.group),
-                          {escaped(one.name), escaped(short_number(one.ratio)),
-                           escaped(short_number(one.interval.low) + " to " + short_number(one.interval.high))});
+                table.row(arm->arm + ", " + one.group, {one.name, short_cell(one.ratio), range_cell(one.interval),
+                                                        shares_text(one.loadings)});
         if (found.spectrum.empty()) continue;
-        std::vector<std::string> ratios;
-        for (const double ratio : found.spectrum) ratios.push_back(short_number(ratio));
-        spectrum.row(escaped(arm->arm), {escaped(joined(ratios)), escaped(short_number(found.range.low) + " to " + short_number(found.range.high)),
-                                         count_html(found.trials)});
+        Cell ratios;
+        for (const double ratio : found.spectrum) ratios = ratios + (ratios.pieces().empty() ? "" : ", ") + short_cell(ratio);
+        spectrum.row(arm->arm, {ratios, range_cell(found.range), count_cell(found.trials)});
     }
-    return folded("Directions, with their intervals", spectrum.html() + table.html());
+    return folded("Directions, with their intervals", html_of(spectrum) + html_of(table));
 }
 
 Html worst_trials_table(const Part& part) {
-    HtmlTable table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
+    Table table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
     Html shares;
     for (const ArmReport* arm : part.arms) {
         const WorstTrials& worst = arm->evidence.worst;
         for (const WorstTrial& one : worst.trials)
-            table.row(escaped(arm->arm + ", " + std::to_string(one.trial)), {escaped(short_number(one.nees_ratio)), count_html(one.step)});
+            table.row(arm->arm + ", " + std::to_string(one.trial), {short_cell(one.nees_ratio), count_cell(one.step)});
         if (!worst.trials.empty())
             shares += element("p", escaped(arm->arm + ": they have a share of " + short_number(worst.share) + " of NEES.")) + "\n"_html;
     }
-    return folded("Trials with the largest NEES", table.html() + shares);
+    return folded("Trials with the largest NEES", html_of(table) + shares);
 }
 
 }  // namespace credence::page

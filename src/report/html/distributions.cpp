@@ -107,7 +107,7 @@ Html distribution(const Part& part, const std::string& name, const std::vector<S
         edges.include(sample.column->histogram->edges.back());
         if (sample.column->published) edges.include(sample.column->published->value);
     }
-    const std::string title = figure_words(name, samples.front().column->unit);
+    const std::string title = column_words(name, samples.front().column->unit);
     const Scale x = scale_over(edges, samples.front().column->histogram->widths, bins);
     const double foot = top + row * static_cast<double>(samples.size()) - 14;
     Svg svg(width, foot + 48);
@@ -136,7 +136,7 @@ Html difference(const Comparison& pair, const ComparedColumn& column, const std:
         "mean " + short_number(s.mean) + ", 95 % " + short_number(s.ci95.low) + " to " + short_number(s.ci95.high);
     svg.line({x(s.ci95.low), foot + 7}, {x(s.ci95.high), foot + 7}, "whisker", says);
     svg.mark({x(s.mean), foot + 7}, 1, pair.name() + ": " + says, "pair");
-    const std::string title = figure_words(column.name, column.unit);
+    const std::string title = column_words(column.name, column.unit);
     const std::string axis = "difference" + (column.unit == "1" ? "" : " [" + with_powers(column.unit) + "]");
     Axes{x, {ScaleKind::linear, 0, 1, foot + 16, top}, axis, "", 6, 0}.draw(svg);
     return chart(title, svg.html(id, pair.scenario + ": " + pair.name() + " of " + title, says + "; " + shares + ". "));

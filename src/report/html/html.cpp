@@ -2,10 +2,6 @@
 
 #include <credence/text.hpp>
 
-#include "report/format.hpp"
-
-#include <charconv>
-#include <cmath>
 
 namespace credence {
 
@@ -22,7 +18,24 @@ std::string_view entity(const char& c) {
     }
 }
 
-Html dash() { return "-"_html; }
+/// A symbol for each verdict, so that it can be read without colour.
+Html symbol_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::consistent:
+            return "&#10003;"_html;  // check mark
+        case Verdict::optimistic:
+            return "&#9650;"_html;  // triangle up: NEES above 1
+        case Verdict::pessimistic:
+            return "&#9660;"_html;  // triangle down: NEES below 1
+        case Verdict::mixed:
+            return "&#9670;"_html;  // diamond
+        case Verdict::failed:
+            return "&#10007;"_html;  // ballot x
+        case Verdict::undecided:
+            break;
+    }
+    return "?"_html;
+}
 
 }  // namespace
 
@@ -53,36 +66,21 @@ Html element(std::string_view name, const Html& content, const Html& attributes)
     return Html::trusted(text + ">" + content.text() + "</" + std::string(name) + ">");
 }
 
-Html number_html_as(double value, const std::string& text) {
-    if (!std::isfinite(value)) return dash();
-    return element("data", escaped(text), "value=\""_html + escaped(to_text(value)) + "\""_html);
+Html badge(Verdict verdict, const std::string& shown) {
+    const bool not_run = shown != verdict_name(verdict);
+    return "<span class=\"badge "_html + escaped(verdict_name(verdict)) + "\"><span aria-hidden=\"true\">"_html +
+           (not_run ? "&#8211;"_html : symbol_of(verdict)) + "</span> "_html + escaped(shown) + "</span>"_html;
 }
 
-Html number_html(double value, int digits) { return number_html_as(value, number(value, digits)); }
-
-Html count_html(double value) { return number_html_as(value, short_number(value)); }
-
-Html number_html_within(double value, double uncertainty) { return number_html(value, decimals_for(uncertainty)); }
-
-Html interval_html(const Interval& interval, int digits) {
-    if (!std::isfinite(half_width(interval))) return dash();
-    return "["_html + number_html(interval.low, digits) + ", "_html + number_html(interval.high, digits) + "]"_html;
-}
-
-Html mean_html(double mean, const Interval& interval) {
-    const double half = half_width(interval);
-    const int digits = decimals_for(half);
-    if (!std::isfinite(mean) || !std::isfinite(half)) return number_html(mean, digits);
-    return number_html(mean, digits) + " ± "_html + escaped(number(half, digits));
-}
-
-std::string short_number(double value) {
-    if (!std::isfinite(value)) return "-";
-    char buffer[64];
-    const bool whole = std::abs(value) < 1e15 && (std::abs(value) >= 1e5 || value == std::nearbyint(value));
-    const auto end = whole ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 0).ptr
-                           : std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 5).ptr;
-    return std::string(buffer, end);
+Html html_of(const Cell& cell) {
+    Html html;
+    for (const Cell::Piece& piece : cell.pieces()) {
+        Html shown = piece.verdict ? badge(*piece.verdict, piece.shown) : escaped(piece.shown);
+        if (piece.exact) shown = element("data", shown, "value=\""_html + escaped(to_text(*piece.exact)) + "\""_html);
+        if (!piece.link.empty()) shown = element("a", shown, "href=\"#"_html + escaped(piece.link) + "\""_html);
+        html += shown;
+    }
+    return html;
 }
 
 std::string with_powers(std::string text) {
@@ -92,31 +90,34 @@ std::string with_powers(std::string text) {
     return text;
 }
 
-HtmlTable::HtmlTable(const std::string& caption, std::vector<std::string> heads)
-    : caption_(caption), heads_(std::move(heads)) {}
+namespace {
 
-HtmlTable& HtmlTable::row(const Html& head, const std::vector<Html>& cells) {
-    rows_ += "<tr><th scope=\"row\">"_html + head + "</th>"_html;
-    for (const Html& cell : cells) rows_ += "<td>"_html + cell + "</td>"_html;
-    rows_ += "</tr>\n"_html;
-    return *this;
+Html row_html(const Table::Row& row, const Table& table) {
+    if (row.heads_group)
+        return "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html + escaped(std::to_string(table.heads().size())) + "\">"_html +
+               html_of(row.cells.front()) + "</th></tr>\n"_html;
+    Html html;
+    for (std::size_t c = 0; c < row.cells.size(); ++c)
+        html += c < table.row_heads() ? element("th", html_of(row.cells[c]), "scope=\"row\""_html)
+                                      : element("td", html_of(row.cells[c]));
+    return element("tr", html) + "\n"_html;
 }
 
-HtmlTable& HtmlTable::group(const std::string& head) {
-    if (!rows_.empty()) rows_ += "</tbody><tbody>\n"_html;
-    rows_ += "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html + escaped(std::to_string(heads_.size())) +
-             "\">"_html + escaped(head) + "</th></tr>\n"_html;
-    return *this;
-}
+}  // namespace
 
-Html HtmlTable::html() const {
-    if (empty()) return {};
-    Html head;
-    for (const std::string& text : heads_) head += element("th", escaped(text), "scope=\"col\""_html);
-    const Html table = element("caption", escaped(caption_)) + "\n<thead><tr>"_html + head +
-                       "</tr></thead>\n<tbody>\n"_html + rows_ + "</tbody>"_html;
-    return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\""_html + escaped(caption_) + "\">"_html +
-           element("table", table) + "</div>\n"_html;
+Html html_of(const Table& table) {
+    if (table.empty()) return {};
+    Html heads, rows;
+    for (const std::string& text : table.heads()) heads += element("th", escaped(text), "scope=\"col\""_html);
+    for (const Table::Row& row : table.rows()) {
+        if (row.heads_group && !rows.empty()) rows += "</tbody><tbody>\n"_html;
+        rows += row_html(row, table);
+    }
+    const Html caption = escaped(table.caption());
+    const Html html = element("caption", caption) + "\n<thead><tr>"_html + heads + "</tr></thead>\n<tbody>\n"_html + rows +
+                      "</tbody>"_html;
+    return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\""_html + caption + "\">"_html +
+           element("table", html) + "</div>\n"_html;
 }
 
 }  // namespace credence

@@ -2,6 +2,7 @@
 
 #include "embedded/style.hpp"
 #include "report/html/page.hpp"
+#include "report/sweep.hpp"
 
 #include <credence/text.hpp>
 
@@ -56,7 +57,7 @@ Html contents(const Report& report) {
         std::set<std::string> shown;  // each badge once
         Html badges;
         for (const ArmReport* arm : part_of(report, scenario).arms)
-            if (shown.insert(verdict_word(*arm)).second) badges += " "_html + badge(*arm);
+            if (shown.insert(verdict_word(*arm)).second) badges += " "_html + html_of(verdict_cell(*arm));
         items += element("li", "<a href=\"#"_html + section_id(scenario.name) + "\">"_html + escaped(scenario.name) +
                                    "</a>"_html + badges);
     }
@@ -68,7 +69,7 @@ Html contents(const Report& report) {
 /// All sections on the trials of a scenario.
 Html evidence_of_trials(const Part& part) {
     if (!has_run(part.report, part.scenario.name)) return {};
-    return figure_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);
+    return column_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);
 }
 
 Html scenario_section(const Part& part) {

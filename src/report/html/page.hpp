@@ -24,18 +24,8 @@ struct Part {
 /// A page of these parts.
 std::string document(const std::string& title, const Html& header, const Html& main);
 
-/// Whether a scenario has a section of its own: points of sweeps only where there are few, otherwise the page would be
-/// too long.
-bool has_section(const Report& report, const std::string& scenario);
-
 /// The id of a scenario's section.
 inline Html section_id(const std::string& scenario) { return "scenario:"_html + escaped(scenario); }
-
-/// An arm's verdict as a symbol, a word and a colour.
-Html badge(const ArmReport& arm);
-
-/// How many trials of an arm failed; `-` where the arm has not run yet.
-Html failed_count(const ArmReport& arm);
 
 /// The number of arms with each verdict, in one sentence.
 std::string verdict_counts(const Report& report);
@@ -50,7 +40,7 @@ Html sweeps(const Report& report);
 Html findings(const Part& part);
 
 /// Columns of the trials, and planned against fixed.
-Html figure_tables(const Part& part);
+Html column_tables(const Part& part);
 
 /// The tables of one pair, column by column: the difference, its certainty, and its distribution.
 Html difference_table(const Comparison& pair);
@@ -66,7 +56,7 @@ Html step_tables(const Part& part);
 Html charts(const Part& part);
 
 /// A column's name in words, with its unit: `trace(P), last step [dm²]`.
-std::string figure_words(const std::string& name, const std::string& unit);
+std::string column_words(const std::string& name, const std::string& unit);
 
 /// One drawing with its caption.
 Html chart(const std::string& caption, const Html& svg);

@@ -1,5 +1,6 @@
 // The page's charts by step and by lag: a panel for each component group, each group of rows, each arm.
 
+#include "report/format.hpp"
 #include "report/html/chart.hpp"
 
 #include "report/html/page.hpp"
@@ -155,8 +156,8 @@ Html nees_panels(const Part& part) {
     Panels panels;
     for (std::size_t i = 0; i < part.arms.size(); ++i)
         if (part.arms[i]->evidence.trials > 0)
-            for (const GroupEvidence* block : shown_blocks(part.arms[i]->evidence))
-                panels.add(block->block, {part.arms[i]->arm, i, &block->anees});
+            for (const GroupEvidence* group : shown_groups(part.arms[i]->evidence))
+                panels.add(group->name, {part.arms[i]->arm, i, &group->anees});
     return panels_html(part, panels.list(), "NEES/dim", "nees");
 }
 

@@ -15,13 +15,6 @@ namespace {
 
 constexpr std::size_t most_rows = 60;
 
-Html cell(double value) { return escaped(short_number(value)); }
-
-Html cell(const Interval& interval) {
-    if (!std::isfinite(half_width(interval))) return "-"_html;
-    return escaped(short_number(interval.low) + " to " + short_number(interval.high));
-}
-
 /// The caption, and the steps that have a row.
 std::string captioned(const std::string& caption, int steps) {
     const std::size_t count = static_cast<std::size_t>(steps);
@@ -32,10 +25,10 @@ std::string captioned(const std::string& caption, int steps) {
 template <class Cells>
 Html by_step(const std::string& caption, int steps, std::vector<std::string> heads, const Cells& cells) {
     heads.insert(heads.begin(), "step");
-    HtmlTable table(captioned(caption, steps), std::move(heads));
+    Table table(captioned(caption, steps), std::move(heads));
     for (const std::size_t k : thinned(static_cast<std::size_t>(steps), most_rows))
-        table.row(escaped(std::to_string(k + 1)), cells(k));
-    return table.html();
+        table.row(std::to_string(k + 1), cells(k));
+    return html_of(table);
 }
 
 std::string name_of(const ArmReport& arm) { return arm.scenario + ", " + arm.arm; }
@@ -43,41 +36,41 @@ std::string name_of(const ArmReport& arm) { return arm.scenario + ", " + arm.arm
 /// The value at a step, or NaN where the list has none.
 double at(const std::vector<double>& values, std::size_t k) { return k < values.size() ? values[k] : std::nan(""); }
 
-Html block_table(const ArmReport& arm, const GroupEvidence& block) {
+Html group_table(const ArmReport& arm, const GroupEvidence& group) {
     std::vector<std::string> heads{"NEES/dim",        "standard error", "degrees", "band 95 %",
                                    "joint band 95 %", "var/2dim",       "RMSE",    "predicted"};
-    for (const Coverage& level : block.coverage) {
+    for (const Coverage& level : group.coverage) {
         heads.push_back(to_text(100 * level.level) + " % covers");
         heads.push_back("Wilson 95 %");
     }
-    return by_step(name_of(arm) + ": block " + block.block + " by step", arm.evidence.steps, heads, [&](std::size_t k) {
-        std::vector<Html> cells{
-            cell(block.anees.ratio[k]),       cell(block.step[k].standard_error),     cell(block.anees.degrees[k]),
-            cell(block.anees.band[k]),        cell(block.anees.simultaneous_band[k]), cell(block.variance_ratio[k]),
-            cell(at(block.accuracy.rmse, k)), cell(at(block.accuracy.predicted, k))};
-        for (const Coverage& level : block.coverage) {
-            cells.push_back(cell(level.share[k]));
-            cells.push_back(cell(level.interval[k]));
+    return by_step(name_of(arm) + ": group " + group.name + " by step", arm.evidence.steps, heads, [&](std::size_t k) {
+        std::vector<Cell> cells{
+            short_cell(group.anees.ratio[k]),       short_cell(group.step[k].standard_error),     short_cell(group.anees.degrees[k]),
+            range_cell(group.anees.band[k]),        range_cell(group.anees.simultaneous_band[k]), short_cell(group.variance_ratio[k]),
+            short_cell(at(group.accuracy.rmse, k)), short_cell(at(group.accuracy.predicted, k))};
+        for (const Coverage& level : group.coverage) {
+            cells.push_back(short_cell(level.share[k]));
+            cells.push_back(range_cell(level.interval[k]));
         }
         return cells;
     });
 }
 
 Html chart_table(const ArmReport& arm, const ChartEvidence& chart) {
-    return by_step(name_of(arm) + ": NEES of " + chart.block + " in the " + chart.chart + " chart by step",
+    return by_step(name_of(arm) + ": NEES of " + chart.name + " in the " + chart.chart + " chart by step",
                    arm.evidence.steps, {"NEES/dim", "standard error", "degrees", "band 95 %", "joint band 95 %"},
-                   [&](std::size_t k) -> std::vector<Html> {
-                       return {cell(chart.anees.ratio[k]), cell(chart.step[k].standard_error),
-                               cell(chart.anees.degrees[k]), cell(chart.anees.band[k]),
-                               cell(chart.anees.simultaneous_band[k])};
+                   [&](std::size_t k) -> std::vector<Cell> {
+                       return {short_cell(chart.anees.ratio[k]), short_cell(chart.step[k].standard_error),
+                               short_cell(chart.anees.degrees[k]), range_cell(chart.anees.band[k]),
+                               range_cell(chart.anees.simultaneous_band[k])};
                    });
 }
 
 Html nis_table(const ArmReport& arm, const NisEvidence& nis) {
     return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", arm.evidence.steps,
-                   {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Html> {
-                       return {cell(nis.nis.ratio[k]), cell(nis.nis.degrees[k]), cell(nis.nis.band[k]),
-                               cell(nis.nis.simultaneous_band[k])};
+                   {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Cell> {
+                       return {short_cell(nis.nis.ratio[k]), short_cell(nis.nis.degrees[k]), range_cell(nis.nis.band[k]),
+                               range_cell(nis.nis.simultaneous_band[k])};
                    });
 }
 
@@ -87,10 +80,10 @@ Html bias_table(const ArmReport& arm) {
     if (heads.empty()) return {};
     return by_step(name_of(arm) + ": mean error/sigma by component and step (standard error)", arm.evidence.steps,
                    heads, [&](std::size_t k) {
-                       std::vector<Html> cells;
+                       std::vector<Cell> cells;
                        for (const BiasEvidence& bias : arm.evidence.bias)
-                           cells.push_back(escaped(short_number(bias.step[k].mean) + " (" +
-                                                   short_number(bias.step[k].standard_error) + ")"));
+                           cells.push_back(short_cell(bias.step[k].mean) + " (" +
+                                           short_cell(bias.step[k].standard_error) + ")");
                        return cells;
                    });
 }
@@ -98,11 +91,11 @@ Html bias_table(const ArmReport& arm) {
 Html distribution_table(const ArmReport& arm) {
     const Evidence& evidence = arm.evidence;
     return by_step(name_of(arm) + ": distance of the NEES from chi-square, and credibility, by step", evidence.steps,
-                   {"distance", "p", "NCI", "I²"}, [&](std::size_t k) -> std::vector<Html> {
+                   {"distance", "p", "NCI", "I²"}, [&](std::size_t k) -> std::vector<Cell> {
                        const bool known = k < evidence.credibility.step.size();
-                       return {cell(at(evidence.shape.distance, k)), cell(at(evidence.shape.p, k)),
-                               cell(known ? evidence.credibility.step[k].nci : std::nan("")),
-                               cell(known ? evidence.credibility.step[k].inclination : std::nan(""))};
+                       return {short_cell(at(evidence.distribution.distance, k)), short_cell(at(evidence.distribution.p, k)),
+                               short_cell(known ? evidence.credibility.step[k].nci : std::nan("")),
+                               short_cell(known ? evidence.credibility.step[k].inclination : std::nan(""))};
                    });
 }
 
@@ -113,10 +106,10 @@ Html step_tables(const Part& part) {
     for (const ArmReport* arm : part.arms) {
         if (arm->evidence.trials == 0) continue;
         Html tables;
-        for (const GroupEvidence* block : shown_blocks(arm->evidence)) tables += block_table(*arm, *block);
+        for (const GroupEvidence* group : shown_groups(arm->evidence)) tables += group_table(*arm, *group);
         for (const ChartEvidence& chart : arm->evidence.charts) tables += chart_table(*arm, chart);
         for (const NisEvidence& nis : arm->evidence.nis) tables += nis_table(*arm, nis);
-        html += folded(arm->arm + ": every figure by step", tables + bias_table(*arm) + distribution_table(*arm));
+        html += folded(arm->arm + ": every series by step", tables + bias_table(*arm) + distribution_table(*arm));
     }
     return html.empty() ? html : element("div", "<h3>By step</h3>\n"_html + html, "class=\"screen\""_html) + "\n"_html;
 }

@@ -17,10 +17,10 @@ namespace {
 
 /// A quantity of an arm or a pair; nothing where it has no values.
 template <class Part>
-std::optional<Summary> summary_of(const Part* part, const std::string& figure) {
+std::optional<Summary> summary_of(const Part* part, const std::string& column) {
     if (part != nullptr)
         for (const SweptColumn& one : swept_columns(*part))
-            if (one.name == figure && one.summary.count > 0) return one.summary;
+            if (one.name == column && one.summary.count > 0) return one.summary;
     return std::nullopt;
 }
 
@@ -37,66 +37,21 @@ public:
 
     Html html() const {
         Html tables;
-        for (const std::string& name : arms_) tables += arm_table(name);
-        for (const std::string& name : pairs_) tables += pair_table(name);
+        for (const std::string& name : arms_) tables += html_of(arm_table(swept_, grid_, name));
+        for (const std::string& name : pairs_) tables += html_of(pair_table(swept_, grid_, name));
         return "<section aria-labelledby=\""_html + escaped(id_) + "\">\n"_html +
                element("h2", escaped("Sweep of " + grid_.of + " over " + keys_), "id=\""_html + escaped(id_) + "\""_html) +
                "\n<h3>Curves</h3>\n"_html + curves() + "<h3>By point</h3>\n"_html + tables + "</section>\n"_html;
     }
 
 private:
-    Html head_of(const GridPoint& point) const {
-        std::vector<std::string> values;
-        for (std::size_t a = 0; a < grid_.axes.size(); ++a) values.push_back(grid_.axes[a].values[point.place[a]]);
-        if (!has_section(report_, swept_.scenario(point))) return escaped(joined(values));
-        return "<a href=\"#"_html + section_id(swept_.scenario(point)) + "\">"_html + escaped(joined(values)) +
-               "</a>"_html;
-    }
-
     /// The shown quantities that some point has of these arms or pairs.
     template <class Find>
-    std::vector<SweptColumn> figures_of(const std::vector<std::string>& names, const Find& find) const {
+    std::vector<SweptColumn> columns_of(const std::vector<std::string>& names, const Find& find) const {
         for (const GridPoint& point : grid_.points)
             for (const std::string& name : names)
                 if (const auto* part = find(point, name)) return swept_columns(*part);
         return {};
-    }
-
-    Html arm_table(const std::string& name) const {
-        const auto find = [&](const GridPoint& point, const std::string& arm) { return swept_.arm(point, arm); };
-        const std::vector<SweptColumn> figures = figures_of({name}, find);
-        std::vector<std::string> heads{keys_, "verdict"};
-        for (const SweptColumn& one : figures) heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
-        heads.push_back("failed");
-        HtmlTable table(grid_.of + ", " + name + " by point", heads);
-        for (const GridPoint& point : grid_.points) {
-            const ArmReport* arm = swept_.arm(point, name);
-            if (arm == nullptr) continue;
-            std::vector<Html> cells{badge(*arm)};
-            for (const SweptColumn& one : swept_columns(*arm))
-                cells.push_back(mean_html(one.summary.mean, one.summary.ci95));
-            cells.push_back(failed_count(*arm));
-            table.row(head_of(point), cells);
-        }
-        return table.html();
-    }
-
-    Html pair_table(const std::string& name) const {
-        const auto find = [&](const GridPoint& point, const std::string& pair) { return swept_.pair(point, pair); };
-        std::vector<std::string> heads{keys_};
-        for (const SweptColumn& one : figures_of({name}, find))
-            heads.push_back(figure_words(one.name, one.unit) + ", mean ± 95 %");
-        HtmlTable table(grid_.of + ", " + name + " by point, trial by trial", heads);
-        for (const GridPoint& point : grid_.points) {
-            const Comparison* pair = swept_.pair(point, name);
-            if (pair == nullptr) continue;
-            const bool run = has_run(report_, swept_.scenario(point));
-            std::vector<Html> cells;
-            for (const SweptColumn& one : swept_columns(*pair))
-                cells.push_back(run ? mean_html(one.summary.mean, one.summary.ci95) : "not run yet"_html);
-            table.row(head_of(point), cells);
-        }
-        return table.html();
     }
 
     Html curves() const {
@@ -104,19 +59,19 @@ private:
         const auto pair = [&](const GridPoint& point, const std::string& name) { return swept_.pair(point, name); };
         Html of_arms, of_pairs;
         std::size_t number = 0;
-        for (const SweptColumn& one : figures_of(arms_, arm)) {
+        for (const SweptColumn& one : columns_of(arms_, arm)) {
             const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
             constexpr double spread = 20;  // beyond it the small values could not be distinguished from 0
-            const SweptCurves drawn{grid_, curve_axis(grid_), arms_, figure_words(one.name, one.unit),
+            const SweptCurves drawn{grid_, curve_axis(grid_), arms_, column_words(one.name, one.unit),
                                     is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.limits.margin : 0,
                                     spread, [&](const GridPoint& point, const std::string& name) {
                                         return summary_of(swept_.arm(point, name), one.name);
                                     }};
             of_arms += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
         }
-        for (const SweptColumn& one : figures_of(pairs_, pair)) {
+        for (const SweptColumn& one : columns_of(pairs_, pair)) {
             const SweptCurves drawn{grid_, curve_axis(grid_), pairs_,
-                                    "difference of " + figure_words(one.name, one.unit), 0, 0, INFINITY,
+                                    "difference of " + column_words(one.name, one.unit), 0, 0, INFINITY,
                                     [&](const GridPoint& point, const std::string& name) {
                                         return summary_of(swept_.pair(point, name), one.name);
                                     }};
@@ -135,14 +90,6 @@ private:
 };
 
 }  // namespace
-
-bool has_section(const Report& report, const std::string& scenario) {
-    constexpr std::ptrdiff_t most = 12;
-    const auto swept = [](const Scenario& one) { return SweptReport::swept(one); };
-    const auto same = [&](const Scenario& one) { return one.name == scenario && swept(one); };
-    return std::count_if(report.scenarios.begin(), report.scenarios.end(), swept) <= most ||
-           std::none_of(report.scenarios.begin(), report.scenarios.end(), same);
-}
 
 Html sweeps(const Report& report) {
     const SweptReport swept(report);

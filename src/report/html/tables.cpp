@@ -26,21 +26,21 @@ std::vector<std::string> names_of(const Part& part) {
     return names;
 }
 
-Html published(const ColumnReport& column_report) {
+Cell published(const ColumnReport& column_report) {
     if (!column_report.published) return {};
-    const Html value = number_html_as(column_report.published->value, to_text(column_report.published->value));
+    const Cell value = number_cell_as(column_report.published->value, to_text(column_report.published->value));
     if (std::isnan(column_report.published->percentile)) return value;
-    return value + " ("_html + number_html(column_report.published->percentile, 1) + " %)"_html;
+    return value + " (" + number_cell(column_report.published->percentile, 1) + " %)";
 }
 
 /// Rows for every arm under a head for every column.
 template <class Cells>
-void add_rows(const Part& part, HtmlTable& table, const Cells& cells) {
+void add_rows(const Part& part, Table& table, const Cells& cells) {
     for (const std::string& name : names_of(part)) {
-        table.group(figure_words(name, column_named(part.arms.front()->columns, name).unit));
+        table.group(column_words(name, column_named(part.arms.front()->columns, name).unit));
         for (const ArmReport* arm : part.arms) {
             const ColumnReport& column_report = column_named(arm->columns, name);
-            if (column_report.summary.count > 0) table.row(escaped(arm->arm), cells(column_report));
+            if (column_report.summary.count > 0) table.row(arm->arm, cells(column_report));
         }
     }
 }
@@ -57,79 +57,75 @@ Html arms_table(const Part& part) {
     std::vector<std::string> heads{"arm", "mean", "95 %, Student", "95 %, bootstrap", "median", "sd"};
     const bool published_too = has_published(part);
     if (published_too) heads.push_back("published (percentile)");
-    HtmlTable table(part.scenario.name + ": figures of a trial", heads);
+    Table table(part.scenario.name + ": columns of the trials", heads);
     add_rows(part, table, [&](const ColumnReport& one) {
         const Summary& s = one.summary;
         const int digits = decimals_for(half_width(s.ci95));
-        std::vector<Html> cells{number_html(s.mean, digits), interval_html(s.ci95, digits),
-                                one.bootstrap95 ? interval_html(*one.bootstrap95, digits) : Html(),
-                                number_html(s.median, digits), number_html(s.standard_deviation, digits)};
+        std::vector<Cell> cells{number_cell(s.mean, digits), interval_cell(s.ci95, digits),
+                                one.bootstrap95 ? interval_cell(*one.bootstrap95, digits) : Cell(),
+                                number_cell(s.median, digits), number_cell(s.standard_deviation, digits)};
         if (published_too) cells.push_back(published(one));
         return cells;
     });
-    return table.html();
+    return html_of(table);
 }
 
 Html spread_table(const Part& part) {
     std::vector<std::string> heads{"arm", "trials", "standard error"};
     for (const double p : reported_quantiles) heads.push_back(number(100 * p, 0) + " % quantile");
-    HtmlTable table(part.scenario.name + ": how the figures are spread", heads);
+    Table table(part.scenario.name + ": how the columns are distributed", heads);
     add_rows(part, table, [](const ColumnReport& one) {
         const int digits = decimals_for(half_width(one.summary.ci95));
-        std::vector<Html> cells{count_html(static_cast<double>(one.summary.count)),
-                                number_html_within(one.summary.standard_error, one.summary.standard_error)};
-        for (const double quantile : one.quantiles) cells.push_back(number_html(quantile, digits));
+        std::vector<Cell> cells{count_cell(static_cast<double>(one.summary.count)),
+                                number_cell_within(one.summary.standard_error, one.summary.standard_error)};
+        for (const double quantile : one.quantiles) cells.push_back(number_cell(quantile, digits));
         return cells;
     });
-    return table.html();
+    return html_of(table);
 }
-
-Html share(double value) { return number_html_as(value, percent(value)); }
-
-Html p_value(double p) { return number_html_as(p, p_text(p)); }
 
 }  // namespace
 
 Html difference_table(const Comparison& pair) {
-    HtmlTable table(pair.scenario + ": " + pair.name() +
+    Table table(pair.scenario + ": " + pair.name() +
                         ", trial by trial (both had the same draws; negative: " + pair.a + " is lower)",
-                    {"figure", "mean", "95 %, Student", "95 %, bootstrap", "median", "below", "above", "equal",
+                    {"column", "mean", "95 %, Student", "95 %, bootstrap", "median", "below", "above", "equal",
                      "p (Holm)", "effect size", "reduction"});
     for (const ComparedColumn& one : pair.columns) {
         const PairedComparison& paired = one.paired;
         if (paired.pairs == 0) continue;
         const Summary& s = paired.difference;
         const int digits = decimals_for(half_width(s.ci95));
-        table.row(escaped(figure_words(one.name, one.unit)),
-                  {number_html(s.mean, digits), interval_html(s.ci95, digits), interval_html(paired.bootstrap95, digits),
-                   number_html(s.median, digits), share(paired.wins_a), share(paired.wins_b), share(paired.ties),
-                   p_value(one.holm_p), number_html(paired.effect_size, 3), number_html(paired.variance_reduction, 2)});
+        table.row(column_words(one.name, one.unit),
+                  {number_cell(s.mean, digits), interval_cell(s.ci95, digits), interval_cell(paired.bootstrap95, digits),
+                   number_cell(s.median, digits), share_cell(paired.wins_a), share_cell(paired.wins_b), share_cell(paired.ties),
+                   p_cell(one.holm_p), number_cell(paired.effect_size, 3), number_cell(paired.variance_reduction, 2)});
     }
-    return table.html();
+    return html_of(table);
 }
 
 Html difference_spread_table(const Comparison& pair) {
-    HtmlTable table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
-                    {"figure", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected"});
+    Table table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
+                    {"column", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected"});
     for (const ComparedColumn& one : pair.columns) {
         const Summary& s = one.paired.difference;
         if (one.paired.pairs == 0) continue;
         table.row(
-            escaped(figure_words(one.name, one.unit)),
-            {count_html(static_cast<double>(one.paired.pairs)), number_html_within(s.standard_error, s.standard_error),
-             number_html(s.standard_deviation, decimals_for(half_width(s.ci95))), number_html(one.paired.wilcoxon_z, 2),
-             p_value(one.paired.wilcoxon_p)});
+            column_words(one.name, one.unit),
+            {count_cell(static_cast<double>(one.paired.pairs)), number_cell_within(s.standard_error, s.standard_error),
+             number_cell(s.standard_deviation, decimals_for(half_width(s.ci95))), number_cell(one.paired.wilcoxon_z, 2),
+             p_cell(one.paired.wilcoxon_p)});
     }
-    return table.html();
+    return html_of(table);
 }
 
-Html figure_tables(const Part& part) {
-    Html html = "<h3>Figures</h3>\n"_html + arms_table(part), more = spread_table(part);
+Html column_tables(const Part& part) {
+    Html html = "<h3>Columns of the trials</h3>\n"_html + arms_table(part), more = spread_table(part);
     for (const Comparison* pair : part.pairs) {
         html += difference_table(*pair);
         more += difference_spread_table(*pair);
     }
-    return html + folded("How the figures are spread: standard errors, quantiles, numbers of trials", more);
+    return html + folded("How the columns are distributed: standard errors, quantiles, numbers of trials", more);
 }
 
 }  // namespace credence::page

@@ -4,6 +4,7 @@
 
 #include "report/format.hpp"
 #include "report/html/page.hpp"
+#include "report/sweep.hpp"
 #include "report/words.hpp"
 
 #include <algorithm>
@@ -13,25 +14,6 @@
 namespace credence::page {
 
 namespace {
-
-/// A symbol for each verdict, so that it can be read without colour.
-Html shape_of(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::consistent:
-            return "&#10003;"_html;  // check mark
-        case Verdict::optimistic:
-            return "&#9650;"_html;  // triangle up: NEES above 1
-        case Verdict::pessimistic:
-            return "&#9660;"_html;  // triangle down: NEES below 1
-        case Verdict::mixed:
-            return "&#9670;"_html;  // diamond
-        case Verdict::failed:
-            return "&#10007;"_html;  // ballot x
-        case Verdict::undecided:
-            break;
-    }
-    return "?"_html;
-}
 
 /// The reasons for an arm's verdict, in one line.
 std::string why(const ArmReport& arm) {
@@ -50,30 +32,38 @@ Html numbers_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
     const Summary& nees = column_named(arm.columns, "nees_ratio").summary;
     const Summary& nis = column_named(arm.columns, "nis_ratio").summary;
-    return "NEES/n "_html + mean_html(nees.mean, nees.ci95) +
-           (nis.count > 0 ? ", NIS/m "_html + mean_html(nis.mean, nis.ci95) : Html()) + "; "_html +
-           failed_count(arm) + " of "_html + count_html(static_cast<double>(arm.trials)) + " trials failed"_html +
-           (arm.diverged > 0
-                ? ", "_html + count_html(static_cast<double>(arm.diverged)) + " of them diverged"_html
-                : Html());
+    return html_of("NEES/n " + mean_cell(nees.mean, nees.ci95) +
+                   (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) + " of " +
+                   count_cell(static_cast<double>(arm.trials)) + " trials failed" +
+                   (arm.diverged > 0 ? ", " + count_cell(static_cast<double>(arm.diverged)) + " of them diverged" : Cell()));
 }
 
 Html verdict_line(const ArmReport& arm) {
     return element("li", "<p class=\"arm\"><a href=\"#"_html + section_id(arm.scenario) + "\">"_html +
                              escaped(arm.scenario) + "</a> "_html + element("b", escaped(arm.arm)) + "</p>\n"_html +
-                             badge(arm) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
+                             html_of(verdict_cell(arm)) + "\n<div><p class=\"why\">"_html + escaped(why(arm)) +
                              "</p>\n<p class=\"numbers\">"_html + numbers_of(arm) + "</p></div>"_html) +
            "\n"_html;
 }
 
-HtmlTable findings_table(const std::string& caption, const std::vector<Finding>& findings) {
-    HtmlTable table(caption, {"what", "where", "when", "value", "interval, corrected"});
+Table findings_table(const std::string& caption, const std::vector<Finding>& findings) {
+    Table table(caption, {"what", "where", "when", "value", "interval, corrected"});
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
-        table.row(escaped(finding.what),
-                  {escaped(finding.where), escaped(finding.when), number_html_within(finding.value, half),
-                   interval_html(finding.interval, decimals_for(half))});
+        table.row(finding.what,
+                  {finding.where, when_text(finding), number_cell_within(finding.value, half),
+                   interval_cell(finding.interval, decimals_for(half))});
     }
+    return table;
+}
+
+Table suspicions_table(const ArmReport& arm) {
+    Table table(
+        arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
+        {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
+    for (const Suspicion& one : arm.consistency.suspicions)
+        table.row(one.what, {one.where + ", " + one.measure, short_cell(one.value), count_cell(one.trials.value),
+                             count_cell(one.trials.low) + " to " + count_cell(one.trials.high)});
     return table;
 }
 
@@ -85,35 +75,23 @@ Html arm_findings(const ArmReport& arm) {
     if (lines.empty()) lines = element("li", escaped(why(arm)));
     std::vector<Finding> all = verdict.findings;
     all.insert(all.end(), verdict.cautions.begin(), verdict.cautions.end());
-    const Html table =
-        findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all)
-            .html();
-    return element("h4", escaped(arm.arm) + " "_html + badge(arm)) + "\n"_html + element("ul", lines) +
-           "\n"_html +
+    const Html table = html_of(
+        findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all));
+    return element("h4", escaped(arm.arm) + " "_html + html_of(verdict_cell(arm))) + "\n"_html + element("ul", lines) + "\n"_html +
            (all.size() <= most
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
-                         table));
+                         table)) +
+           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm)));
 }
 
 }  // namespace
 
-Html badge(const ArmReport& arm) {
-    const Verdict verdict = arm.consistency.verdict;
-    return "<span class=\"badge "_html + escaped(verdict_name(verdict)) + "\"><span aria-hidden=\"true\">"_html +
-           (arm.not_run() ? "&#8211;"_html : shape_of(verdict)) + "</span> "_html + escaped(verdict_word(arm)) +
-           "</span>"_html;
-}
-
-Html failed_count(const ArmReport& arm) {
-    return count_html(arm.not_run() ? std::nan("") : static_cast<double>(arm.failed_trials()));
-}
-
-std::string figure_words(const std::string& name, const std::string& unit) {
+std::string column_words(const std::string& name, const std::string& unit) {
     if (name == "nees_ratio") return "NEES/n, mean over the steps";
     if (name == "nis_ratio") return "NIS/m, over the steps";
     if (name == "unseen") return "unseen features, sum over the poses";
-    return with_powers(figure_title(name, unit));
+    return with_powers(column_title(name, unit));
 }
 
 std::string verdict_counts(const Report& report) {

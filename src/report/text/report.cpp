@@ -15,13 +15,12 @@ namespace credence {
 
 namespace {
 
-/// The reasons for an arm's verdict; JSON has every finding with its interval.
+/// The reasons for an arm's verdict, in lines below its row; JSON has every finding with its interval.
 std::string why(const ArmReport& arm) {
     constexpr std::size_t indent = 6;
-    std::string text;
-    for (const Reason& reason : reasons_of(arm))
-        text += std::string(indent, ' ') + wrapped_list(reason.head, reason.parts, indent) + "\n";
-    return text;
+    std::vector<std::string> lines;
+    for (const Reason& reason : reasons_of(arm)) lines.push_back("    " + wrapped_list(reason.head, reason.parts, indent));
+    return joined(lines, "\n" + std::string(2, ' '));
 }
 
 /// Arms of scenarios that are not in a sweep: a sweep has a table of its own.
@@ -36,25 +35,18 @@ std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
 }
 
 std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
-    if (arms.empty()) return "";
-    constexpr int widest = 56;  // longer names have a line of their own
-    int width = 16;
-    for (const ArmReport* arm : arms)
-        width = std::clamp(static_cast<int>(arm->scenario.size() + arm->arm.size()) + 3, width, widest);
-    std::string text = "  " + padded("", width, false) + padded("verdict", 12, false) + padded("NEES/n", 19) +
-                       padded("NIS/m", 19) + padded("failed", 9) + "\n";
+    Table table("", {"", "verdict", "NEES/n", "NIS/m", "failed"});
     for (const ArmReport* arm : arms) {
-        const std::string name = arm->scenario + "/" + arm->arm;
-        const bool fits = static_cast<int>(name.size()) < width;
-        text += (fits ? "" : "  " + name + "\n") + "  " + padded(fits ? name : "", width, false) +
-                padded(verdict_word(*arm), 12, false);
+        std::vector<Cell> cells{arm->scenario + "/" + arm->arm, verdict_cell(*arm)};
         for (const char* column : {"nees_ratio", "nis_ratio"}) {
             const Summary& summary = column_named(arm->columns, column).summary;
-            text += padded(with_interval(summary.mean, summary.ci95), 19);
+            cells.push_back(mean_cell(summary.mean, summary.ci95));
         }
-        text += padded(arm->not_run() ? "-" : std::to_string(arm->failed_trials()), 9) + "\n" + why(*arm);
+        cells.push_back(failed_cell(*arm));
+        table.row(std::move(cells));
+        if (const std::string reasons = why(*arm); !reasons.empty()) table.group(reasons);
     }
-    return text;
+    return table_text(table);
 }
 
 }  // namespace

@@ -123,10 +123,10 @@ void JournalFollower::read(const JournalBytes& journal) {
     for (std::size_t s = 0; s < followed_.size(); ++s) check(s);
 }
 
-void JournalFollower::tell(Snapshot& look) const {
-    look.state = RunState::running;
-    look.trials = asked_;
-    look.shard = shard_;
+void JournalFollower::tell(Snapshot& snapshot) const {
+    snapshot.state = RunState::running;
+    snapshot.trials = asked_;
+    snapshot.shard = shard_;
     for (std::size_t s = 0; s < followed_.size(); ++s) {
         const Followed& followed = followed_[s];
         WatchedScenario scenario = described(study_.scenarios[s]);
@@ -142,7 +142,7 @@ void JournalFollower::tell(Snapshot& look) const {
         scenario.blocks_asked = scenario.blocks + blocks_of_shard(shard_, asked_) -
                                 over_both([&](const WatchedBlocks& part) { return part.blocks_of(shard_); });
         scenario.arms = watched_arms(study_.scenarios[s], sums(s));
-        look.scenarios.push_back(std::move(scenario));
+        snapshot.scenarios.push_back(std::move(scenario));
     }
 }
 

@@ -24,7 +24,7 @@ public:
     bool goes_on_with(const JournalBytes& journal) const;
     /// Reads what was appended since. Throws BadBytes.
     void read(const JournalBytes& journal);
-    void tell(Snapshot& look) const;
+    void tell(Snapshot& snapshot) const;
 
 private:
     /// The state of a scenario.

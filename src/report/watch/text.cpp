@@ -5,6 +5,7 @@
 #include <credence/error.hpp>
 
 #include "report/format.hpp"
+#include "report/table.hpp"
 #include "report/data/json.hpp"
 
 #include <algorithm>
@@ -17,37 +18,37 @@ std::string of_text(std::int64_t done, std::int64_t asked) {
     return std::to_string(done) + (done == asked ? "" : " of " + std::to_string(asked));
 }
 
-std::string shard_text(const Snapshot& look) {
-    if (look.shard.count == 1) return "";
-    return ", shard " + std::to_string(look.shard.index) + "/" + std::to_string(look.shard.count) + " of " +
-           std::to_string(look.trials) + " trials a scenario";
+std::string shard_text(const Snapshot& snapshot) {
+    if (snapshot.shard.count == 1) return "";
+    return ", shard " + std::to_string(snapshot.shard.index) + "/" + std::to_string(snapshot.shard.count) + " of " +
+           std::to_string(snapshot.trials) + " trials a scenario";
 }
 
 /// The state of the run.
-std::string state_text(const Snapshot& look) {
-    const std::string trials = of_text(look.trials_done(), look.trials_asked()) + " trials";
-    switch (look.state) {
+std::string state_text(const Snapshot& snapshot) {
+    const std::string trials = of_text(snapshot.trials_done(), snapshot.trials_asked()) + " trials";
+    switch (snapshot.state) {
         case RunState::begun: return "begun, nothing committed yet";
         case RunState::complete: return "complete, " + trials;
         case RunState::incomplete:
-            return (look.shard.count > 1 ? "a whole part, " + trials : "not all there, " + trials) + shard_text(look);
+            return (snapshot.shard.count > 1 ? "a whole part, " + trials : "not all there, " + trials) + shard_text(snapshot);
         case RunState::running: break;
     }
-    const double share = 100 * static_cast<double>(look.trials_done()) /
-                         static_cast<double>(std::max<std::int64_t>(1, look.trials_asked()));
-    std::string text = "running, " + trials + " (" + number(share, 0) + " %)" + shard_text(look);
-    if (look.trials_per_second) text += "; " + number(*look.trials_per_second, 0) + " trials/s";
-    if (const std::optional<double> left = look.time_left()) text += ", " + duration_text(*left) + " left";
-    return text + "; last commit " + duration_text(look.seconds_since_commit) + " ago";
+    const double share = 100 * static_cast<double>(snapshot.trials_done()) /
+                         static_cast<double>(std::max<std::int64_t>(1, snapshot.trials_asked()));
+    std::string text = "running, " + trials + " (" + number(share, 0) + " %)" + shard_text(snapshot);
+    if (snapshot.trials_per_second) text += "; " + number(*snapshot.trials_per_second, 0) + " trials/s";
+    if (const std::optional<double> left = snapshot.time_left()) text += ", " + duration_text(*left) + " left";
+    return text + "; last commit " + duration_text(snapshot.seconds_since_commit) + " ago";
 }
 
 /// Advice where the run may have ended without finishing.
-std::string advice(const Snapshot& look) {
+std::string advice(const Snapshot& snapshot) {
     constexpr double long_time = 60;
-    if (look.state == RunState::incomplete && look.shard.count == 1)
+    if (snapshot.state == RunState::incomplete && snapshot.shard.count == 1)
         return "A run that was stopped goes on with --resume; parts are joined by `credence merge`.\n";
-    if (look.ended() || look.seconds_since_commit < long_time) return "";
-    return std::string(look.trials_done() < look.trials_asked() ? "Nothing has been committed for a while"
+    if (snapshot.ended() || snapshot.seconds_since_commit < long_time) return "";
+    return std::string(snapshot.trials_done() < snapshot.trials_asked() ? "Nothing has been committed for a while"
                                                                 : "All is committed, and the results file is due") +
            ". If the run is dead, the same command with --resume goes on.\n";
 }
@@ -59,23 +60,25 @@ std::string units_text(const WatchedScenario& scenario) {
     return text;
 }
 
-std::string figure_text(const Moments& moments) {
-    return moments.count > 0 ? with_interval(moments.mean, t_interval(moments)) : "-";
+Cell mean_cell_of(const Moments& moments) {
+    return moments.count > 0 ? mean_cell(moments.mean, t_interval(moments)) : Cell("-");
 }
 
-void add_scenario(TextTable& table, const WatchedScenario& scenario) {
-    if (scenario.trials == 0)
-        return table.line(wrapped(scenario.name + ": not run yet, " + std::to_string(scenario.trials_asked) + " trials asked for"));
-    table.line(wrapped(scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +
-                       of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario)));
+void add_scenario(Table& table, const WatchedScenario& scenario) {
+    if (scenario.trials == 0) {
+        table.group(wrapped(scenario.name + ": not run yet, " + std::to_string(scenario.trials_asked) + " trials asked for"));
+        return;
+    }
+    table.group(wrapped(scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +
+                        of_text(scenario.blocks, scenario.blocks_asked) + " blocks" + units_text(scenario)));
     for (const WatchedArm& arm : scenario.arms) {
-        std::vector<std::string> cells{arm.name};
-        for (const Moments& column : arm.columns) cells.push_back(figure_text(column));
-        cells.push_back(std::to_string(arm.failed + arm.diverged));
-        table.row(std::move(cells));
+        std::vector<Cell> cells;
+        for (const Moments& column : arm.columns) cells.push_back(mean_cell_of(column));
+        cells.push_back(count_cell(static_cast<double>(arm.failed + arm.diverged)));
+        table.row(arm.name, std::move(cells));
     }
     for (const WatchedArm& arm : scenario.arms)
-        if (!arm.other.empty()) table.row({arm.name + " - " + arm.other, figure_text(arm.difference)});
+        if (!arm.other.empty()) table.row(arm.name + " - " + arm.other, {mean_cell_of(arm.difference)});
 }
 
 Json moments_json(const Moments& moments) {
@@ -97,9 +100,9 @@ const char* state_name(RunState state) {
     return "incomplete";
 }
 
-Json arm_json(const Snapshot& look, const WatchedScenario& scenario, const WatchedArm& arm) {
+Json arm_json(const Snapshot& snapshot, const WatchedScenario& scenario, const WatchedArm& arm) {
     Json json{{"scenario", scenario.name},       {"arm", arm.name},
-              {"state", state_name(look.state)}, {"trials", scenario.trials},
+              {"state", state_name(snapshot.state)}, {"trials", scenario.trials},
               {"trials_asked", scenario.trials_asked}, {"blocks", scenario.blocks},
               {"blocks_asked", scenario.blocks_asked}, {"failed", arm.failed},
               {"diverged", arm.diverged},        {"failed_trials", arm.failed + arm.diverged}};
@@ -109,28 +112,27 @@ Json arm_json(const Snapshot& look, const WatchedScenario& scenario, const Watch
     }
     if (!arm.other.empty())
         json["paired_difference"] = {{"pair", arm.name + " - " + arm.other}, {"trace_P", moments_json(arm.difference)}};
-    json["seconds_since_commit"] = look.ended() ? Json() : Json(look.seconds_since_commit);
+    json["seconds_since_commit"] = snapshot.ended() ? Json() : Json(snapshot.seconds_since_commit);
     return json;
 }
 
 }  // namespace
 
-std::string watch_text(const Snapshot& look) {
-    std::string text = wrapped(printable(look.path) + ": " + state_text(look)) + "\n" + advice(look);
-    if (look.scenarios.empty()) return text;
-    TextTable table("lr");
+std::string watch_text(const Snapshot& snapshot) {
+    std::string text = wrapped(printable(snapshot.path) + ": " + state_text(snapshot)) + "\n" + advice(snapshot);
+    if (snapshot.scenarios.empty()) return text;
     std::vector<std::string> heads{"mean ± 95 % so far"};
-    for (const Column& column : look.scenarios.front().columns) heads.push_back(column.name);
+    for (const Column& column : snapshot.scenarios.front().columns) heads.push_back(column.name);
     heads.push_back("failed");
-    table.row(std::move(heads));
-    for (const WatchedScenario& scenario : look.scenarios) add_scenario(table, scenario);
-    return text + table.text();
+    Table table("", std::move(heads));
+    for (const WatchedScenario& scenario : snapshot.scenarios) add_scenario(table, scenario);
+    return text + table_text(table, 0);
 }
 
-std::string watch_json(const Snapshot& look) {
+std::string watch_json(const Snapshot& snapshot) {
     Json array = Json::array();
-    for (const WatchedScenario& scenario : look.scenarios)
-        for (const WatchedArm& arm : scenario.arms) array.push_back(arm_json(look, scenario, arm));
+    for (const WatchedScenario& scenario : snapshot.scenarios)
+        for (const WatchedArm& arm : scenario.arms) array.push_back(arm_json(snapshot, scenario, arm));
     return array.dump(2) + "\n";
 }
 

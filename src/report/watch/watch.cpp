@@ -51,22 +51,22 @@ RunWatch::RunWatch(RunWatch&&) noexcept = default;
 RunWatch::~RunWatch() = default;
 
 /// Nothing where there is no journal.
-std::optional<Snapshot> RunWatch::look_at_journal() {
+std::optional<Snapshot> RunWatch::journal_snapshot() {
     const std::string path = journal_path_of(path_);
     for (int attempt = 0;; ++attempt) {
         const std::optional<JournalBytes> journal = JournalBytes::open(path);
         if (!journal) return std::nullopt;
         try {
             if (follower_ && !follower_->goes_on_with(*journal)) follower_.reset();
-            Snapshot look{path_, RunState::begun, 0, {}, {}, journal->seconds_since_change(), {}};
+            Snapshot snapshot{path_, RunState::begun, 0, {}, {}, journal->seconds_since_change(), {}};
             if (!follower_) {
                 const std::optional<FoundHeader> found = find_header(*journal);
-                if (!found) return look;
+                if (!found) return snapshot;
                 follower_ = std::make_unique<JournalFollower>(*journal, *found, path_);
             }
             follower_->read(*journal);
-            follower_->tell(look);
-            return look;
+            follower_->tell(snapshot);
+            return snapshot;
         } catch (const BadBytes& bad) {
             follower_.reset();
             if (attempt > 0) refuse_damaged(path, bad.what());
@@ -79,48 +79,48 @@ std::optional<Snapshot> RunWatch::look_at_journal() {
     }
 }
 
-Snapshot RunWatch::look_at_results() const {
+Snapshot RunWatch::results_snapshot() const {
     std::error_code none;
     if (!std::filesystem::exists(path_, none))
         throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
                          " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
     const Study study = read_results(path_, 0).study;
-    Snapshot look{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
-    if (!study.complete && !study.scenarios.empty()) look.shard = shard_of(study.scenarios.front(), study.trials);
+    Snapshot snapshot{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
+    if (!study.complete && !study.scenarios.empty()) snapshot.shard = shard_of(study.scenarios.front(), study.trials);
     for (const ScenarioResults& results : study.scenarios) {
-        if (results.blocks != study.scenarios.front().blocks) look.shard = {};
+        if (results.blocks != study.scenarios.front().blocks) snapshot.shard = {};
         WatchedScenario scenario = described(results);
         scenario.trials = results.trials;
         scenario.blocks = results.blocks.count();
         scenario.arms = watched_arms(results, results.keep == Keep::aggregates
                                                   ? sums_of_aggregates(results)
                                                   : sums_of_rows(results, 0, results.trials));
-        look.scenarios.push_back(std::move(scenario));
+        snapshot.scenarios.push_back(std::move(scenario));
     }
-    for (WatchedScenario& scenario : look.scenarios) {
-        scenario.trials_asked = trials_of_shard(look.shard, study.trials);
-        scenario.blocks_asked = blocks_of_shard(look.shard, study.trials);
+    for (WatchedScenario& scenario : snapshot.scenarios) {
+        scenario.trials_asked = trials_of_shard(snapshot.shard, study.trials);
+        scenario.blocks_asked = blocks_of_shard(snapshot.shard, study.trials);
     }
-    return look;
+    return snapshot;
 }
 
-void RunWatch::time(Snapshot& look) {
+void RunWatch::time(Snapshot& snapshot) {
     constexpr double longest = 60;
     using namespace std::chrono;
-    const Moment now{duration<double>(steady_clock::now().time_since_epoch()).count(), look.trials_done()};
+    const Moment now{duration<double>(steady_clock::now().time_since_epoch()).count(), snapshot.trials_done()};
     if (!moments_.empty() && now.trials < moments_.back().trials) moments_.clear();
     moments_.push_back(now);
     while (moments_.size() > 2 && now.seconds - moments_[1].seconds > longest) moments_.erase(moments_.begin());
     const Moment& first = moments_.front();
     if (now.seconds > first.seconds)
-        look.trials_per_second = static_cast<double>(now.trials - first.trials) / (now.seconds - first.seconds);
+        snapshot.trials_per_second = static_cast<double>(now.trials - first.trials) / (now.seconds - first.seconds);
 }
 
-Snapshot RunWatch::look() {
-    std::optional<Snapshot> look = look_at_journal();
-    if (!look) return look_at_results();
-    time(*look);
-    return std::move(*look);
+Snapshot RunWatch::snapshot() {
+    std::optional<Snapshot> snapshot = journal_snapshot();
+    if (!snapshot) return results_snapshot();
+    time(*snapshot);
+    return std::move(*snapshot);
 }
 
 }  // namespace credence

@@ -71,7 +71,7 @@ public:
     ~RunWatch();
 
     /// Throws InputError where there is neither a journal nor a results file, or where these are damaged.
-    Snapshot look();
+    Snapshot snapshot();
 
 private:
     std::string path_;
@@ -83,14 +83,14 @@ private:
     };
     std::vector<Moment> moments_;
 
-    std::optional<Snapshot> look_at_journal();
-    Snapshot look_at_results() const;
-    void time(Snapshot& look);
+    std::optional<Snapshot> journal_snapshot();
+    Snapshot results_snapshot() const;
+    void time(Snapshot& snapshot);
 };
 
 /// The snapshot as text: a table with lines of about 120 characters.
-std::string watch_text(const Snapshot& look);
+std::string watch_text(const Snapshot& snapshot);
 /// An array with an object per scenario and arm; NaN is null.
-std::string watch_json(const Snapshot& look);
+std::string watch_json(const Snapshot& snapshot);
 
 }  // namespace credence

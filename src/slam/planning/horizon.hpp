@@ -31,12 +31,12 @@ Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity
                Belief<Real, capacity>* ahead, Real limit);
 
 /// Computes, for each candidate as the first of `steps` > 1 steps, the least sum of trace(P) over these, and calls
-/// told(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Traces of
-/// covariances are positive: where the first step's trace reaches the limit in all lanes, so does the sum, and told is
+/// visit(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Traces of
+/// covariances are positive: where the first step's trace reaches the limit in all lanes, so does the sum, and visit is
 /// not called.
-template <class Layout, class Real, int capacity, class Limit, class Told>
+template <class Layout, class Real, int capacity, class Limit, class Visit>
 void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
-                Belief<Real, capacity>* ahead, const Limit& limit, Told&& told) {
+                Belief<Real, capacity>* ahead, const Limit& limit, Visit&& visit) {
     const auto& [control, filter, sensor, layout, last_step] = outlook;
     prepare_candidates(belief, filter, layout, k, ahead[0]);
     for (int i = 0; i < control.candidate_count; ++i) {
@@ -45,7 +45,7 @@ void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacit
         // The margin covers the rounding of sums and the tolerance of the tie rule.
         const Real rest = limit() * Real(1 + 1e-9) - next;
         if (any(negated(rest <= Real(0))))
-            told(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
+            visit(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
     }
 }
 
@@ -78,19 +78,19 @@ Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const ControlPara
     return choice.command;
 }
 
-/// Calls told(i, cost) with the cost of every candidate, where all costs are wanted: the trace(P) after its step or,
+/// Calls visit(i, cost) with the cost of every candidate, where all costs are wanted: the trace(P) after its step or,
 /// for several steps, the least sum over them. The planners themselves evaluate few candidates.
-template <class Layout, class Real, int capacity, class Told>
+template <class Layout, class Real, int capacity, class Visit>
 void price_candidates(const Belief<Real, capacity>& belief, const ControlParameters& control,
                       const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
                       int steps, HorizonWorkspace<Layout, Real>& work, PlannerWorkspace<Layout, Real>& last_step,
-                      Told&& told) {
+                      Visit&& visit) {
     if (steps == 1) {
-        plan_plainly(belief, control, filter, sensor, layout, k, work.ahead[0], work.ahead[1], told);
+        plan_plainly(belief, control, filter, sensor, layout, k, work.ahead[0], work.ahead[1], visit);
         return;
     }
     look_ahead(Outlook<Layout, Real>{control, filter, sensor, layout, last_step}, belief, k, steps, work.ahead,
-               without_limit<Real>, [&](int i, const Command<Real>&, Real sum) { told(i, sum); });
+               without_limit<Real>, [&](int i, const Command<Real>&, Real sum) { visit(i, sum); });
 }
 
 }  // namespace CREDENCE_TARGET

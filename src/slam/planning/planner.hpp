@@ -1,6 +1,6 @@
 #pragma once
 // The greedy planner's fast forms. All of them choose as controller.hpp's direct form does
-// (tests/slam/planner_test.cpp).
+// (tests/slam/planner_long_test.cpp).
 
 #include "slam/planning/screening.hpp"
 #include "slam/planning/visible_sets.hpp"

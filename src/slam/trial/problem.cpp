@@ -68,10 +68,10 @@ void set_range(SensorParameters& sensor, double range_min, double range_max) {
     sensor.squared_range_max = greatest_square(range_max);
 }
 
-std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& blocks) {
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups) {
     std::vector<double> bounds;
-    for (const ComponentGroup& block : blocks)
-        for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, block.count));
+    for (const ComponentGroup& group : groups)
+        for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, group.count));
     return bounds;
 }
 
@@ -131,9 +131,9 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);
     view_.state_size = state_size(scenario_);
-    const std::vector<ComponentGroup> blocks = state_groups(scenario_);
-    view_.group_count = static_cast<int>(blocks.size());
-    coverage_bounds_ = coverage_bounds(blocks);
+    const std::vector<ComponentGroup> groups = state_groups(scenario_);
+    view_.group_count = static_cast<int>(groups.size());
+    coverage_bounds_ = coverage_bounds(groups);
     view_.coverage_bounds = coverage_bounds_.data();
     view_.series_count = static_cast<int>(step_series(scenario_).size());
     view_.charts = charts_of(scenario_);

@@ -13,7 +13,7 @@ Point polar(double s, double angle);
 void set_range(SensorParameters& sensor, double range_min, double range_max);
 
 /// [groups, coverage_level_count] quantiles of chi-square with as many degrees of freedom as each group has components.
-std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& blocks);
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups);
 
 /// The data that a trial of any built-in world reads: plain numbers, and pointers into its problem.
 struct CommonView {

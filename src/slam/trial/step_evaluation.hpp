@@ -99,7 +99,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
     const auto& P = belief.covariance;
     Real* nees = evaluation.nees;
     evaluation.positive_definite = all_lanes<Real>();
-    const auto judge = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
+    const auto evaluate = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
         nested_squared_errors(P, error, first, last, work, [&](auto i, const SquaredError<Real>& result) {
             keep(i, result.value);
             if (i == first)
@@ -107,7 +107,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
         });
     };
     const auto standardise = [&](auto i) { evaluation.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
-    judge(zero, n, [&](auto i, Real value) {
+    evaluate(zero, n, [&](auto i, Real value) {
         if (i == 0) nees[Layout::group_all] = value;
         if (i == Layout::pose_size) nees[Layout::group_features] = value;
         if (i == n - two) nees[Layout::group_feature(layout.features() - one)] = value;
@@ -115,7 +115,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
         standardise(i);
         if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
     });
-    judge(zero, Layout::pose_size, [&](auto i, Real value) {
+    evaluate(zero, Layout::pose_size, [&](auto i, Real value) {
         if (i == 0) nees[Layout::group_pose] = value;
         if constexpr (Layout::has_heading)
             if (i == Layout::position) nees[Layout::group_position] = value;
@@ -124,7 +124,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
         nees[Layout::group_heading] = evaluation.standardised_error[0] * evaluation.standardised_error[0];
     each(zero, layout.features() - one, [&](auto j) {
         const auto f = Layout::feature(j);
-        judge(f, f + two, [&](auto i, Real value) {
+        evaluate(f, f + two, [&](auto i, Real value) {
             if (i == f) nees[Layout::group_feature(j)] = value;
         });
     });

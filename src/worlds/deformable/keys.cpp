@@ -141,7 +141,7 @@ void add_control_keys(Keys& keys) {
 
 void add_published_keys(Keys& keys) {
     const auto published = [&](const char* name, auto field) {
-        keys.push_back({name, "published figures to show in our distribution, as `arm value, arm value`",
+        keys.push_back({name, "published values to show in our distribution, as `arm value, arm value`",
                         [=](DeformableSettings& s, const std::string& v) { field(s) = parse_published(name, v); },
                         [=](const DeformableSettings& s) { return published_text(field(s)); }});
     };

@@ -24,9 +24,9 @@ LandmarkProblem::LandmarkProblem(const LandmarkSettings& scenario) {
     view_.poses = scenario.poses;
     view_.features = scenario.landmarks.count;
     view_.state_size = state.size();
-    const std::vector<ComponentGroup> blocks = state_groups(state);
-    coverage_bounds_ = coverage_bounds(blocks);
-    view_.group_count = static_cast<int>(blocks.size());
+    const std::vector<ComponentGroup> groups = state_groups(state);
+    coverage_bounds_ = coverage_bounds(groups);
+    view_.group_count = static_cast<int>(groups.size());
     view_.coverage_bounds = coverage_bounds_.data();
     view_.charts = charts_of(state);
     view_.series_count = static_cast<int>(landmark_series(scenario).size());

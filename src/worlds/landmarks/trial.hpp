@@ -49,19 +49,19 @@ void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observ
     observer.started(layout, truth, belief);
 
     for (int k = 1; k < problem.poses; ++k) {
-        // The robot moves on along its loop, and its filter is told so.
+        // The robot moves on along its loop, and its filter knows that.
         stand_at(truth, problem.world, k);
         draws.draw(noise, k);
-        const Command<Real> told = told_motion(problem.world, k, draws);
+        const Command<Real> reported = reported_motion(problem.world, k, draws);
 
         // Predict.
-        estimator.predict(belief, problem.filter, layout, told, truth, k);
+        estimator.predict(belief, problem.filter, layout, reported, truth, k);
 
         // See.
         look(truth, problem.sensor, layout, k, draws.template of_features<Source::measurement>(), noise, sightings);
         const int first_sights = set_aside_first_sights(problem.world, layout.features(), k, sightings);
         const auto linearised = estimator.linearised(belief, layout, truth);
-        observer.predicted(k, layout, truth, told, belief, sightings, no_edge, linearised);
+        observer.predicted(k, layout, truth, reported, belief, sightings, no_edge, linearised);
 
         // Update with the landmarks that are known, initialise those that are new, and compare with the truth.
         estimator.update(belief, problem.filter, layout, sightings, no_edge, linearised, work.update);

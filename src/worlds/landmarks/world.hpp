@@ -49,7 +49,7 @@ void start_truth(Truth<Real, capacity>& truth, const LandmarkParameters& world, 
 
 /// What the filter is told of the motion to pose k: omega - sigma_head eps, v - sigma_odom eps (body frame).
 template <class Layout, class Real>
-CREDENCE_FLAT Command<Real> told_motion(const LandmarkParameters& world, int k,
+CREDENCE_FLAT Command<Real> reported_motion(const LandmarkParameters& world, int k,
                                         const LandmarkDraws<Layout, Real>& draws) {
     const Control& motion = world.motion[k - 1];
     return {fnma(Real(world.sigma_heading), draws.heading(), Real(motion.turn)),

@@ -27,6 +27,19 @@ std::size_t own_choice(const std::string& key, const std::string& text, const st
     return parse_choice(key, text, choices);
 }
 
+std::vector<double> own_reals(const std::string& key, const std::string& text, double low, double high) {
+    std::vector<double> values;
+    for (const std::string& part : split_list(text)) values.push_back(own_real(key, part, low, high));
+    if (values.empty()) throw invalid_value(key, text, "it is empty", "Give at least one number");
+    return values;
+}
+
 std::string own_text(double value) { return to_text(value); }
+
+std::string own_text(const std::vector<double>& values) {
+    std::vector<std::string> parts;
+    for (const double value : values) parts.push_back(to_text(value));
+    return joined(parts);
+}
 
 }  // namespace credence

@@ -3,7 +3,7 @@
 #include "numeric/chi_square.hpp"
 #include <credence/detail/draws.hpp>
 #include <credence/detail/lane_pack.hpp>
-#include <credence/own_trial.hpp>
+#include <credence/detail/own_simulation.hpp>
 #include "scenario/state_series.hpp"
 
 #include "worlds/own/moments.hpp"

@@ -11,27 +11,35 @@ namespace {
 
 enum class Definiteness { positive, singular, indefinite };
 
-/// The smallest eigenvalue of the correlation matrix tells, whatever the units: rounding alone, of values with the
-/// relative spacing `epsilon`, makes up to 2 n epsilon of a 0.
-Definiteness definiteness(const Eigen::MatrixXd& S, double epsilon) {
+/// The smallest eigenvalue of the correlation matrix, which does not depend on units.
+double smallest_eigenvalue(const Eigen::MatrixXd& S) {
     const Eigen::VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
     const Eigen::VectorXd scale = (size.array() > 0).select(size.cwiseInverse(), 1.0);
     const Eigen::MatrixXd correlation = scale.asDiagonal() * S * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
-    const double smallest = solver.eigenvalues().minCoeff(), zero = 2 * static_cast<double>(S.rows()) * epsilon;
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+}
+
+/// Rounding alone, of values with the relative spacing `epsilon`, makes up to 2 n epsilon of an eigenvalue of 0.
+Definiteness definiteness(double smallest, Eigen::Index n, double epsilon) {
+    const double zero = 2 * static_cast<double>(n) * epsilon;
     if (smallest > zero) return Definiteness::positive;
     return smallest < -zero ? Definiteness::indefinite : Definiteness::singular;
 }
 
 /// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
-std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, Eigen::LLT<Eigen::MatrixXd>& factor) {
+/// `rounding` becomes the bound on the relative error of nu'S^-1nu; 0 for such pivots.
+std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, Eigen::LLT<Eigen::MatrixXd>& factor,
+                   double& rounding) {
+    rounding = 0;
     factor.compute(S);
     const bool factored = factor.info() == Eigen::Success;
     if (factored) {
         const auto pivots = factor.matrixLLT().diagonal().array().square();
         if ((pivots > 10 * std::sqrt(epsilon) * S.diagonal().array()).all()) return {};
     }
-    const Definiteness found = definiteness(S, epsilon);
+    const double smallest = smallest_eigenvalue(S);
+    const Definiteness found = definiteness(smallest, S.rows(), epsilon);
+    rounding = static_cast<double>(S.rows()) * epsilon / smallest;
     if (factored && found == Definiteness::positive) return {};
     return found == Definiteness::singular ? "is singular" : "is not positive definite";
 }
@@ -50,7 +58,8 @@ std::string component_name(const RecordShape& shape, int j) {
 
 bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
     Eigen::LLT<Eigen::MatrixXd> any;
-    return factor(matrix, epsilon, any).empty();
+    double rounding = 0;
+    return factor(matrix, epsilon, any, rounding).empty();
 }
 
 StateSeries record_series(const RecordShape& shape) {
@@ -109,7 +118,8 @@ void StepEvaluator::set_size_unknown(std::size_t b, double* all_series) {
 template <class Matrix, class Vector>
 std::string StepEvaluator::judge_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon,
                                       double* all_series) {
-    const std::string wrong = factor(P, epsilon, factors_[b]);
+    double rounding = 0;
+    const std::string wrong = factor(P, epsilon, factors_[b], rounding);
     if (!wrong.empty()) return "covariance " + wrong;
     solved_[b] = e;
     factors_[b].matrixL().solveInPlace(solved_[b]);
@@ -199,12 +209,17 @@ void StepEvaluator::standardise(const CheckedStep& step, double* all_series) {
     }
 }
 
-std::string StepEvaluator::judge_innovation(const CheckedStep& step, double* all_series, double* whitened) {
+void StepEvaluator::leave_out_innovation(double* all_series, double* whitened) const {
     std::fill(whitened, whitened + shape_.m, nan);
     std::fill(all_series + places_.nis, all_series + places_.nis + 2 * (1 + shape_.row_groups.size()), 0.0);
+}
+
+std::string StepEvaluator::judge_innovation(const CheckedStep& step, double* all_series, double* whitened) {
+    leave_out_innovation(all_series, whitened);
     all_series[places_.rows] = static_cast<double>(step.rows.size());
+    innovation_rounding_ = 0;
     if (step.rows.empty()) return {};
-    const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_);
+    const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     white_ = step.nu;
     innovation_factor_.matrixL().solveInPlace(white_);
@@ -232,7 +247,8 @@ std::string StepEvaluator::judge_row_group(std::size_t g, const CheckedStep& ste
         for (Eigen::Index j = 0; j < m; ++j)
             part_P_(i, j) = step.S(members_[static_cast<std::size_t>(i)], members_[static_cast<std::size_t>(j)]);
     }
-    const std::string wrong = factor(part_P_, shape_.innovation_epsilon, innovation_factor_);
+    double rounding = 0;  // no more than that of all rows
+    const std::string wrong = factor(part_P_, shape_.innovation_epsilon, innovation_factor_, rounding);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     innovation_factor_.matrixL().solveInPlace(part_e_);
     all_series[places_.nis + 2 * (g + 1)] = part_e_.squaredNorm();

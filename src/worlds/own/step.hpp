@@ -130,6 +130,11 @@ public:
     /// After `judge`: replaces the series that have no value at this step by NaN.
     void forget_unknown(double* all_series) const;
 
+    /// After `judge`: what rounding may have done to its NIS, as a share of it; and that the step counts as one in which
+    /// no row was observed.
+    double innovation_rounding() const { return innovation_rounding_; }
+    void leave_out_innovation(double* all_series, double* whitened) const;
+
 private:
     using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
@@ -159,6 +164,7 @@ private:
     Eigen::VectorXd part_e_;
     std::vector<int> members_;
     Factor innovation_factor_;
+    double innovation_rounding_ = 0;
     Eigen::VectorXd white_;
 };
 

@@ -1,6 +1,6 @@
 // What a world of somebody's own declares.
 
-#include <credence/own_trial.hpp>
+#include <credence/detail/own_simulation.hpp>
 
 #include <credence/error.hpp>
 #include "scenario/state_series.hpp"

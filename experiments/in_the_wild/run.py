@@ -1,0 +1,172 @@
+"""Runs the studies, prints their table, and fails where a verdict, a NEES or a wrong filter is not as it must be.
+
+    python run.py [--short] [--page] [--reports FOLDER] [NAME…]        NAME: a part of a study's library or name
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import itertools
+import os
+import pathlib
+import re
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from common import Filter, Record, Study, nees
+from studies import STUDIES
+
+import credence
+
+SEED = 2026
+TOLERANCE = 1e-9  # of the mean NEES of a step, relative
+LIMITS: dict[str, Any] = {"margin": 0.10}
+LIMITS_SHORT: dict[str, Any] = {"margin": 0.25, "margin_direction": 0.5, "bias": 0.25}
+HEAD = ("library", "study", "filter", "trials", "steps", "n", "verdict", "NEES/n", "worst direction: error²/P")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A filter that was judged."""
+
+    study: Study
+    filter: Filter
+    verdict: str
+    text: str
+    cells: tuple[str, ...]
+    apart: float  # between credence's NEES and the library's, relative; NaN where there is no other
+    seconds: float  # of processor time
+
+    @property
+    def name(self) -> str:
+        return f"{self.study.library}, {self.study.name}: {self.filter.name}"
+
+    def complaints(self, short: bool) -> Iterator[str]:
+        """What is not as it must be."""
+        expected = self.filter.expected_short if short and self.filter.expected_short else self.filter.expected
+        if self.verdict != expected:
+            yield f"the verdict is {self.verdict} (expected: {expected})"
+        if self.apart > TOLERANCE:
+            yield f"NEES differs by {self.apart:.1e} from the library's (at most {TOLERANCE:.0e})"
+        says = self.filter.says_short if short and self.filter.says_short else self.filter.says
+        if says not in " ".join(self.text.split()):
+            yield f'the report does not say "{says}"'
+
+
+def whole_state(verdict: credence.Verdict) -> dict[str, Any]:
+    found: dict[str, Any] = next(group for group in verdict["groups"] if group["group"] == "all")
+    return found
+
+
+def worst_direction(verdict: credence.Verdict) -> str:
+    """The direction of the whole state whose squared error is furthest from P, and by which factor."""
+    directions = verdict["directions"]
+    found = [one for end in ("largest", "smallest") for one in directions.get(end, []) if one["group"] == "all"]
+    if not found:
+        return "-"
+    worst = max(found, key=lambda one: abs(float(np.log(one["ratio"]))))
+    terms = re.findall(r"([+-]? ?)([\d.]+) (\S+)", worst["direction"].removeprefix("about "))
+    strongest = sorted(terms, key=lambda term: -float(term[1]))[:4]  # of many components the four that weigh most
+    shown = " ".join("{}{} {}".format(*term) for term in terms if term in strongest)
+    shown = re.sub(r"^- ", "-", re.sub(r"^\+ ", "", shown))
+    return f"{worst['ratio']:.2g} along {shown}{' …' if len(terms) > 4 else ''}"
+
+
+def cells(study: Study, chosen: Filter, trials: int, verdict: credence.Verdict) -> tuple[str, ...]:
+    """The row of the table, as in HEAD."""
+    whole = whole_state(verdict)
+    low, high = whole["ci95"]
+    ratio = f"{whole['nees_ratio']:.3g} ± {(high - low) / 2:.2g}"
+    size = (str(trials), str(len(whole["anees"]["ratio"])), str(whole["dimension"]))
+    return (study.library, study.name, chosen.name, *size, verdict.verdict, ratio, worst_direction(verdict))
+
+
+def other_nees(chosen: Filter, module: Any, trials: list[Any], record: Record) -> np.ndarray | None:
+    """NEES by trial and step without credence: the library's own where it has one, else NumPy's."""
+    if chosen.fault is None and hasattr(module, "own_nees"):
+        own: np.ndarray = module.own_nees(trials)
+        return own
+    return nees(record["error"], record["covariance"]) if "error" in record else None
+
+
+def judge_filter(study: Study, chosen: Filter, module: Any, trials: list[Any], short: bool) -> Row:
+    begun = time.process_time()
+    record = module.record(trials)
+    if chosen.fault is not None:
+        record = chosen.fault(record)
+    verdict = credence.judge(**record, **(LIMITS_SHORT if short else LIMITS))
+    other, apart = other_nees(chosen, module, trials, record), float("nan")
+    if other is not None:
+        ours = np.array(whole_state(verdict)["anees"]["ratio"]) * whole_state(verdict)["dimension"]
+        apart = float(np.max(np.abs(ours / other.mean(axis=0) - 1)))
+    shown = cells(study, chosen, len(trials), verdict)
+    return Row(study, chosen, verdict.verdict, str(verdict), shown, apart, time.process_time() - begun)
+
+
+def judge_alike(study: Study, filters: list[Filter], short: bool) -> list[Row]:
+    """Filters of one study that have the same options, and so share their trials.
+
+    Trial i has a generator of its own, so that a longer study begins with the trials of a shorter one.
+    """
+    begun, module = time.process_time(), importlib.import_module(study.module)
+    count = study.trials_short if short else study.trials
+    trials = [module.trial(np.random.default_rng([SEED, i]), **filters[0].options) for i in range(count)]
+    seconds = time.process_time() - begun
+    rows = [judge_filter(study, chosen, module, trials, short) for chosen in filters]
+    return [replace(rows[0], seconds=seconds + rows[0].seconds), *rows[1:]]
+
+
+def judge_all(studies: list[Study], short: bool) -> list[Row]:
+    tasks = []
+    for study in studies:
+        for _, alike in itertools.groupby(study.filters, key=lambda chosen: chosen.options):
+            tasks.append((study, list(alike), short))
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        return [row for rows in pool.map(judge_alike, *zip(*tasks)) for row in rows]
+
+
+def print_table(rows: list[Row], page: bool) -> None:
+    """Markdown; without what differs from run to run where it is for a page."""
+    head = HEAD if page else (*HEAD, "NEES apart", "s")
+    print("|", " | ".join(head), "|")
+    print("|" + "---|" * len(head))
+    for row in rows:
+        apart = "-" if np.isnan(row.apart) else f"{row.apart:.1e}"
+        shown = row.cells if page else (*row.cells, apart, f"{row.seconds:.1f}")
+        print("|", " | ".join(shown), "|")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--short", action="store_true", help="fewer trials and wider margins, two minutes in all")
+    parser.add_argument("--page", action="store_true", help="print the table as docs/in-the-wild.md has it")
+    parser.add_argument("--reports", type=pathlib.Path, help="write the text reports to this folder")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="a part of a study's library or name")
+    given = parser.parse_args()
+    wanted = [
+        study
+        for study in STUDIES
+        if not given.names or any(name.lower() in f"{study.library} {study.name}".lower() for name in given.names)
+    ]
+    if not wanted:
+        parser.error(f"unknown study {', '.join(given.names)}. Give a part of a library's or study's name.")
+    rows = judge_all(wanted, given.short)
+    print_table(rows, given.page)
+    if given.reports:
+        given.reports.mkdir(parents=True, exist_ok=True)
+        for row in rows:
+            (given.reports / (re.sub(r"[^a-z0-9]+", "-", row.name.lower()) + ".txt")).write_text(row.text)
+    complaints = [f"{row.name}: {complaint}." for row in rows for complaint in row.complaints(given.short)]
+    for complaint in complaints:
+        print(complaint, file=sys.stderr)
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Judges filters that others wrote, from the examples of their libraries, beside wrong ones that must be caught. Prints a
+# table, and writes the reports to results/in_the_wild; the exit code is 1 where a verdict is not the expected one, where
+# NEES differs from the library's by more than 1e-9, or where a wrong filter is not named. docs/in-the-wild.md has the
+# table. Some eight minutes of processor time, with --short less than two.
+#
+#   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
+#   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
+#
+# PYTHON is an interpreter that has credence and what requirements.txt names. Without it they are installed once in
+# build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+if [ -z "${PYTHON:-}" ]; then
+  venv=$PWD/build/in-the-wild PYTHON=$PWD/build/in-the-wild/bin/python
+  if [ ! "$venv/complete" -nt experiments/in_the_wild/requirements.txt ]; then
+    python3 -m venv "$venv"
+    "$PYTHON" -m pip install --quiet . -r experiments/in_the_wild/requirements.txt >&2
+    touch "$venv/complete"
+  fi
+fi
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
+if [ "${1:-}" = --causes ]; then exec "$PYTHON" experiments/in_the_wild/causes.py; fi
+exec "$PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"

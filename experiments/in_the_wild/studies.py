@@ -1,0 +1,66 @@
+"""The studies, and of each the filters that are judged, with the verdicts that they must get.
+
+A filter that is wrong on purpose must be caught, and its report must say what `says` has.
+"""
+
+from __future__ import annotations
+
+from common import Filter, Study, halved, in_world_frame, of_half_angles, without_correlations
+
+INCREMENT = {"chart": "increment"}
+SIMULATED = {"noise": "simulated"}
+ONE_FACTOR = "every direction is off by a factor of about"
+OTHER_CHART = "their directions are wrong: is the error in the chart and frame of P, and is a correlation missing"
+
+
+def radar(kind: str) -> Study:
+    """A study of filterpy's radar, by the extended or the unscented filter."""
+    return Study("filterpy", f"radar, {kind.upper()}", "filterpy_radar", 1300, 300, (
+        Filter("as documented", "optimistic", {"kind": kind}),
+        Filter("Q and R of the simulated radar", "optimistic", {"kind": kind, **SIMULATED}),
+        Filter("and the truth drawn from P0", "consistent", {"kind": kind, **SIMULATED, "start": "drawn"}),
+        Filter("wrong: P halved", "optimistic", {"kind": kind, **SIMULATED, "start": "drawn"}, halved, ONE_FACTOR,
+               says_short="optimistic (NEES/dim): all 2"),
+    ))
+
+
+def tutorial(number: int, kind: str) -> Study:
+    """A study of one of Stone Soup's tutorials."""
+    return Study("Stone Soup", f"tutorial {number}, {kind.upper()}", "stonesoup_tutorials", 1000, 200, (
+        Filter("as documented, from a known state", "pessimistic", {"kind": kind}),
+        Filter("the truth drawn from the prior", "consistent", {"kind": kind, "start": "drawn"}),
+        Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, OTHER_CHART),
+    ))
+
+
+STUDIES = (
+    Study("GTSAM", "planar SLAM", "gtsam_planar_slam", 4000, 2000, (
+        Filter("as documented, joint marginals", "consistent"),
+        Filter("wrong: marginals put together, without correlations", "mixed", {}, without_correlations, OTHER_CHART),
+    )),
+    Study("GTSAM", "iSAM2 with a loop closure", "gtsam_isam2", 4000, 2000, (
+        Filter("as documented, P of gtsam.Marginals", "consistent"),
+        Filter("wrong: errors in the world's frame", "mixed", {}, in_world_frame, OTHER_CHART),
+        Filter("as documented, P of iSAM2 itself", "optimistic", {"marginals_of": "isam"}),
+        Filter("only new factors, P of iSAM2", "consistent", {"marginals_of": "isam", "only_new_factors": True}),
+    )),
+    Study("GTSAM", "IMU preintegration", "gtsam_imu", 1500, 400, (
+        Filter("as documented, predict() against the truth", "mixed"),
+        Filter("preintegrated(), against its sums without noise", "mixed", INCREMENT, expected_short="optimistic"),
+        Filter("the same for 11 s, less than a full turn", "consistent", {**INCREMENT, "seconds": 11}),
+        Filter("wrong: sigma of a sample given as a density", "pessimistic", {**INCREMENT, "seconds": 11, "scale": 10},
+               says=ONE_FACTOR, says_short="pessimistic (NEES/dim): "),
+    )),
+    radar("ekf"),
+    radar("ukf"),
+    tutorial(1, "kf"),
+    tutorial(2, "ekf"),
+    tutorial(3, "ukf"),
+    Study("ahrs", "attitude, EKF", "ahrs_attitude", 1000, 250, (
+        Filter("as documented, its own variances", "pessimistic"),
+        Filter("variances of the simulated sensors", "optimistic", {"variances": "simulated"}),
+        Filter("and slower motion", "consistent", {"variances": "simulated", "span": 0.5}),
+        Filter("wrong: P of half the angle", "optimistic", {"variances": "simulated", "span": 0.5}, of_half_angles,
+               ONE_FACTOR),
+    )),
+)

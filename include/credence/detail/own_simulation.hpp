@@ -1,0 +1,32 @@
+#pragma once
+// Module worlds: what the engine makes of the trials of a user's own world.
+
+#include <credence/own_trial.hpp>
+#include <credence/worlds.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// What a user's own world says of a scenario beside its settings.
+struct OwnReport {
+    std::vector<Column> columns{};      ///< its own; others are there in every world
+    int largest_innovation = 0;         ///< m; 0: the trials give no innovations
+};
+
+/// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, status, status_pose.
+std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
+std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
+
+/// Makes trials of a function that runs one. It is called from several threads at once.
+std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
+                                                 std::function<void(OwnTrial&)> run);
+
+/// Throws std::invalid_argument where a declaration cannot be: no arm or component, a name with other characters than
+/// letters, digits, _ and -, a group beyond the state. It is the world's bug, not its user's.
+void check_declared(const Scenario& scenario);
+
+}  // namespace credence

@@ -1,0 +1,101 @@
+// The verdict on arrays or on a file.
+
+#include "calls.hpp"
+#include "judge.hpp"
+
+#include "cli/command.hpp"
+#include "cli/file_kind.hpp"
+#include "cli/version.hpp"
+
+#include <credence/record.hpp>
+#include <credence/report.hpp>
+#include <credence/text.hpp>
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+
+#include <filesystem>
+#include <map>
+
+namespace credence::python {
+
+namespace {
+
+using Array = nb::ndarray<nb::ro, nb::device::cpu>;
+using Options = std::map<std::string, std::string>;
+
+/// A report and the name of its source.
+struct Judgement {
+    Report report;
+    std::string name;
+
+    std::string text() const { return shown(report_text(report)); }
+    std::string json() const { return report_json(report); }
+    std::string html() const {
+        return report_html(report, {std::filesystem::path(name).filename().string(), {}, made_by()});
+    }
+};
+
+RecordArray described(const std::string& path, const Array& array, double epsilon) {
+    RecordArray described{path, array.data(), RecordArray::Type::real64, {}, {}, epsilon};
+    if (array.dtype() == nb::dtype<float>()) described.type = RecordArray::Type::real32;
+    else if (array.dtype() != nb::dtype<double>())
+        throw nb::type_error((path + " holds neither float64 nor float32").c_str());
+    for (std::size_t axis = 0; axis < array.ndim(); ++axis) {
+        described.extents.push_back(static_cast<std::int64_t>(array.shape(axis)));
+        described.strides.push_back(array.stride(axis));
+    }
+    return described;
+}
+
+/// The program's options by their names, such as `margin`.
+Limits limits_of(const Options& options) {
+    cli::Parsed parsed;
+    for (const auto& [name, value] : options) parsed.values[name] = {value};
+    return cli::parse_limits(parsed);
+}
+
+template <class Read>
+Judgement judgement(const std::string& name, const Options& options, const Listener& listener, const Read& read) {
+    const Limits limits = limits_of(options);
+    const auto progress = [&, due = Due()](const Progress& now) mutable {
+        if (!due(now)) return;
+        const nb::gil_scoped_acquire held;
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (listener) (*listener)(now.done, now.total);
+    };
+    return alone([&] { return Judgement{make_record_report(read(progress), name, limits), name}; });
+}
+
+Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
+                const std::map<std::string, std::string>& texts, const std::map<std::string, int>& dimensions,
+                const Options& options, const std::string& name, const Listener& listener) {
+    RecordArrays record{{}, texts, dimensions};
+    for (const auto& [path, array] : arrays) record.arrays.push_back(described(path, array.first, array.second));
+    return judgement(name, options, listener,
+                     [&](const auto& progress) { return read_record(record, name, progress); });
+}
+
+Judgement judge_file(const std::string& path, const Options& options, const Listener& listener) {
+    return judgement(path, options, listener, [&](const auto& progress) {
+        cli::check_kind(path, {cli::FileKind::record});
+        return read_record(path, progress);
+    });
+}
+
+}  // namespace
+
+void bind_judge(nb::module_& module) {
+    nb::class_<Judgement>(module, "Judgement")
+        .def_prop_ro("text", [](const Judgement& judgement) { return alone([&] { return judgement.text(); }); })
+        .def_prop_ro("json", [](const Judgement& judgement) { return alone([&] { return judgement.json(); }); })
+        .def_prop_ro("html", [](const Judgement& judgement) { return alone([&] { return judgement.html(); }); });
+    module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("dimensions"), nb::arg("options"),
+               nb::arg("name"), nb::arg("progress").none());
+    module.def("judge_file", judge_file, nb::arg("path"), nb::arg("options"), nb::arg("progress").none());
+}
+
+}  // namespace credence::python

@@ -1,0 +1,10 @@
+#pragma once
+// The verdict on arrays or on a file, for Python.
+
+#include <nanobind/nanobind.h>
+
+namespace credence::python {
+
+void bind_judge(nanobind::module_& module);
+
+}  // namespace credence::python

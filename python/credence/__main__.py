@@ -1,0 +1,25 @@
+"""The program: ``python -m credence`` is ``credence``."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+
+from credence import _core
+
+
+def main() -> int:
+    """Run the command line and return the exit code.
+
+    Signals do what they do in the program: Python catches or ignores some of them, unless its parent asked for that.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    for ignored in (signal.SIGPIPE, signal.SIGXFSZ):
+        signal.signal(ignored, signal.SIG_DFL)
+    return _core.program([os.fsencode(argument) for argument in sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

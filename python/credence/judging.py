@@ -1,0 +1,246 @@
+"""Verdicts on a filter from its errors and covariances."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+from credence import _core
+from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    Numbers = npt.NDArray[np.floating[Any]]
+    Groups = str | Mapping[str, int | Sequence[int]]
+
+
+class Verdict:
+    """The verdict on a filter, with everything that it rests on.
+
+    ``str(verdict)`` is the text that ``credence judge`` prints, and a notebook shows its page. ``verdict[name]`` is an
+    entry of `json`, such as ``verdict["groups"]``.
+
+    Attributes
+    ----------
+    verdict : str
+        ``consistent``, ``optimistic``, ``pessimistic``, ``mixed``, ``undecided`` or ``failed``.
+    json : list of dict
+        What ``credence judge --format json`` prints, the same bits; it has one entry, that of the record.
+    """
+
+    def __init__(self, judgement: _core.Judgement) -> None:
+        self._judgement = judgement
+        self.json: list[dict[str, Any]] = json.loads(judgement.json)
+        self.verdict: str = self["verdict"]
+
+    def __getitem__(self, name: str) -> Any:
+        return self.json[0][name]
+
+    def __str__(self) -> str:
+        return self._judgement.text
+
+    def __repr__(self) -> str:
+        return f"<credence.Verdict {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return framed(self.html)
+
+    @property
+    def html(self) -> str:
+        """The page that ``credence judge --format html`` writes; it loads nothing and runs no script."""
+        return self._judgement.html
+
+    @property
+    def is_consistent(self) -> bool:
+        """Whether the verdict is ``consistent``."""
+        return self.verdict == "consistent"
+
+
+def _array(given: object) -> tuple[Numbers, float]:
+    """Doubles and singles as they are; anything else as doubles. With the precision of the type."""
+    import numpy as np
+
+    array = np.asarray(given)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"an array of {array.dtype} is none of numbers. Give floating-point numbers.")
+    precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
+    if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
+        array = array.astype(float)
+    if any(stride % array.itemsize for stride in array.strides):
+        array = array.copy()
+    return array, precision
+
+
+def _list_text(names: str | Sequence[str] | None) -> str | None:
+    return names if names is None or isinstance(names, str) else ", ".join(names)
+
+
+def _groups_text(groups: Groups | None) -> str | None:
+    """Groups as the record's attribute has them, such as ``pose 0 1 2, feature 3``."""
+    if groups is None or isinstance(groups, str):
+        return groups
+    import numpy as np
+
+    return ", ".join(" ".join([name, *(str(int(i)) for i in np.ravel(members))]) for name, members in groups.items())
+
+
+def _dimensions(
+    given: int | Mapping[str, int] | None, groups: Groups | None, nees: bool, group_nees: Mapping[str, object]
+) -> dict[str, int]:
+    """The dimension of each NEES, by its place in a record."""
+    dimensions = {}
+    if nees and isinstance(given, int):
+        dimensions["nees"] = given
+    for name in group_nees:
+        if isinstance(given, Mapping) and name in given:
+            dimensions[f"group/{name}/nees"] = int(given[name])
+        elif isinstance(groups, Mapping) and name in groups:
+            members = groups[name]
+            dimensions[f"group/{name}/nees"] = 1 if isinstance(members, int) else len(members)
+    if nees and isinstance(given, Mapping) and "all" in given:
+        dimensions["nees"] = int(given["all"])
+    return dimensions
+
+
+def judge(
+    error: object = None,
+    covariance: object = None,
+    *,
+    innovation: object = None,
+    innovation_covariance: object = None,
+    groups: Groups | None = None,
+    row_groups: Groups | None = None,
+    margin: float | str = 0.05,
+    margin_direction: float | str | None = None,
+    bias: float = 0.1,
+    failed: float | str = 0.01,
+    component_names: str | Sequence[str] | None = None,
+    component_units: str | Sequence[str] | None = None,
+    steps: object = None,
+    time: object = None,
+    truth: object = None,
+    estimate: object = None,
+    manifold: str | None = None,
+    chart: str | None = None,
+    quaternion: str | None = None,
+    group_covariance: Mapping[str, object] | None = None,
+    nees: object = None,
+    group_nees: Mapping[str, object] | None = None,
+    dimension: int | Mapping[str, int] | None = None,
+    name: str = "record",
+    progress: bool | None = None,
+) -> Verdict:
+    """Say whether a filter's covariance can be believed, by its errors in many independent runs.
+
+    `error` and `covariance` are enough for most filters; the other forms are those of a record [docs/judge.md]. Arrays
+    are anything that NumPy takes (xarray, pandas, lists). Doubles and singles of any strides are read in place, a part
+    at a time; other types are converted first. A single run may leave out the first dimension.
+
+    Parameters
+    ----------
+    error : array [trial, step, n], or path
+        Estimate - truth, in the chart of the covariance; NaN where a component is not in the state. Or the path of a
+        record in a file, and then none of the other arrays.
+    covariance : array [trial, step, n, n] or [trial, step, n]
+        Joint covariances, or variances alone, in the square of the units of `error`.
+    innovation, innovation_covariance : arrays [trial, step, m] and [trial, step, m, m]
+        Both or neither; NaN in rows that were not observed.
+    groups : dict or str
+        Parts of the state that are judged by themselves: ``{"pose": [0, 1, 2]}`` or ``"pose 0:3"``.
+    row_groups : dict or str
+        The same of the rows of the innovation.
+    margin, margin_direction : float or str
+        NEES/n within 1 -+ `margin` is consistent, ``0.05`` or ``"5%"``; so is the squared error of every combination of
+        the components, over what the covariance says, within 1 -+ `margin_direction` (twice the margin).
+    bias : float
+        A mean error of a component within this many of its sigmas is consistent.
+    failed : float or str
+        The verdict is ``failed`` where more than this share of the runs failed.
+    component_names, component_units : list of str
+        One for each component.
+    steps : array [trial]
+        How many steps each run has, where they differ.
+    time : array [step] or [trial, step]
+        Times of the steps (s), which must increase.
+    truth, estimate : arrays [trial, step, q]
+        In place of `error`: states on a `manifold`, such as ``"SE3 x R6"``, whose error is taken in the `chart`
+        ``"local"`` or ``"global"``; `quaternion` is ``"wxyz"`` or ``"xyzw"``.
+    group_covariance : dict of arrays [trial, step, d, d]
+        Covariances of groups, by their names.
+    nees, group_nees : array [trial, step], dict of such arrays
+        The NEES of the whole state, or of groups, and nothing else.
+    dimension : int, or dict of int
+        The dimension of `nees`; or of the group of each name, ``"all"`` for the whole state.
+    name : str
+        What the report calls the record.
+    progress : bool
+        Whether a bar of tqdm is drawn; by default on a terminal and in a notebook.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    InputError
+        A ValueError: arrays do not fit each other, a covariance is not symmetric, an option is out of its range.
+    """
+    options = {"margin": margin, "bias": bias, "failed": failed, "margin-direction": margin_direction}
+    given_options = {key: str(value) for key, value in options.items() if value is not None}
+    own = {"covariance": group_covariance or {}, "nees": group_nees or {}}
+    arrays = {
+        "error": error,
+        "covariance": covariance,
+        "innovation": innovation,
+        "innovation_covariance": innovation_covariance,
+        "steps": steps,
+        "time": time,
+        "truth": truth,
+        "estimate": estimate,
+        "nees": nees,
+        **{f"group/{group}/{what}": array for what, each in own.items() for group, array in each.items()},
+    }
+    texts = {
+        "groups": _groups_text(groups),
+        "row_groups": _groups_text(row_groups),
+        "component_names": _list_text(component_names),
+        "component_units": _list_text(component_units),
+        "manifold": manifold,
+        "chart": chart,
+        "quaternion": quaternion,
+    }
+    given_arrays = {path: array for path, array in arrays.items() if array is not None}
+    given_texts = {key: text for key, text in texts.items() if text is not None}
+    if isinstance(error, (str, os.PathLike)):
+        if len(given_arrays) > 1 or given_texts:
+            raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
+        with errors_of_arguments(), progress_bar(progress) as bar:
+            return Verdict(_core.judge_file(os.fspath(error), given_options, bar))
+    taken = {path: _array(array) for path, array in given_arrays.items()}
+    dimensions = _dimensions(dimension, groups, nees is not None, own["nees"])
+    with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
+        return Verdict(_core.judge(taken, given_texts, dimensions, given_options, name, bar))
+
+
+P = ParamSpec("P")
+
+
+def _with_arguments_of(_: Callable[P, object]) -> Callable[[Callable[..., None]], Callable[P, None]]:
+    """Let type checkers know that a function takes the arguments of another."""
+    return lambda function: function
+
+
+@_with_arguments_of(judge)
+def assert_consistent(*arguments: Any, **named: Any) -> None:
+    """Raise AssertionError with the text of the report unless the verdict is ``consistent``.
+
+    It takes the arguments of `judge`.
+    """
+    __tracebackhide__ = True  # pytest then shows the line that asserts
+    verdict = judge(*arguments, **named)
+    if not verdict.is_consistent:
+        raise AssertionError(f"the filter is not shown to be consistent\n\n{verdict}")

@@ -1,0 +1,392 @@
+"""The program's commands as functions: they run, store and compare studies."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import tempfile
+import warnings
+import weakref
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from credence import _core
+from credence._calls import errors_of_arguments, framed, progress_bar, said
+
+if TYPE_CHECKING:
+    from credence.study import Study
+    from credence.trajectory import Trajectory
+
+    File = str | os.PathLike[str]
+    Settings = Mapping[str, object]
+    Sweep = Mapping[str, str | Iterable[object]]
+    Goals = str | Sequence[str] | Mapping[str, object]
+
+STOPPED = 3  # the exit code of a run that a signal stopped, with everything kept
+
+
+class Interrupted(KeyboardInterrupt):
+    """A run was stopped by Ctrl-C, and what was done is kept.
+
+    Attributes
+    ----------
+    study : Study
+        The trials that were done; ``credence.resume(study)`` goes on with them.
+    """
+
+    def __init__(self, message: str, study: Study) -> None:
+        super().__init__(message)
+        self.study = study
+
+
+def _command(words: Sequence[str], progress: bool | None = False) -> tuple[int, str, str]:
+    """Run a command of the program; return its exit code and what it said on both streams."""
+    with errors_of_arguments(), progress_bar(progress) as bar:
+        return _core.command(words, bar)
+
+
+def _value_text(value: object) -> str:
+    """A value of a scenario's key, a list with commas."""
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        return str(value)
+    return ", ".join(str(one) for one in value)
+
+
+def _axis_text(values: str | Iterable[object]) -> str:
+    """The values of a swept key: a range such as ``"0.01:0.1:5:log"``, or a list."""
+    if isinstance(values, str):
+        return values
+    texts = [_value_text(one) for one in values]
+    return "|".join(texts) if any("," in text for text in texts) else ",".join(texts)
+
+
+def _option_words(**options: object) -> list[str]:
+    """Options with their values, without those that are None; True is a switch."""
+    words = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is True:
+            words.append(option)
+        elif value is not None and value is not False:
+            words.append(f"{option}={value}")
+    return words
+
+
+def _setting_words(settings: Settings | None, sweep: Sweep | None) -> list[str]:
+    words = [f"--set={key}={_value_text(value)}" for key, value in (settings or {}).items()]
+    return words + [f"--sweep={key}={_axis_text(values)}" for key, values in (sweep or {}).items()]
+
+
+def _goal_words(until: Goals | None) -> list[str]:
+    if until is None or isinstance(until, str):
+        return _option_words(until=until)
+    goals = [f"{metric}={width}" for metric, width in until.items()] if isinstance(until, Mapping) else until
+    return [f"--until={goal}" for goal in goals]
+
+
+@contextlib.contextmanager
+def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
+    """Paths of scenarios; a text that has lines is written into a file for as long as it is needed."""
+    if given is None:
+        yield []
+    elif not isinstance(given, (str, os.PathLike)):
+        yield [os.fspath(one) for one in given]
+    elif isinstance(given, str) and "\n" in given:
+        with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+            path = Path(folder) / "scenario.ini"
+            path.write_text(given, encoding="utf-8")
+            yield [str(path)]
+    else:
+        yield [os.fspath(given)]
+
+
+def _path_of(study: Study | File) -> str:
+    """The path of a results file, of which a study may be open."""
+    return os.fspath(study) if isinstance(study, (str, os.PathLike)) else os.fspath(study.path)
+
+
+def _finish(words: list[str], output: str, progress: bool | None, folder: str | None = None) -> Study:
+    """Run a command that writes a results file, and open it. With the study goes the folder that was made for it."""
+    from credence.study import open as open_study
+
+    words += [f"--output={output}", "--quiet"]
+    try:
+        code, _, err = _command(words, progress)
+        study = open_study(output)
+    except _core.InputError:  # nothing was run; after a failure the folder has what was done
+        if folder is not None:
+            shutil.rmtree(folder)
+        raise
+    if folder is not None:
+        weakref.finalize(study, shutil.rmtree, folder, ignore_errors=True)
+    if code == STOPPED:
+        raise Interrupted(said(err.split(" This goes on")[0].strip()), study)
+    if err:
+        warnings.warn(said(err.strip()), stacklevel=3)
+    return study
+
+
+def _release(_: object) -> None:
+    """Let go of what has been kept until now."""
+
+
+def run(
+    path_or_text: File | Sequence[File],
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    threads: int | None = None,
+    set: Settings | None = None,
+    sweep: Sweep | None = None,
+    until: Goals | None = None,
+    output: File | None = None,
+    overwrite: bool = False,
+    keep: str | None = None,
+    force: bool = False,
+    progress: bool | None = None,
+) -> Study:
+    """Run a study: every scenario under all its arms. The results are those of ``credence run``, bit for bit.
+
+    Python's other threads go on meanwhile. Ctrl-C stops the run and keeps what is done.
+
+    Parameters
+    ----------
+    path_or_text : path, list of paths, or str
+        Scenario files; or the text of one, which has more than one line.
+    trials : int
+        Trials of each scenario (10 000); with `until` their ceiling.
+    seed : int
+        The root seed, from 0 to 2^64 - 1 (1). The same scenarios and seed give the same results.
+    threads : int
+        Threads (all processors).
+    set : dict
+        Values of keys in place of the scenario's: ``{"noise.heading": 0.01}``.
+    sweep : dict
+        Values of keys at each of which every scenario is run, a grid where there are several keys: lists, or ranges
+        such as ``"0.01:0.1:5:log"``.
+    until : str, list of str or dict
+        Stop when a mean is known to a half-width: ``"trace_P=0.5%"``, ``{"trace_P": "0.5%"}``.
+    output : path
+        The results file. Without it the file is temporary: it goes with the study.
+    overwrite : bool
+        Whether `output` may replace a file.
+    keep : str
+        ``"trials"``, one number a trial of every column, or ``"aggregates"``, their totals alone.
+    force : bool
+        Whether a run starts for which memory or disk are too small.
+    progress : bool
+        Whether a bar of tqdm is drawn; by default on a terminal and in a notebook.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        A ValueError: a scenario or an option cannot be used; nothing was run.
+    Failure
+        The work itself failed, such as on a full disk.
+    Interrupted
+        A KeyboardInterrupt: the run was stopped. Its `study` has what was done.
+    """
+    options = _option_words(
+        trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force
+    ) + _setting_words(set, sweep)
+    with _scenario_files(path_or_text) as paths:
+        words = ["run", *paths, *options, *_goal_words(until)]
+        if output is not None:
+            return _finish(words, os.fspath(output), progress)
+        folder = tempfile.mkdtemp(prefix="credence-")
+        return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
+
+
+def resume(
+    study: Study | File,
+    *,
+    trials: int | None = None,
+    threads: int | None = None,
+    until: Goals | None = None,
+    progress: bool | None = None,
+) -> Study:
+    """Run what a study lacks, after an interruption or up to more trials.
+
+    Parameters
+    ----------
+    study : Study or path
+        The study, or its results file; that of a run that was killed need not exist, its journal is beside its name.
+    trials : int
+        Trials of each scenario (those that were asked for before).
+    threads, until, progress
+        As of `run`.
+
+    Returns
+    -------
+    Study
+        The same file, opened again.
+    """
+    words = ["run", "--resume", *_option_words(trials=trials, threads=threads), *_goal_words(until)]
+    resumed = _finish(words, _path_of(study), progress)
+    weakref.finalize(resumed, _release, study)  # a temporary file lives as long as either study
+    return resumed
+
+
+def replay(
+    study: Study | File,
+    *,
+    scenario: str | None = None,
+    arm: str | None = None,
+    trial: int | None = None,
+    noise: File | None = None,
+    set: Settings | None = None,
+    output: File | None = None,
+    overwrite: bool = False,
+) -> list[Trajectory]:
+    """Run one trial again, pose by pose: of a study, or of a scenario file on recorded noise.
+
+    Parameters
+    ----------
+    study : Study or path
+        The study, or a scenario file.
+    scenario, arm : str
+        Names in the study, such as ``"greedy.ekf"``.
+    trial : int
+        The trial, from 0. It is checked against the study's columns bit for bit.
+    noise : path
+        A noise record, with a scenario file in place of `study`.
+    set : dict
+        Values of keys in place of the scenario's.
+    output : path
+        The trajectory file. Without it the file is temporary.
+    overwrite : bool
+        Whether `output` may replace a file.
+
+    Returns
+    -------
+    list of Trajectory
+        The trial under the arm; on recorded noise, under each arm.
+
+    Raises
+    ------
+    InputError
+        A ValueError: there is no such trial, or the output cannot be written.
+    Failure
+        The trial differs from the study's.
+    """
+    from credence.trajectory import open_trajectories
+
+    words = _option_words(scenario=scenario, arm=arm, trial=trial, noise=noise, overwrite=overwrite)
+    with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+        path = os.path.join(folder, "trial.h5") if output is None else os.fspath(output)
+        _command(["replay", _path_of(study), *words, *_setting_words(set, None), f"--output={path}"])
+        return open_trajectories(path)  # the open file outlives its name
+
+
+class Printed:
+    """What a command says of files: ``str()`` is the text that it prints, and a notebook shows its page.
+
+    Attributes
+    ----------
+    json : list of dict
+        What the command prints with ``--format json``, the same bits.
+    """
+
+    def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
+        self._studies = studies  # temporary files live as long as their studies
+        self._words = [command, *map(_path_of, studies), *words]
+        self.json: list[dict[str, Any]] = json.loads(self._format("json"))
+
+    def _format(self, name: str) -> str:
+        return _command([*self._words, f"--format={name}"])[1]
+
+    def __str__(self) -> str:
+        return self._format("text")
+
+    @property
+    def html(self) -> str:
+        """The page that the command writes with ``--format html``; it loads nothing and runs no script."""
+        return self._format("html")
+
+    def _repr_html_(self) -> str:
+        return framed(self.html)
+
+
+class Report(Printed):
+    """What a study proves, with confidence; `json` has an entry for each scenario and arm."""
+
+
+class Comparison(Printed):
+    """Arms or runs compared trial by trial, A - B; `json` has an entry for each scenario and pair."""
+
+
+def report(
+    study: Study | File,
+    *,
+    margin: float | str | None = None,
+    margin_direction: float | str | None = None,
+    bias: float | None = None,
+    failed: float | str | None = None,
+) -> Report:
+    """Say what a study proves: the verdict on each arm, and the numbers that it rests on.
+
+    Parameters
+    ----------
+    study : Study or path
+        The study, or its results file.
+    margin, margin_direction, bias, failed
+        As of `judge`.
+
+    Returns
+    -------
+    Report
+    """
+    return Report(
+        "report",
+        [study],
+        _option_words(margin=margin, margin_direction=margin_direction, bias=bias, failed=failed),
+    )
+
+
+def compare(
+    *studies: Study | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
+) -> Comparison:
+    """Compare arms or runs trial by trial, A - B.
+
+    Parameters
+    ----------
+    *studies : Study or path
+        One study, whose arms are compared; several with the same seed and world; or records of the same runs.
+    arms : tuple of str, or str
+        A and B: ``("greedy", "fixed")``; by default every planned arm against its baseline, or the arms of further
+        studies against those of the first.
+    failed : float or str
+        A warning comes first where more than this share of the trials failed (0.01).
+
+    Returns
+    -------
+    Comparison
+    """
+    both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
+    return Comparison("compare", studies, _option_words(arms=both, failed=failed))
+
+
+def show(
+    path_or_text: File | None = None,
+    *,
+    set: Settings | None = None,
+    sweep: Sweep | None = None,
+) -> str:
+    """Return a scenario as resolved, with every default; without one, all defaults with what each key means.
+
+    Parameters
+    ----------
+    path_or_text : path or str
+        A scenario file, or the text of one.
+    set, sweep : dict
+        As of `run`.
+    """
+    with _scenario_files(path_or_text) as paths:
+        return _command(["show", *paths, *_setting_words(set, sweep)])[1]

@@ -1,0 +1,256 @@
+"""The adapters, on small files and objects whose numbers were computed by hand or by other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import credence
+from credence import adapters
+
+HALF = np.sqrt(0.5)
+Arguments = dict[str, Any]
+
+
+def write(path: Path, rows: Any) -> Path:
+    np.savetxt(path, np.atleast_2d(rows), header="written by a test")
+    return path
+
+
+def nees(arguments: Arguments, group: str = "all") -> list[float]:
+    """What judge has as the mean NEES of each step, not divided by the dimension."""
+    found = next(one for one in credence.judge(**arguments)["groups"] if one["group"] == group)
+    return [ratio * found["dimension"] for ratio in found["anees"]["ratio"]]
+
+
+def tum_pair(folder: Path, covariance: np.ndarray) -> tuple[list[Path], Path]:
+    """Two runs of two poses. The truth stands at the origin, and then at x = 1 turned by 90 degrees about z."""
+    truth = write(folder / "truth.txt", [[0, 0, 0, 0, 0, 0, 0, 1], [1, 1, 0, 0, 0, 0, HALF, HALF]])
+    first = np.r_[0.001, 0.2, 0, 0, 0, 0, 0, 1, covariance]
+    second = np.r_[1.002, 1, 0.1, 0, 0, 0, HALF, HALF, covariance]  # its error is 0.1 along the body's own x
+    return [write(folder / f"run{i}.txt", [first, second]) for i in (0, 1)], truth
+
+
+class TestTum:
+    P = np.diag([4.0, 1, 1, 1, 1, 1]) / 100 + 0.001
+
+    def test_nees_by_hand(self, tmp_path: Path) -> None:
+        estimates, truth = tum_pair(tmp_path, self.P.ravel())
+        information = np.linalg.inv(self.P)[0, 0]
+        by_hand = [0.2**2 * information, 0.1**2 * information]
+        assert nees(adapters.from_tum(estimates, truth)) == pytest.approx(by_hand, rel=1e-12)
+
+    def test_the_world_s_frame(self, tmp_path: Path) -> None:
+        estimates, truth = tum_pair(tmp_path, self.P.ravel())
+        second = nees(adapters.from_tum(estimates, truth, manifold="R3 x SO3"))[1]
+        assert second == pytest.approx(0.1**2 * np.linalg.inv(self.P)[1, 1], rel=1e-12)
+
+    def test_upper_triangle(self, tmp_path: Path) -> None:
+        distinct = self.P + np.arange(36).reshape(6, 6) / 1e4
+        P = (distinct + distinct.T) / 2
+        full = adapters.from_tum(*tum_pair(tmp_path, P.ravel()))
+        triangle = adapters.from_tum(*tum_pair(tmp_path, P[np.triu_indices(6)]))
+        np.testing.assert_array_equal(full["covariance"], triangle["covariance"])
+
+    def test_runs_that_end_early(self, tmp_path: Path) -> None:
+        estimates, truth = tum_pair(tmp_path, self.P.ravel())
+        write(estimates[1], np.loadtxt(estimates[1])[0])
+        arguments = adapters.from_tum(estimates, truth)
+        assert arguments["steps"].tolist() == [2, 1]
+        assert arguments["truth"].shape == (2, 2, 7)
+        assert credence.judge(**arguments)["failed_trials"] == 0
+
+    def test_poses_without_a_truth_are_left_out(self, tmp_path: Path) -> None:
+        estimates, truth = tum_pair(tmp_path, self.P.ravel())
+        rows = np.loadtxt(estimates[0])
+        write(estimates[0], [rows[0], np.r_[0.5, rows[0, 1:]], rows[1]])
+        assert adapters.from_tum(estimates[0], truth)["time"].tolist() == [[0.001, 1.002]]
+
+    def test_quaternions_are_made_unit(self, tmp_path: Path) -> None:
+        estimates, truth = tum_pair(tmp_path, self.P.ravel())
+        rows = np.loadtxt(estimates[0])
+        write(estimates[0], np.hstack([rows[:, :4], rows[:, 4:8].round(3), rows[:, 8:]]))
+        norms = np.linalg.norm(adapters.from_tum(estimates[0], truth)["estimate"][..., 3:], axis=-1)
+        np.testing.assert_allclose(norms, 1, rtol=1e-15)
+
+    @pytest.mark.parametrize(("rows", "message"), [
+        (np.zeros((1, 8)), "run.txt: its lines have 8 numbers \\(must be 44 or 29\\)"),
+        (np.r_[9, np.zeros(43)], "no time of it is within 0.01 s of one in .*truth.txt"),
+    ])
+    def test_refusals(self, tmp_path: Path, rows: np.ndarray, message: str) -> None:
+        _, truth = tum_pair(tmp_path, self.P.ravel())
+        with pytest.raises(ValueError, match=message):
+            adapters.from_tum(write(tmp_path / "run.txt", rows), truth)
+
+    def test_files_without_numbers(self, tmp_path: Path) -> None:
+        _, truth = tum_pair(tmp_path, self.P.ravel())
+        (tmp_path / "empty.txt").write_text("# time x y z\n")
+        (tmp_path / "words.txt").write_text("1 2 three\n")
+        with pytest.raises(credence.InputError, match=r"empty.txt: there are no numbers in it"):
+            adapters.from_tum(tmp_path / "empty.txt", truth)
+        with pytest.raises(credence.InputError, match=r"words.txt: .*three"):
+            adapters.from_tum(tmp_path / "words.txt", truth)
+
+    def test_beside_evo(self, tmp_path: Path) -> None:
+        file_interface = pytest.importorskip("evo.tools.file_interface")
+        metrics, sync = (pytest.importorskip(f"evo.core.{name}") for name in ("metrics", "sync"))
+        rng = np.random.default_rng(5)
+        poses = [np.hstack([rng.normal(size=(60, 3)), rng.normal(size=(60, 4))]) for _ in range(2)]
+        for each in poses:
+            each[:, 3:] /= np.linalg.norm(each[:, 3:], axis=1, keepdims=True)
+        times = np.arange(60) / 10
+        shifted = times + rng.normal(0, 0.005, 60)
+        truth = write(tmp_path / "truth.txt", np.c_[times, poses[0]])
+        estimate = write(tmp_path / "estimate.txt", np.c_[shifted, poses[1], np.tile(np.eye(6).ravel(), (60, 1))])
+        plain = write(tmp_path / "plain.txt", np.c_[shifted, poses[1]])
+        read = file_interface.read_tum_trajectory_file
+        matched = sync.associate_trajectories(read(str(truth)), read(str(plain)), max_diff=0.004)
+        arguments = adapters.from_tum(estimate, truth, max_difference=0.004, manifold="R3 x SO3")
+        np.testing.assert_array_equal(arguments["time"][0], matched[1].timestamps)
+        np.testing.assert_array_equal(arguments["truth"][0, :, :3], matched[0].positions_xyz)
+        np.testing.assert_allclose(arguments["estimate"][0, :, :3], matched[1].positions_xyz)
+        ape = metrics.APE(metrics.PoseRelation.rotation_angle_rad)
+        ape.process_data(matched)
+        both = {name: np.repeat(value, 2, axis=0) for name, value in arguments.items() if isinstance(value, np.ndarray)}
+        groups = {"groups": {"rotation": [3, 4, 5]}}  # of the identity: NEES is the squared angle
+        np.testing.assert_allclose(nees(arguments | both | groups, "rotation"), np.square(ape.error), rtol=1e-9)
+
+
+def jpl_matrix(q: np.ndarray) -> np.ndarray:
+    """The rotation matrix of a JPL quaternion (x, y, z, w) [Trawny and Roumeliotis 2005, eq. 62]."""
+    x, y, z, w = q
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    matrix: np.ndarray = (2 * w * w - 1) * np.eye(3) - 2 * w * cross + 2 * np.outer(q[:3], q[:3])
+    return matrix
+
+
+def log(R: np.ndarray) -> np.ndarray:
+    angle = np.arccos((np.trace(R) - 1) / 2)
+    axis = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / (2 * np.sin(angle))
+    vector: np.ndarray = angle * axis
+    return vector
+
+
+def random_states(rng: np.random.Generator, count: int, rest: int) -> tuple[np.ndarray, np.ndarray]:
+    """Quaternions near each other beside numbers near each other."""
+    true, estimated = rng.normal(size=(count, 4)), 0.05 * rng.normal(size=(count, 4))
+    true /= np.linalg.norm(true, axis=1, keepdims=True)
+    estimated += true
+    estimated /= np.linalg.norm(estimated, axis=1, keepdims=True)
+    numbers = rng.normal(size=(count, rest))
+    return np.hstack([true, numbers]), np.hstack([estimated, numbers + 0.1 * rng.normal(size=(count, rest))])
+
+
+class TestOpenVins:
+    def test_trajectories_have_the_nees_of_ov_eval(self, tmp_path: Path) -> None:
+        rng = np.random.default_rng(7)
+        true, estimated = random_states(rng, 5, 3)
+        roots = rng.normal(size=(2, 3, 3))
+        orientation, position = (root @ root.T + np.eye(3) for root in roots)
+        behind = np.r_[orientation[np.triu_indices(3)], position[np.triu_indices(3)]]
+        times = np.arange(5.0)
+        truth = write(tmp_path / "truth.txt", np.c_[times, true[:, 4:], true[:, :4]])
+        rows = np.c_[times, estimated[:, 4:], estimated[:, :4], np.tile(behind, (5, 1))]
+        estimate = write(tmp_path / "estimate.txt", rows)
+        arguments = adapters.from_openvins([estimate] * 2, truth)
+        errors = [-log(jpl_matrix(t[:4]) @ jpl_matrix(e[:4]).T) for t, e in zip(true, estimated)]  # as ov_eval has it
+        expected = [e @ np.linalg.solve(orientation, e) for e in errors]
+        assert nees(arguments, "orientation") == pytest.approx(expected, rel=1e-9)
+        moved = estimated[:, 4:] - true[:, 4:]
+        expected = [e @ np.linalg.solve(position, e) for e in moved]
+        assert nees(arguments, "position") == pytest.approx(expected, rel=1e-9)
+
+    def test_simulations(self, tmp_path: Path) -> None:
+        rng = np.random.default_rng(8)
+        true, estimated = random_states(rng, 4, 12)
+        sigma, times, calibration = rng.uniform(0.5, 2, (4, 15)), np.arange(4.0), np.ones((4, 3))
+        files = [
+            write(tmp_path / f"state_{name}.txt", np.c_[times, rows, calibration])
+            for name, rows in (("estimate", estimated), ("groundtruth", true), ("deviation", sigma))
+        ]
+        arguments = adapters.from_openvins(*([file] * 2 for file in files))
+        errors = np.array([-log(jpl_matrix(t[:4]) @ jpl_matrix(e[:4]).T) for t, e in zip(true, estimated)])
+        assert arguments["covariance"][0] == pytest.approx(sigma**2)
+        assert nees(arguments, "ry") == pytest.approx((errors[:, 1] / sigma[:, 1]) ** 2, rel=1e-9)
+        velocity = (estimated[:, 9] - true[:, 9]) / sigma[:, 8]
+        assert nees(arguments, "vz") == pytest.approx(velocity**2, rel=1e-9)
+
+    def test_simulations_at_other_times(self, tmp_path: Path) -> None:
+        files = [write(tmp_path / name, np.ones((2, 17))) for name in ("estimate", "deviation")]
+        truth = write(tmp_path / "truth", 2 * np.ones((2, 17)))
+        with pytest.raises(ValueError, match=r"truth: its times are not those of .*estimate"):
+            adapters.from_openvins(files[0], truth, files[1])
+
+
+class TestNpz:
+    def test_arguments_come_back(self, tmp_path: Path) -> None:
+        rng = np.random.default_rng(9)
+        error, covariance = rng.normal(size=(40, 3, 2)), np.broadcast_to(np.eye(2), (40, 3, 2, 2))
+        np.savez(tmp_path / "a.npz", e=error, covariance=covariance, groups="first 0, second 1", other=3)
+        arguments = adapters.from_npz(tmp_path / "a.npz", {"error": "e"})
+        assert sorted(arguments) == ["covariance", "error", "groups"]
+        assert credence.judge(**arguments).json == credence.judge(error, covariance, groups="first 0, second 1").json
+
+    def test_groups_of_their_own(self, tmp_path: Path) -> None:
+        own = np.broadcast_to(np.eye(2), (40, 3, 2, 2))
+        arrays = {"error": np.zeros((40, 3, 2)), "group/pose/covariance": own}
+        np.savez(tmp_path / "a.npz", allow_pickle=False, **arrays)
+        arguments = adapters.from_npz(tmp_path / "a.npz")
+        assert list(arguments["group_covariance"]) == ["pose"]
+        np.testing.assert_array_equal(arguments["group_covariance"]["pose"], own)
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        np.savez(tmp_path / "a.npz", e=np.zeros(3))
+        with pytest.raises(ValueError, match="no array in it is an argument of judge"):
+            adapters.from_npz(tmp_path / "a.npz")
+        with pytest.raises(ValueError, match="there is no array err in it \\(it has e\\)"):
+            adapters.from_npz(tmp_path / "a.npz", {"error": "err"})
+        np.savez(tmp_path / "b.npz", error=np.array([{}], dtype=object))
+        with pytest.raises(ValueError, match="allow_pickle"):
+            adapters.from_npz(tmp_path / "b.npz")
+
+
+class TestGtsam:
+    def test_pose3_has_the_nees_of_gtsam(self) -> None:
+        gtsam = pytest.importorskip("gtsam")
+        rng = np.random.default_rng(10)
+        truth: list[Any] = []
+        estimate: list[Any] = []
+        covariance: list[np.ndarray] = []
+        expected: list[float] = []
+        for _ in range(4):
+            true = gtsam.Pose3.Expmap(rng.normal(size=6))
+            estimated = true.retract(0.3 * rng.normal(size=6))
+            root = rng.normal(size=(6, 6))
+            P = root @ root.T + np.eye(6)
+            back = estimated.localCoordinates(true)
+            expected.append(back @ np.linalg.solve(P, back))
+            truth.append(true)
+            estimate.append(estimated)
+            covariance.append(P)
+        arguments = adapters.from_gtsam_poses([truth] * 2, [estimate] * 2, [np.array(covariance)] * 2)
+        assert nees(arguments) == pytest.approx(expected, rel=1e-9)
+
+    def test_pose2_by_hand(self) -> None:
+        def pose(x: float, y: float, angle: float) -> SimpleNamespace:
+            return SimpleNamespace(x=lambda: x, y=lambda: y, theta=lambda: angle)
+
+        P = np.diag([1.0, 4, 9])
+        arguments = adapters.from_gtsam_poses([[pose(0, 0, np.pi / 2)]] * 2, [[pose(0, 1, np.pi / 2)]] * 2, [[P]] * 2)
+        assert nees(arguments) == pytest.approx([1.0])  # one to the front, where the variance is 1
+        with pytest.raises(ValueError, match="a pose has 3 components"):
+            adapters.from_gtsam_poses([[pose(0, 0, 0)]], [[pose(0, 0, 0)]], [[np.eye(6)]])
+
+
+def test_stonesoup_states() -> None:
+    truth = [SimpleNamespace(state_vector=np.array([[1.0], [2.0]]))]
+    track = [SimpleNamespace(state_vector=np.array([[1.5], [2.0]]), covar=[[2, 1], [1, 3]])]
+    arguments = adapters.from_stonesoup([truth], [track])
+    assert arguments["error"].tolist() == [[[0.5, 0]]]
+    assert arguments["covariance"].tolist() == [[[[2, 1], [1, 3]]]]
+    with pytest.raises(ValueError, match="zip"):
+        adapters.from_stonesoup([truth * 2], [track])

@@ -1,0 +1,178 @@
+"""`judge` on arrays says what the program says of the same record in a file."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+import records
+
+import credence
+
+CORPUS = records.corpus()
+REFERENCE = sorted((pathlib.Path(__file__).parents[2] / "tests" / "reference").glob("record_*.h5"))
+
+
+@pytest.mark.parametrize("name", CORPUS)
+def test_arrays_give_the_bits_of_the_program(name, tmp_path, program):
+    path = records.write(tmp_path / f"{name}.h5", CORPUS[name])
+    code, printed, said = program("judge", path, "--format", "json", "--quiet")
+    assert (code, said) == (0, "")
+    verdict = credence.judge(**CORPUS[name], name=str(path))
+    assert verdict.json == json.loads(printed)
+    assert str(verdict) == program("judge", path, "--quiet")[1]
+
+
+@pytest.mark.parametrize("path", REFERENCE, ids=lambda path: path.stem)
+def test_files_give_the_bits_of_the_program(path, program):
+    _, printed, _ = program("judge", path, "--format", "json", "--quiet")
+    assert credence.judge(path).json == json.loads(printed)
+
+
+def test_the_page_is_that_of_the_program(tmp_path, program):
+    path = records.write(tmp_path / "joint.h5", CORPUS["joint"])
+    verdict = credence.judge(**CORPUS["joint"], name=str(path))
+    assert verdict.html == program("judge", path, "--format", "html", "--quiet")[1]
+    assert (
+        verdict.html.replace("&", "&amp;")
+        .replace('"', "&quot;")
+        .replace("<", "&lt;")
+        .replace(">", "&gt;")
+        .replace("'", "&#x27;")
+        in verdict._repr_html_()
+    )
+
+
+def test_margins_are_those_of_the_program(tmp_path, program):
+    path = records.write(tmp_path / "joint.h5", CORPUS["joint"])
+    options = {"margin": "40%", "margin_direction": 0.9, "bias": 0.7, "failed": 0.5}
+    words = [f"--{name.replace('_', '-')}={value}" for name, value in options.items()]
+    printed = program("judge", path, *words, "--format", "json", "--quiet")[1]
+    verdict = credence.judge(**CORPUS["joint"], **options, name=str(path))
+    assert verdict.json == json.loads(printed)
+    assert [verdict[name] for name in ("margin", "failed_limit")] == [0.4, 0.5]
+
+
+def test_any_layout_in_memory_is_the_same_record():
+    record = records.with_innovations(np.random.default_rng(1))
+    plain = credence.judge(**record).json
+    for lay_out in (np.asfortranarray, _every_second, _backwards, _unaligned):
+        other = {key: lay_out(value) if isinstance(value, np.ndarray) else value for key, value in record.items()}
+        assert any(not value.flags.c_contiguous for value in other.values() if isinstance(value, np.ndarray))
+        assert credence.judge(**other).json == plain
+
+
+def _every_second(array):
+    spread = np.full(tuple(2 * extent for extent in array.shape), np.nan)
+    window = spread[tuple(slice(None, None, 2) for _ in array.shape)]
+    window[...] = array
+    return window
+
+
+def _backwards(array):
+    return np.ascontiguousarray(array[:, ::-1])[:, ::-1]
+
+
+def _unaligned(array):
+    pairs = np.empty(array.shape, dtype=[("tag", "u1"), ("value", "f8")])
+    pairs["value"] = array
+    return pairs["value"]
+
+
+def test_what_has_an_array_is_taken():
+    class Wrapped:
+        def __init__(self, array):
+            self.array = array
+
+        def __array__(self, dtype=None, copy=None):
+            return self.array
+
+    record = CORPUS["joint"]
+    plain = credence.judge(**record).json
+    assert credence.judge(Wrapped(record["error"]), Wrapped(record["covariance"])).json == plain
+    assert credence.judge(record["error"].tolist(), record["covariance"].tolist()).json == plain
+
+
+def test_no_copy_of_the_arrays_is_made():
+    """360 MB of covariances that share one matrix in memory: a copy would show in the largest size of the process."""
+    script = """
+        import resource
+        import numpy as np
+        import credence
+        error = np.random.default_rng(0).normal(size=(2000, 100, 15))
+        covariance = np.broadcast_to(np.eye(15), (2000, 100, 15, 15))
+        credence.judge(error[:100], covariance[:100])
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        credence.judge(error, covariance)
+        print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+    """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, check=True)
+    assert int(done.stdout) < 150_000  # kB; what is kept of NEES and errors takes up to 100 MB
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"covariance": np.zeros((3, 2, 2, 3))}, "covariance: does not fit: it is [3, 2, 2, 3] and error [3, 2, 2]."),
+        (
+            {"covariance": np.array([[[[1, 0.5], [0, 1]]] * 2] * 3)},
+            "covariance: trial 0, step 0 (both counted from 0) is not",
+        ),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "groups": {"pose": [0, 2]}},
+            "groups: `pose 0 2` goes beyond the 2 components",
+        ),
+        ({"covariance": np.ones((3, 2, 2, 2)), "margin": 2}, "invalid margin=2 (must be between 0 and 100 %"),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "margin_direction": 0.01},
+            "invalid margin_direction=0.01 (less than the margin",
+        ),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "innovation": np.ones((3, 2, 1))},
+            "innovation_covariance: is missing, but",
+        ),
+        ({}, "covariance: is missing."),
+    ],
+)
+def test_what_does_not_fit_is_refused(arguments, message):
+    with pytest.raises(credence.InputError) as refused:
+        credence.judge(np.zeros((3, 2, 2)), **arguments)
+    assert str(refused.value).startswith(message)
+    assert isinstance(refused.value, ValueError)
+
+
+def test_what_is_no_array_of_numbers_is_refused():
+    with pytest.raises(TypeError, match="none of numbers"):
+        credence.judge(np.array([["a"]]), np.zeros((1, 1, 1)))
+    with pytest.raises(TypeError, match="Give the path alone"):
+        credence.judge("record.h5", np.zeros((1, 1, 1)))
+
+
+def test_assert_consistent_says_why():
+    rng = np.random.default_rng(3)
+    consistent = {"error": rng.normal(size=(4000, 3, 2)), "covariance": np.broadcast_to(np.eye(2), (4000, 3, 2, 2))}
+    credence.assert_consistent(**consistent, groups={"pose": [0]})
+    optimistic = {**consistent, "covariance": consistent["covariance"] / 2}
+    with pytest.raises(AssertionError) as failure:
+        credence.assert_consistent(**optimistic)
+    assert str(credence.judge(**optimistic)) in str(failure.value)
+    assert credence.judge(**optimistic).verdict == "optimistic"
+
+
+def test_an_error_in_progress_ends_the_call():
+    class Stop(Exception):
+        pass
+
+    def stop(done, total):
+        raise Stop
+
+    from credence import _core, judging
+
+    array = judging._array(np.zeros((3, 2, 2)))
+    with pytest.raises(Stop):
+        _core.judge({"error": array, "covariance": judging._array(np.ones((3, 2, 2)))}, {}, {}, {}, "record", stop)

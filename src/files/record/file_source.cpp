@@ -1,0 +1,103 @@
+// A record in an HDF5 file.
+
+#include <algorithm>
+#include <credence/error.hpp>
+
+#include "files/record/source.hpp"
+
+namespace credence {
+
+namespace {
+
+using hdf5::Error;
+using hdf5::Handle;
+
+/// Calls `use` with the group that holds the last name of a path, and with that name. Every group on the way is opened
+/// by itself, because none of them may be a link to somewhere else.
+template <class Use>
+auto at_path(const Handle& group, const std::string& path, const Use& use) {
+    const std::size_t slash = path.find('/');
+    if (slash == std::string::npos) return use(group, path);
+    return at_path(hdf5::open_group(group, path.substr(0, slash)), path.substr(slash + 1), use);
+}
+
+class FileDataset : public RecordDataset {
+public:
+    explicit FileDataset(hdf5::RealDataset dataset)
+        : RecordDataset(dataset.place(), dataset.extents(), dataset.epsilon(), dataset.chunk().front()),
+          dataset_(std::move(dataset)) {}
+    void read(const hdf5::Extents& first, const hdf5::Extents& count, std::vector<double>& values) const override {
+        dataset_.read(first, count, values);
+    }
+
+private:
+    hdf5::RealDataset dataset_;
+};
+
+/// Throws where `name` is a group, as Octave's own `save -hdf5` writes variables.
+void refuse_group(const Handle& parent, const std::string& name) {
+    const std::string place = hdf5::place_of(parent, name);
+    const Handle object(H5Oopen(parent.id(), hdf5::hard(parent, name).c_str(), H5P_DEFAULT), H5Oclose, place,
+                        "cannot be opened");
+    if (H5Iget_type(object.id()) == H5I_GROUP)
+        throw Error(place, "is a group, not a dataset, as Octave's save makes it",
+                    "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
+}
+
+/// The name by which HDF5 finds an object from the root.
+const char* object_name(const std::string& path) { return path.empty() ? "." : path.c_str(); }
+
+}  // namespace
+
+std::string record_place(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    if (slash == std::string::npos) return "/" + printable(path);
+    return printable("/" + path.substr(0, slash)) + "/" + printable(path.substr(slash + 1));
+}
+
+std::string record_attribute_place(const std::string& name, const std::string& path) {
+    return printable("/" + path) + "@" + printable(name);
+}
+
+bool FileSource::has(const std::string& path) const {
+    return at_path(root_, path,
+                   [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
+}
+
+DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
+    return at_path(root_, path, [&](const Handle& group, const std::string& name) -> DatasetPointer {
+        refuse_group(group, name);
+        return std::make_unique<FileDataset>(hdf5::RealDataset(group, name, numbers));
+    });
+}
+
+std::vector<std::string> FileSource::names_in(const std::string& group) const {
+    if (!has(group)) return {};
+    return at_path(root_, group, [](const Handle& parent, const std::string& name) {
+        return hdf5::sorted_link_names(hdf5::open_group(parent, name));
+    });
+}
+
+bool FileSource::has_attribute(const std::string& name, const std::string& path) const {
+    const htri_t answer = H5Aexists_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT);
+    hdf5::check(answer, record_attribute_place(name, path), "cannot be looked up");
+    return answer > 0;
+}
+
+std::string FileSource::text(const std::string& name) const { return hdf5::read_any_text(root_, name); }
+
+std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
+    const std::string place = record_attribute_place(name, path);
+    const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, place, "HDF5 cannot open it");
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
+    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
+    const H5T_class_t kind = H5Tget_class(type.id());
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
+        return std::nullopt;
+    double number = 0;
+    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
+    return number;
+}
+
+}  // namespace credence

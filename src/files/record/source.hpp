@@ -1,0 +1,97 @@
+#pragma once
+// Where a record is read from: a file, or arrays in memory. Its datasets and attributes have the names of the file.
+
+#include <credence/record.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/hdf5/slab.hpp"
+
+namespace credence {
+
+using hdf5::Numbers;
+
+/// A dataset of a record, read in parts as doubles.
+class RecordDataset {
+public:
+    RecordDataset(std::string place, hdf5::Extents extents, double epsilon, hsize_t chunk)
+        : place_(std::move(place)), extents_(std::move(extents)), epsilon_(epsilon), chunk_(chunk) {}
+    virtual ~RecordDataset() = default;
+    RecordDataset(const RecordDataset&) = delete;
+    RecordDataset& operator=(const RecordDataset&) = delete;
+
+    const std::string& place() const { return place_; }
+    const hdf5::Extents& extents() const { return extents_; }
+    /// Distance of 1 from the next number of the type, at least 2^-52.
+    double epsilon() const { return epsilon_; }
+    /// How many entries of the first dimension are stored together.
+    hsize_t chunk() const { return chunk_; }
+
+    /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
+    virtual void read(const hdf5::Extents& first, const hdf5::Extents& count, std::vector<double>& values) const = 0;
+
+private:
+    std::string place_;
+    hdf5::Extents extents_;
+    double epsilon_;
+    hsize_t chunk_;
+};
+using DatasetPointer = std::unique_ptr<RecordDataset>;
+
+/// The datasets and attributes of a record. Paths are such as `error` and `group/pose/nees`, and the empty one is that
+/// of the root. All functions throw hdf5::Error.
+class RecordSource {
+public:
+    virtual ~RecordSource() = default;
+
+    virtual bool has(const std::string& path) const = 0;
+    /// Throws where it is missing, or cannot be read.
+    virtual DatasetPointer open(const std::string& path, Numbers numbers = Numbers::floating) const = 0;
+    /// What a group holds, in alphabetical order; nothing where there is no such group.
+    virtual std::vector<std::string> names_in(const std::string& group) const = 0;
+
+    /// An attribute of the object at a path.
+    virtual bool has_attribute(const std::string& name, const std::string& path = "") const = 0;
+    /// A text attribute of the root; the entries of a list joined by commas.
+    virtual std::string text(const std::string& name) const = 0;
+    /// The number in an attribute, of any type; nothing where it holds anything else.
+    virtual std::optional<double> number(const std::string& name, const std::string& path = "") const = 0;
+};
+
+/// Names for messages, as in a file: `/group/pose/nees`, `/@groups`.
+std::string record_place(const std::string& path);
+std::string record_attribute_place(const std::string& name, const std::string& path = "");
+
+/// A record in a file, as long as its root is open.
+class FileSource : public RecordSource {
+public:
+    explicit FileSource(const hdf5::Handle& root) : root_(root) {}
+    bool has(const std::string& path) const override;
+    DatasetPointer open(const std::string& path, Numbers numbers) const override;
+    std::vector<std::string> names_in(const std::string& group) const override;
+    bool has_attribute(const std::string& name, const std::string& path) const override;
+    std::string text(const std::string& name) const override;
+    std::optional<double> number(const std::string& name, const std::string& path) const override;
+
+private:
+    const hdf5::Handle& root_;
+};
+
+/// A record of version 2 in arrays, which must outlive it and its datasets.
+class ArraySource : public RecordSource {
+public:
+    explicit ArraySource(const RecordArrays& record) : record_(record) {}
+    bool has(const std::string& path) const override;
+    DatasetPointer open(const std::string& path, Numbers numbers) const override;
+    std::vector<std::string> names_in(const std::string& group) const override;
+    bool has_attribute(const std::string& name, const std::string& path) const override;
+    std::string text(const std::string& name) const override;
+    std::optional<double> number(const std::string& name, const std::string& path) const override;
+
+private:
+    const RecordArrays& record_;
+};
+
+}  // namespace credence

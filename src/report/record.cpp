@@ -1,0 +1,82 @@
+// The report of a record: that of a study, and what only a record can be asked.
+
+#include <algorithm>
+#include <cmath>
+#include <credence/report.hpp>
+#include <credence/text.hpp>
+
+#include "report/format.hpp"
+#include "verdict/judgement.hpp"
+
+namespace credence {
+
+namespace {
+
+/// A covariance that is singular at the start makes every trial fail there.
+void hint_at_known_start(const Record& record, Consistency& verdict) {
+    const auto at_start = [](const RecordTrouble& trouble) {
+        return trouble.step == 0 && trouble.status == Status::covariance_not_positive_definite &&
+               trouble.what == "covariance is singular";
+    };
+    if (verdict.verdict == Verdict::failed && std::ranges::all_of(record.troubles, at_start))
+        verdict.hints.push_back(
+            "the covariance is singular at the first step: where the start is known exactly (P0 = 0), begin the "
+            "record one step later, or make the known components NaN at that step");
+}
+
+/// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
+void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vector<std::string>& sentences) {
+    if (!evidence.joint || evidence.trials == 0) return;
+    std::vector<std::string> absent;
+    for (const GroupEvidence& group : evidence.groups)
+        if (!(group.run.count > 0) && !is_rounded(group, limits)) absent.push_back(group.name);
+    if (!absent.empty())
+        sentences.push_back("No trial has all components of " + joined(absent) +
+                            " at a step: the verdict is of the others.");
+}
+
+std::string nees_text(const GroupEvidence& state) { return with_interval(state.run.mean, over_steps95(state)); }
+
+bool is_too_large(const Finding& finding) {
+    return finding.what == "optimistic" && (finding.about == Subject::size || finding.about == Subject::direction);
+}
+
+/// NEES with the error in the other chart, where the given one is doubted: beside the record's own, without a verdict.
+void try_other_chart(const Record& record, ArmReport& arm) {
+    Consistency& verdict = arm.consistency;
+    const bool doubted = verdict.chart_doubted || std::ranges::any_of(verdict.findings, is_too_large);
+    if (!record.in_other_chart || !doubted || !(arm.evidence.groups.front().run.count > 0)) return;
+    const Record other = record.in_other_chart();
+    const Evidence evidence = evidence_of(other.results, other.results.arms.front());
+    for (const GroupEvidence& group : evidence.groups)
+        arm.evidence.charts.push_back({other.chart, group.name, group.dimension, group.run, group.step, group.anees});
+    const GroupEvidence &own = arm.evidence.groups.front(), &theirs = evidence.groups.front();
+    const bool nearer = std::abs(std::log(theirs.run.mean)) < std::abs(std::log(own.run.mean)) / 2;
+    verdict.hints.push_back(
+        "NEES/dim of " + own.name + " is " + nees_text(own) + " with the error in the chart `" + record.chart +
+        "`, and " + nees_text(theirs) + " in the chart `" + other.chart + "`" +
+        (nearer ? ": does the covariance belong to the latter?" : ": the chart is not what is wrong"));
+}
+
+}  // namespace
+
+Report make_record_report(Record record, const std::string& path, const Limits& limits) {
+    ScenarioResults& results = record.results;
+    Report report;
+    report.source = "record " + printable(path, path.size());
+    report.limits = limits;
+    report.troubles = record.troubles;
+    report.not_judged = results.not_judged;
+    results.scenario.title.clear();  // the source names it
+    report.scenarios.push_back(results.scenario);
+    constexpr std::uint64_t bootstrap_seed = 1;
+    report.arms.push_back(report_arm(results, results.arms.front(), bootstrap_seed, limits));
+    results.arms.clear();  // large, and of no further use
+    ArmReport& arm = report.arms.front();
+    hint_at_known_start(record, arm.consistency);
+    name_absent_groups(arm.evidence, limits, report.not_judged);
+    try_other_chart(record, arm);
+    return report;
+}
+
+}  // namespace credence

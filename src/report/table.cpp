@@ -1,0 +1,148 @@
+#include "report/table.hpp"
+
+#include "report/format.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <iterator>
+
+namespace credence {
+
+namespace {
+
+/// The widest cell of each column, of those that are not heads of groups.
+std::vector<int> widths_of(const Table& table) {
+    std::vector<int> widths;
+    for (const std::string& head : table.heads()) widths.push_back(characters(head));
+    for (const Table::Row& row : table.rows())
+        for (std::size_t c = 0; c < row.cells.size() && !row.heads_group; ++c)
+            widths[c] = std::max(widths[c], characters(row.cells[c].text()));
+    return widths;
+}
+
+/// Columns of numbers are aligned to the right.
+std::vector<bool> number_columns(const Table& table) {
+    std::vector<bool> numbers(table.heads().size());
+    for (const Table::Row& row : table.rows())
+        for (std::size_t c = 0; c < row.cells.size() && !row.heads_group; ++c)
+            if (row.cells[c].is_number()) numbers[c] = true;
+    return numbers;
+}
+
+std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
+    std::vector<std::string> texts;
+    for (const Cell& cell : cells) texts.push_back(cell.text());
+    return texts;
+}
+
+std::string without_end_blanks(std::string line) { return line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; }
+
+}  // namespace
+
+std::string Cell::text() const {
+    std::string text;
+    for (const Piece& piece : pieces_) text += piece.shown;
+    return text;
+}
+
+bool Cell::is_number() const {
+    return std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& piece) { return piece.exact.has_value(); });
+}
+
+Cell operator+(Cell a, const Cell& b) {
+    a.pieces_.insert(a.pieces_.end(), b.pieces_.begin(), b.pieces_.end());
+    return a;
+}
+
+Cell number_cell_as(double value, const std::string& shown) {
+    if (!std::isfinite(value)) return "-";
+    return Cell::Piece{shown, value};
+}
+
+Cell number_cell(double value, int digits) { return number_cell_as(value, number(value, digits)); }
+
+Cell number_cell_within(double value, double uncertainty) { return number_cell(value, decimals_for(uncertainty)); }
+
+Cell count_cell(double value) { return number_cell_as(value, short_number(value)); }
+
+Cell short_cell(double value) { return short_number(value); }
+
+Cell range_cell(const Interval& interval) {
+    if (!std::isfinite(half_width(interval))) return "-";
+    return short_number(interval.low) + " to " + short_number(interval.high);
+}
+
+Cell interval_cell(const Interval& interval, int digits) {
+    if (!std::isfinite(half_width(interval))) return "-";
+    return "[" + number_cell(interval.low, digits) + ", " + number_cell(interval.high, digits) + "]";
+}
+
+Cell mean_cell(double mean, const Interval& interval) {
+    const double half = half_width(interval);
+    const int digits = decimals_for(half);
+    if (!std::isfinite(mean) || !std::isfinite(half)) return number_cell(mean, digits);
+    return number_cell(mean, digits) + " ± " + number(half, digits);
+}
+
+Cell share_cell(double share) { return number_cell_as(share, percent(share)); }
+
+Cell p_cell(double p) { return number_cell_as(p, p_text(p)); }
+
+Table& Table::row(std::vector<Cell> cells) {
+    rows_.push_back({std::move(cells)});
+    return *this;
+}
+
+Table& Table::row(Cell head, std::vector<Cell> cells) {
+    cells.insert(cells.begin(), std::move(head));
+    return row(std::move(cells));
+}
+
+Table& Table::group(const std::string& head) {
+    rows_.push_back({{head}, true});
+    return *this;
+}
+
+namespace {
+
+/// Writes the lines of a table. Where the row heads do not fit beside the other columns, they have lines of their own.
+class TextLines {
+public:
+    TextLines(const Table& table, int indent)
+        : table_(table), widths_(widths_of(table)), numbers_(number_columns(table)),
+          indent_(static_cast<std::size_t>(indent)),
+          first_(std::accumulate(widths_.begin(), widths_.end(), indent + 2 * static_cast<int>(widths_.size()) - 2) <= text_width
+                     ? 0 : table.row_heads()) {}
+
+    std::string line(const std::vector<std::string>& cells) const {
+        const std::string margin(indent_, ' ');
+        std::string text = first_ == 0 ? "" : margin + wrapped_list("", heads_of(cells), indent_) + "\n";
+        std::string after = margin + (first_ == 0 ? "" : "  ");
+        for (std::size_t c = first_; c < cells.size(); ++c)
+            after += (c == first_ ? "" : "  ") + aligned(cells[c], widths_[c], numbers_[c]);
+        return text + without_end_blanks(std::move(after));
+    }
+    std::string text() const {
+        std::string text = line(table_.heads());
+        for (const Table::Row& row : table_.rows())
+            text += row.heads_group ? std::string(indent_, ' ') + row.cells.front().text() + "\n" : line(texts_of(row.cells));
+        return text;
+    }
+
+private:
+    std::vector<std::string> heads_of(const std::vector<std::string>& cells) const {
+        return {cells.begin(), std::next(cells.begin(), static_cast<std::ptrdiff_t>(std::min(first_, cells.size())))};
+    }
+
+    const Table& table_;
+    const std::vector<int> widths_;
+    const std::vector<bool> numbers_;
+    const std::size_t indent_, first_;  ///< the first column of the lines
+};
+
+}  // namespace
+
+std::string table_text(const Table& table, int indent) { return table.empty() ? "" : TextLines(table, indent).text(); }
+
+}  // namespace credence
