@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from ..trajectory import Trajectory
 from . import style, trajectory
 
-MOST_FRAMES = 200  # longer trials skip poses
+MOST_FRAMES = 150  # longer trials skip poses
 
 
 def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
@@ -38,6 +38,7 @@ def animate(trial: Trajectory, path: str, *, ellipse: str = "95", frames_per_sec
             for pose in [*poses, *[poses[-1]] * frames_per_second]:  # the end is held for a second
                 frame.show(int(pose))
                 writer.grab_frame()
+                frame.picture.set_layout_engine("none")  # all frames have the layout of the first
 
 
 class _Frame:

@@ -145,7 +145,7 @@ def animate(
     ellipse : str
         ``95`` (percent) or ``1-sigma``.
     frames_per_second : int
-        Poses a second. Trials of more than 200 poses skip some.
+        Poses a second. Trials of more than 150 poses skip some.
     credence : path, optional
         The program that runs the trial again where the package's compiled module is missing.
 

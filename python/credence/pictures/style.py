@@ -212,14 +212,14 @@ def aside(index: int, count: int) -> float:
     return (index - (count - 1) / 2) * (0.25 if count <= 2 else 0.8 / count)
 
 
-def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float) -> None:
+def key(axis: Axes, entries: Sequence[tuple[Any, str]], width: float, beside_panel: bool = True) -> None:
     """A legend where it hides nothing: above the panel, by which the picture grows; on a page beside it where there are
     many short entries."""
     if not entries:
         return
     handles, labels = zip(*entries, strict=True)
     longest = 9 + 1.4 * max(map(len, labels))
-    if len(labels) > 4 and longest < 45 and width >= PAGE:
+    if beside_panel and len(labels) > 4 and longest < 45 and width >= PAGE:
         beside(axis, entries)
         return
     columns = max(1, min(len(labels), int((width - 12) / longest)))

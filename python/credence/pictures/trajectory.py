@@ -48,13 +48,17 @@ def block(covariance: FloatArray, first: int) -> FloatArray:
 
 
 def limits(axis: Axes, trial: Trajectory, scale: float) -> float:
-    """Sets the limits to what the trial holds, ellipses included, and returns width / height."""
+    """Sets the limits to what the trial holds, estimates with their ellipses included as far as they are within a sixth
+    of its size from the truth, and returns width / height."""
     first = trial.components.index("r_x")
-    reach = scale * np.sqrt(np.diagonal(trial["covariance"], axis1=1, axis2=2)[:, first:])
     mean, truth = trial["mean"][:, first:], trial["truth"][:, first:]
-    places = np.concatenate([(mean - reach).reshape(-1, 2), (mean + reach).reshape(-1, 2), truth.reshape(-1, 2)])
+    size = float(np.ptp(truth[:, :2], axis=0).max())
+    reach = scale * np.sqrt(np.diagonal(trial["covariance"], axis1=1, axis2=2)[:, first:])
+    near = np.abs(mean - truth) + reach < size / 6
+    ends = [np.where(near, end, truth).reshape(-1, 2) for end in (mean - reach, mean + reach, truth)]
+    places = np.concatenate(ends)
     places = places[np.isfinite(places).all(axis=1)]
-    low, high = places.min(axis=0) - 0.2, places.max(axis=0) + 0.2
+    low, high = places.min(axis=0) - 0.02 * size, places.max(axis=0) + 0.02 * size
     unit = trial.scenario.group.attrs["length_unit"]
     unit = unit.decode() if isinstance(unit, bytes) else unit
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
@@ -85,7 +89,7 @@ def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> float:
               label="true path")
     axis.plot(*estimate[shown].T, color=colour, marker="+" if short else "", markersize=3.5, markeredgewidth=0.7,
               linewidth=0.8, linestyle="--", zorder=3.2, label="estimated path")
-    some = np.unique(np.linspace(0, len(robot) - 1, min(len(robot), 60)).astype(int))
+    some = np.unique(np.linspace(0, len(robot) - 1, min(len(robot), 30)).astype(int))
     ellipses(estimate[some], block(covariance, first)[some], scale, axis, edgecolors=colour, linewidths=0.6, zorder=3.1)
     axis.plot([], [], "o", color=style.GREY, markersize=6, markerfacecolor="none", markeredgewidth=0.6,
               label=ELLIPSES[ellipse][1])
@@ -102,8 +106,13 @@ def path(trial: Trajectory, width: float, *, ellipse: str = "95") -> Picture:
     need_path(trial)
     picture, axis = style.one_panel(width)
     ratio = draw_path(axis, trial, ellipse)
-    picture.set_figheight(min(215, 34 + (width - 22) / ratio) / 25.4)
-    style.key(axis, list(zip(*axis.get_legend_handles_labels(), strict=True)), width)
+    entries = list(zip(*axis.get_legend_handles_labels(), strict=True))
+    if ratio > 1.6 or width < style.PAGE:
+        picture.set_figheight((34 + (width - 22) / ratio) / 25.4)
+        style.key(axis, entries, width, beside_panel=False)
+    else:
+        picture.set_figheight(min(180, 28 + (width - 58) / ratio) / 25.4)
+        style.beside(axis, entries)
     columns, first = trial.columns, trial.components.index("r_x")
     last = float(np.linalg.norm(trial.errors[-1, first:first + 2]))
     half = float(np.sqrt(np.trace(block(trial["covariance"][-1:], first)[0])))
