@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
 
