@@ -115,7 +115,7 @@ def judge_alike(study: Study, filters: list[Filter], short: bool) -> list[Row]:
     Trial i has a generator of its own, so that a longer study begins with the trials of a shorter one.
     """
     begun, module = time.process_time(), importlib.import_module(study.module)
-    count = study.trials_short if short else study.trials
+    count = study.trials_short if short else filters[0].trials or study.trials
     trials = [module.trial(np.random.default_rng([SEED, i]), **filters[0].options) for i in range(count)]
     seconds = time.process_time() - begun
     rows = [judge_filter(study, chosen, module, trials, short) for chosen in filters]
