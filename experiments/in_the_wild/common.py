@@ -22,6 +22,7 @@ class Filter:
     says: str = ""  # words that its report must have
     expected_short: str = ""  # with fewer trials and wider margins; the same as `expected` where it is empty
     says_short: str = ""  # likewise
+    trials: int = 0  # where it needs others than its study
 
 
 @dataclass(frozen=True)

@@ -77,10 +77,13 @@ class TestTum:
         norms = np.linalg.norm(adapters.from_tum(estimates[0], truth)["estimate"][..., 3:], axis=-1)
         np.testing.assert_allclose(norms, 1, rtol=1e-15)
 
-    @pytest.mark.parametrize(("rows", "message"), [
-        (np.zeros((1, 8)), "run.txt: its lines have 8 numbers \\(must be 44 or 29\\)"),
-        (np.r_[9, np.zeros(43)], "no time of it is within 0.01 s of one in .*truth.txt"),
-    ])
+    @pytest.mark.parametrize(
+        ("rows", "message"),
+        [
+            (np.zeros((1, 8)), "run.txt: its lines have 8 numbers \\(must be 44 or 29\\)"),
+            (np.r_[9, np.zeros(43)], "no time of it is within 0.01 s of one in .*truth.txt"),
+        ],
+    )
     def test_refusals(self, tmp_path: Path, rows: np.ndarray, message: str) -> None:
         _, truth = tum_pair(tmp_path, self.P.ravel())
         with pytest.raises(ValueError, match=message):
