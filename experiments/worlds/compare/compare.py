@@ -105,14 +105,14 @@ def seconds_of_children():
 
 
 def seconds_of_program(program, scenario, folder, arms):
-    """A step of a whole program, from two runs, whose difference has no start and no detailed trials in it."""
+    """Of the steps that one run has more than another: without the start and the detailed trials."""
     def run(trials):
         before = seconds_of_children()
         subprocess.run([program, "run", scenario, "--trials", str(trials), "--threads", "1", "--quiet", "--overwrite",
                         "--keep", "aggregates", "-o", folder / "timed.h5"], check=True, stdout=subprocess.DEVNULL)
         return seconds_of_children() - before
     few, many = 20_000, 220_000
-    return min(run(many) for _ in range(3)) / 1 - min(run(few) for _ in range(3)), (many - few) * STEPS * arms
+    return min(run(many) for _ in range(3)) - min(run(few) for _ in range(3)), (many - few) * STEPS * arms
 
 
 def main(program, scenario, *loops):
