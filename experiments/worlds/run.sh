@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The gallery: builds the program of this folder on an installed credence, runs each world's study and prints its
-# verdicts: results/NAME.h5. The first argument is the number of trials (4,000). With PICTURES=FOLDER it also draws there
-# the pictures of docs/gallery.md, NAME.png (needs python3-h5py, python3-scipy and python3-matplotlib).
+# verdicts: results/NAME.h5. The first argument is the number of trials (4,000). With PICTURES=FOLDER it also draws
+# there the pictures of docs/gallery.md, NAME.png (needs python3-h5py, python3-scipy and python3-matplotlib).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 source "$here/../own_filter/build.sh"

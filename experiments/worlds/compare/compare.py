@@ -133,7 +133,7 @@ def main(program, scenario, *loops):
     seconds, steps = seconds_of_program(program, scenario, folder, 2)
     rows.append(("credence, in lanes", "draws, filter, all statistics, files", seconds / steps, 0.0))
     for one in loops:
-        name, path = one.split("=", 1)
+        name, path = one.rsplit("=", 1)
         start, acceleration, noise, detection = draws
         flat = np.concatenate([acceleration, noise, detection[..., None]], axis=-1)
         np.concatenate([np.pad(start, ((0, 0), (0, 1)))[:, None], flat], axis=1).tofile(folder / "draws")

@@ -21,8 +21,8 @@ struct OwnReport {
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
 std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
 
-/// Makes trials of a function that runs one, which is called from several threads at once. Draws and evaluation are those
-/// of lanes, in the target that best_target() gives.
+/// Makes trials of a function that runs one, which is called from several threads at once. Draws and evaluation are
+/// those of lanes, in the target that best_target() gives.
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run);
 /// The same trials to rounding, each evaluated by itself: the oracle of lanes; groups may have gaps.

@@ -1,6 +1,6 @@
 #pragma once
-// Trials of a user's own world, one after the other, each evaluated as a step of a record is: the slow, obvious way, with
-// which the lanes are compared.
+// Trials of a user's own world, one after the other, each evaluated as a step of a record is: the slow, obvious way,
+// with which the lanes are compared.
 
 #include "base/nan.hpp"
 #include "numeric/chi_square.hpp"

@@ -1,4 +1,5 @@
-// Trials of a user's own world whose groups are not all contiguous, which lanes do not evaluate; and the oracle of lanes.
+// Trials of a user's own world whose groups are not all contiguous, which lanes do not evaluate; and the oracle of
+// lanes.
 
 #include "worlds/own/batch_sums.hpp"
 #include "worlds/own/recorder.hpp"
