@@ -6,8 +6,21 @@
 # one's instructions. target_object.cmake makes all of its symbols its own, but for those by which it is found.
 set(CREDENCE_TARGET_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/target_object.cmake CACHE INTERNAL "Script of credence_add_world")
 
+# LLVM's tools, which CMake takes with clang, do not join the groups of an object.
+function(credence_find_tool tool name)
+  set(CREDENCE_${tool} "${CMAKE_${tool}}" PARENT_SCOPE)
+  if("${CMAKE_${tool}}" MATCHES "llvm|lld")
+    find_program(CREDENCE_GNU_${tool} NAMES ${name})
+    mark_as_advanced(CREDENCE_GNU_${tool})
+    set(CREDENCE_${tool} "${CREDENCE_GNU_${tool}}" PARENT_SCOPE)
+  endif()
+endfunction()
+
 function(credence_add_world program)
-  if(NOT CMAKE_OBJCOPY OR NOT CMAKE_NM OR APPLE OR WIN32)
+  credence_find_tool(LINKER ld.bfd)
+  credence_find_tool(OBJCOPY objcopy)
+  credence_find_tool(NM nm)
+  if(NOT CREDENCE_LINKER OR NOT CREDENCE_OBJCOPY OR NOT CREDENCE_NM OR APPLE OR WIN32)
     message(STATUS "credence: the worlds of ${program} run one trial at a time, because binutils are missing")
     return()
   endif()
@@ -41,7 +54,7 @@ function(credence_add_world program)
     set(object ${CMAKE_CURRENT_BINARY_DIR}/${own}.o)
     add_custom_command(OUTPUT ${object}
       COMMAND ${CMAKE_COMMAND} -D COMPILED=$<TARGET_OBJECTS:${own}> -D TARGET=${name} -D OBJECT=${object}
-        -D LINKER=${CMAKE_LINKER} -D OBJCOPY=${CMAKE_OBJCOPY} -D NM=${CMAKE_NM} -P ${CREDENCE_TARGET_SCRIPT}
+        -D LINKER=${CREDENCE_LINKER} -D OBJCOPY=${CREDENCE_OBJCOPY} -D NM=${CREDENCE_NM} -P ${CREDENCE_TARGET_SCRIPT}
       DEPENDS ${own} $<TARGET_OBJECTS:${own}> ${CREDENCE_TARGET_SCRIPT} VERBATIM)
     set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
     target_sources(${program} PRIVATE ${object})

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The gallery: builds the program of this folder on an installed credence, runs each world's study and prints its
-# verdicts: results/NAME.h5. The first argument is the number of trials (4,000). With PICTURES=FOLDER it also draws NEES
-# and NIS by step there, as docs/gallery.md shows them (needs python3-h5py, python3-scipy and python3-matplotlib).
+# verdicts: results/NAME.h5. The first argument is the number of trials (4,000). With PICTURES=FOLDER it also draws
+# there the pictures of docs/gallery.md, NAME.png (needs python3-h5py, python3-scipy and python3-matplotlib).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 source "$here/../own_filter/build.sh"
@@ -10,8 +10,9 @@ mkdir -p results
 for scenario in "$here"/*.ini; do
   name=$(basename "$scenario" .ini)
   build/worlds/gallery run "$scenario" --trials "${1:-4000}" --quiet --overwrite -o "results/$name.h5"
-  # The verdicts are the report's first paragraph but one.
   build/worlds/gallery report "results/$name.h5" | awk -v RS= '/verdict +NEES/ { print $0 "\n" }'
-  [ -z "${PICTURES:-}" ] ||
-    "${PYTHON:-python3}" "$here/../../analysis/plot.py" "results/$name.h5" --only consistency -o "$PICTURES"
+  [ -n "${PICTURES:-}" ] || continue
+  "${PYTHON:-python3}" "$here/../../analysis/plot.py" "results/$name.h5" --credence "$prefix/bin/credence" -o build/pictures
+  mkdir -p "$PICTURES"
+  cp "build/pictures/$name-blocks.png" "$PICTURES/$name.png"
 done

@@ -23,9 +23,9 @@
 
 namespace credence {
 
-/// dfunction/dx at x [n], by central differences of sixth order, with steps of 1e-3 in units of `scales` [n]: their errors
-/// are below 1e-10 where the function is smooth over some hundredths of a scale. `function` takes and gives vectors of
-/// doubles; on a manifold it takes a step, and gives the difference to its value at 0.
+/// dfunction/dx at x [n], by central differences of sixth order, with steps of 1e-3 in units of `scales` [n]: their
+/// errors are below 1e-10 where the function is smooth over some hundredths of a scale. `function` takes and gives
+/// vectors of doubles; on a manifold it takes a step, and gives the difference to its value at 0.
 template <class Function, int n>
 auto numerical_jacobian(Function function, const Eigen::Matrix<double, n, 1>& x,
                         const Eigen::Matrix<double, n, 1>& scales = Eigen::Matrix<double, n, 1>::Ones()) {

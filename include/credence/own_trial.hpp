@@ -40,6 +40,10 @@ namespace credence {
 /// One trial under one arm: where its noise comes from, and where its errors go.
 class OwnTrial {
 public:
+    /// Vectors and matrices of doubles of any size, fixed sizes among them, and expressions of these.
+    using Vector = Eigen::Ref<const Eigen::VectorXd>;
+    using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
+
     virtual ~OwnTrial() = default;
 
     /// Place of the arm in the scenario's list.
@@ -47,21 +51,21 @@ public:
     /// K
     virtual int poses() const = 0;
 
-    /// Two independent standard normal draws, keyed by source (0 to 15), pose (from 0) and index (0 to 2^27 - 1): never by
-    /// the order of calls, and the same under every arm. A draw that is not needed need not be asked for. A key beyond
-    /// these ends the run with std::logic_error.
+    /// Two independent standard normal draws, keyed by source (0 to 15), pose (from 0) and index (0 to 2^27 - 1):
+    /// never by the order of calls, and the same under every arm. A draw that is not needed need not be asked for. A
+    /// key beyond these ends the run with std::logic_error.
     virtual Eigen::Vector2d normal(int source, int pose, int index = 0) const = 0;
     /// Uniform on [0, 1), keyed likewise. Do not ask for both kinds under one key.
     virtual double uniform(int source, int pose, int index = 0) const = 0;
 
-    /// What the filter says after the next step, the first call being step 1: error [n], estimate - truth in the chart in
-    /// which the covariance P [n, n] lives, angles wrapped. Of P the lower triangle is read. To be called K - 1 times; a
-    /// P that is not positive definite, or a number that is not finite, ends the trial as failed, which is data.
-    virtual void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) = 0;
-    /// The same with the step's innovation [m] and its predicted covariance S [m, m]; m may differ from step to step, up
-    /// to what the world declares, and row i is the same measurement at every step: NaN where it was not observed.
-    virtual void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
-                      const Eigen::MatrixXd& S) = 0;
+    /// What the filter says after the next step, the first call being step 1: error [n], estimate - truth in the chart
+    /// in which the covariance P [n, n] lives, angles wrapped. Of P the lower triangle is read. To be called K - 1
+    /// times. A trial with a P that is not positive definite, or a number that is not finite, has failed, which is
+    /// data; it ends at once where a number is not finite, and may go on where a P is not positive definite.
+    virtual void step(const Vector& error, const Matrix& P) = 0;
+    /// The same with the step's innovation [m] and its predicted covariance S [m, m]; m may differ from step to step,
+    /// up to what the world declares, and row i is the same measurement at every step: NaN where it was not observed.
+    virtual void step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) = 0;
 
     /// The value of the world's own column of that place, 0 where it is not set.
     virtual void set(std::size_t column, double value) = 0;
@@ -176,9 +180,9 @@ public:
     int poses() const { return trial_.poses(); }
     Eigen::Vector2d normal(int source, int pose, int index = 0) const { return trial_.normal(source, pose, index); }
     double uniform(int source, int pose, int index = 0) const { return trial_.uniform(source, pose, index); }
-    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) { trial_.step(error, P); }
-    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
-              const Eigen::MatrixXd& S, bool observed = true) {
+    void step(const OwnTrial::Vector& error, const OwnTrial::Matrix& P) { trial_.step(error, P); }
+    void step(const OwnTrial::Vector& error, const OwnTrial::Matrix& P, const OwnTrial::Vector& innovation,
+              const OwnTrial::Matrix& S, bool observed = true) {
         if (observed)
             trial_.step(error, P, innovation, S);
         else

@@ -6,7 +6,9 @@ set -euo pipefail
   { echo "SKIPPED: python3-h5py, python3-scipy, python3-matplotlib or python3-pil is not installed"; exit 0; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-{ cmake --install build --prefix "$work/usr" &&
-  cmake -S experiments/own_filter -B "$work/build" -DCMAKE_PREFIX_PATH="$work/usr" && cmake --build "$work/build"; } \
-  >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-PYTHON=/usr/bin/python3 FURTHER_PROGRAMS="$work/build/tracker" bash tests/docs/check.sh --slow "$@"
+cmake --install build --prefix "$work/usr" >"$work/log" || { cat "$work/log"; exit 1; }
+for project in own_filter worlds; do
+  { cmake -S experiments/$project -B "$work/$project" -DCMAKE_PREFIX_PATH="$work/usr" && cmake --build "$work/$project"; } \
+    >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+done
+PYTHON=/usr/bin/python3 FURTHER_PROGRAMS="$work/own_filter/tracker $work/worlds/gallery" bash tests/docs/check.sh --slow "$@"

@@ -39,18 +39,34 @@ OwnReport report_of(const typename W::Settings& settings) {
     return {W::columns(settings), W::innovation_rows(settings)};
 }
 
+/// The world's function for one trial.
+template <class W>
+auto one_trial(const typename W::Settings& settings) {
+    return [settings](OwnTrial& trial) {
+        OwnTrialOf<double> one(trial);
+        W::run(settings, one);
+    };
+}
+
 /// The same trials one at a time: the oracle.
 template <class W>
 std::unique_ptr<const Simulation> oracle(const Scenario& scenario, const typename W::Settings& settings) {
-    return own_simulation(scenario, report_of<W>(settings), [settings](OwnTrial& trial) {
-        OwnTrialOf<double> one(trial);
-        W::run(settings, one);
-    });
+    return one_at_a_time_simulation(scenario, report_of<W>(settings), one_trial<W>(settings));
 }
 
 template <class W>
+Block block_of(const Simulation& simulation, const Scenario& scenario, const typename W::Settings& settings, int trials) {
+    return run_block(simulation, own_columns(scenario, report_of<W>(settings)), scenario.arms.size(), 7, 0, trials);
+}
+template <class W>
 Block one_at_a_time(const Scenario& scenario, const typename W::Settings& settings, int trials) {
-    return run_block(*oracle<W>(scenario, settings), own_columns(scenario, report_of<W>(settings)), scenario.arms.size(), 7, 0, trials);
+    return block_of<W>(*oracle<W>(scenario, settings), scenario, settings, trials);
+}
+/// As where the world's function is no template: one trial after the other, evaluated in lanes.
+template <class W>
+Block one_by_one(const Scenario& scenario, const typename W::Settings& settings, const std::string& target, int trials) {
+    const Forced forced(target);
+    return block_of<W>(*own_simulation(scenario, report_of<W>(settings), one_trial<W>(settings)), scenario, settings, trials);
 }
 
 Block in_lanes(const Scenario& scenario, const std::string& target, int trials) {
@@ -178,7 +194,21 @@ TEST_CASE("lanes: random scenarios have the trials, statuses and statistics of o
         const Scenario scenario = troubled(s, poses);
         // A NEES is as well conditioned as its covariance, whose columns shrink by up to e^-spread.
         const double tolerance = 1e-12 * std::exp(2 * s.spread);
-        check_same(in_lanes(scenario, target, trials), one_at_a_time<Troubled>(scenario, s, trials), scenario, tolerance);
+        const Block expected = one_at_a_time<Troubled>(scenario, s, trials);
+        check_same(in_lanes(scenario, target, trials), expected, scenario, tolerance);
+        check_same(one_by_one<Troubled>(scenario, s, target, trials), expected, scenario, tolerance);
+    }
+}
+
+TEST_CASE("lanes: a world that is no template has the same bits in every target") {
+    std::mt19937 random(3);
+    const std::vector<std::string> targets = target_names();
+    for (int sample = 0; sample < 50; ++sample) {
+        const Troubled::Settings s = random_settings(random);
+        const Scenario scenario = troubled(s, 9);
+        const int trials = 1 + static_cast<int>(random() % 40);
+        const Block first = one_by_one<Troubled>(scenario, s, targets.front(), trials);
+        for (const std::string& target : targets) CHECK(same_bits(first, one_by_one<Troubled>(scenario, s, target, trials)));
     }
 }
 
@@ -187,6 +217,7 @@ TEMPLATE_TEST_CASE("lanes: a filter is that of one trial at a time, to 1e-12", "
     const Block one = one_at_a_time<TestType>(scenario, {}, 256);
     for (const std::string& target : target_names())
         check_same(in_lanes(scenario, target, 256), one, scenario, 1e-12);
+    check_same(one_by_one<TestType>(scenario, {}, target_names().front(), 256), one, scenario, 1e-12);
 }
 
 TEST_CASE("lanes: every target gives the same bits") {
@@ -261,5 +292,7 @@ TEST_CASE("lanes: what a world does wrong is said in the same words as of one tr
         CHECK_THAT(expected, Catch::StartsWith("world troubled: "));
         for (const std::string& target : target_names())
             CHECK(message([&] { in_lanes(scenario, target, 5); }) == expected);
+        for (const std::string& target : target_names())
+            CHECK(message([&] { one_by_one<Troubled>(scenario, s, target, 5); }) == expected);
     }
 }

@@ -105,14 +105,14 @@ def seconds_of_children():
 
 
 def seconds_of_program(program, scenario, folder, arms):
-    """A step of a whole program, from two runs, whose difference has no start and no detailed trials in it."""
+    """Of the steps that one run has more than another: without the start and the detailed trials."""
     def run(trials):
         before = seconds_of_children()
         subprocess.run([program, "run", scenario, "--trials", str(trials), "--threads", "1", "--quiet", "--overwrite",
                         "--keep", "aggregates", "-o", folder / "timed.h5"], check=True, stdout=subprocess.DEVNULL)
         return seconds_of_children() - before
     few, many = 20_000, 220_000
-    return min(run(many) for _ in range(3)) / 1 - min(run(few) for _ in range(3)), (many - few) * STEPS * arms
+    return min(run(many) for _ in range(3)) - min(run(few) for _ in range(3)), (many - few) * STEPS * arms
 
 
 def main(program, scenario, *loops):
@@ -133,7 +133,7 @@ def main(program, scenario, *loops):
     seconds, steps = seconds_of_program(program, scenario, folder, 2)
     rows.append(("credence, in lanes", "draws, filter, all statistics, files", seconds / steps, 0.0))
     for one in loops:
-        name, path = one.split("=", 1)
+        name, path = one.rsplit("=", 1)
         start, acceleration, noise, detection = draws
         flat = np.concatenate([acceleration, noise, detection[..., None]], axis=-1)
         np.concatenate([np.pad(start, ((0, 0), (0, 1)))[:, None], flat], axis=1).tofile(folder / "draws")

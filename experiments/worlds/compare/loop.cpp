@@ -1,5 +1,5 @@
-// The tracker of experiments/own_filter as one writes it without credence: one trial after the other on fixed-size Eigen,
-// NEES and nothing else.
+// The tracker of experiments/own_filter as one writes it without credence: one trial after the other on fixed-size
+// Eigen, NEES and nothing else.
 //   loop DRAWS NEES     the trials of these draws [trial, step, 5], doubles; writes NEES/n of each trial
 //   loop SEED TRIALS -  draws of its own; prints seconds of processor time a trial
 

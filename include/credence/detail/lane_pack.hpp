@@ -22,6 +22,7 @@ struct LaneStep {
 struct LanePack {
     const std::string* world = nullptr;
     std::size_t arm = 0;
+    int trials = 0;  ///< that the pack has, in its first lanes
     int poses = 0, state_size = 0, largest_innovation = 0;
     std::size_t own_column_count = 0;
     double* own_columns = nullptr;  ///< [own_column_count, lanes]

@@ -21,9 +21,13 @@ struct OwnReport {
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
 std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
 
-/// Makes trials of a function that runs one. It is called from several threads at once.
+/// Makes trials of a function that runs one, which is called from several threads at once. Draws and evaluation are
+/// those of lanes, in the target that best_target() gives.
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run);
+/// The same trials to rounding, each evaluated by itself: the oracle of lanes; groups may have gaps.
+std::unique_ptr<const Simulation> one_at_a_time_simulation(const Scenario& scenario, const OwnReport& report,
+                                                           std::function<void(OwnTrial&)> run);
 
 /// Throws std::invalid_argument where a declaration cannot be: no arm or component, a name with other characters than
 /// letters, digits, _ and -, a group beyond the state. It is the world's bug, not its user's.

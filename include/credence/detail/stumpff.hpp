@@ -7,8 +7,9 @@ namespace credence {
 inline namespace CREDENCE_TARGET {
 
 /// Stumpff's functions c_k(s) = 1/k! - s/(k + 2)! + s^2/(k + 4)! - ..., s = angle^2: c_0 = cos, c_1 = sin(angle)/angle,
-/// c_2 = (1 - cos)/s and so on [Battin 1999, 4.5]. c_k = 1/k! - s c_{k+2}, which loses nothing downwards below s = 1, where
-/// the last two come from their series, and next to nothing upwards beyond, where the first two are sine and cosine.
+/// c_2 = (1 - cos)/s and so on [Battin 1999, 4.5]. c_k = 1/k! - s c_{k+2}, which loses nothing downwards below s = 1,
+/// where the last two come from their series, and next to nothing upwards beyond, where the first two are sine and
+/// cosine.
 template <RealNumber Real>
 struct Stumpff {
     Real c0, c1, c2, c3, c4, c5;

@@ -6,8 +6,8 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// Van der Merwe's parameters of the sigma points 0, +-sqrt(n + lambda) L e_i, P = L L', lambda = alpha^2 (n + kappa) - n
-/// [van der Merwe 2004, 3.2]. alpha is how far the points spread, beta = 2 is best for normal errors.
+/// Van der Merwe's parameters of the sigma points 0, +-sqrt(n + lambda) L e_i, P = L L', lambda = alpha^2 (n + kappa)
+/// - n [van der Merwe 2004, 3.2]. alpha is how far the points spread, beta = 2 is best for normal errors.
 struct SigmaPoints {
     double alpha = 1, beta = 2, kappa = 0;
 
@@ -32,8 +32,8 @@ struct PlainDifference {
 };
 
 /// Mean and covariance of y = f(d), d ~ N(0, P): `function` takes a step d [n] from the estimate and gives y [m].
-/// `difference` (a, b) is a - b with angles wrapped; the mean is taken of differences to the middle point's y, and is not
-/// wrapped again.
+/// `difference` (a, b) is a - b with angles wrapped; the mean is taken of differences to the middle point's y, and is
+/// not wrapped again.
 template <class DerivedP, class Function, class Difference = PlainDifference>
 auto unscented_transform(const Eigen::MatrixBase<DerivedP>& P, const SigmaPoints& points, Function function,
                          Difference difference = {}) {

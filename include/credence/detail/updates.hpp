@@ -11,7 +11,8 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// What an update gives. For steps that only some trials measure: select(seen, update.step, 0), select(seen, update.P, P).
+/// What an update gives. For steps that only some trials measure: select(seen, update.step, 0), select(seen, update.P,
+/// P).
 template <class Real, int n, int m>
 struct Updated {
     Eigen::Matrix<Real, n, 1> step;

@@ -90,7 +90,7 @@ void RecordTotals::start_trial() {
 void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
     const std::size_t k = size(step.step);
     double* values = &series(0, k);
-    const std::string trouble = judge_.judge(checked, values, products_.now.data());
+    const std::string trouble = judge_.evaluate(checked, values, products_.now.data());
     if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
     if (!figures_add_up(values, all_series_.list.size()))
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");

@@ -42,7 +42,7 @@ RecordingTrial::RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory
 }
 
 /// A step that the trial is not asked for or that has another size than the state is refused by the trial itself.
-void RecordingTrial::write_state(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
+void RecordingTrial::write_state(const Vector& error, const Matrix& P) {
     const auto n = static_cast<Eigen::Index>(trajectory_.scenario.components.size());
     if (++pose_ >= trajectory_.scenario.poses || error.size() != n || P.rows() != n || P.cols() != n) return;
     write(error, 1, trajectory_.at(error_, pose_));
@@ -51,13 +51,12 @@ void RecordingTrial::write_state(const Eigen::VectorXd& error, const Eigen::Matr
     if (small_state_) write(whole, n, trajectory_.at(covariance_, pose_));
 }
 
-void RecordingTrial::step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
+void RecordingTrial::step(const Vector& error, const Matrix& P) {
     write_state(error, P);
     trial_.step(error, P);
 }
 
-void RecordingTrial::step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
-                          const Eigen::MatrixXd& S) {
+void RecordingTrial::step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) {
     write_state(error, P);
     if (pose_ < trajectory_.scenario.poses && innovation.size() <= rows_ && S.rows() == innovation.size() &&
         S.cols() == S.rows()) {

@@ -21,12 +21,11 @@ public:
     Eigen::Vector2d normal(int source, int pose, int index) const override { return trial_.normal(source, pose, index); }
     double uniform(int source, int pose, int index) const override { return trial_.uniform(source, pose, index); }
     void set(std::size_t column, double value) override { trial_.set(column, value); }
-    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) override;
-    void step(const Eigen::VectorXd& error, const Eigen::MatrixXd& P, const Eigen::VectorXd& innovation,
-              const Eigen::MatrixXd& S) override;
+    void step(const Vector& error, const Matrix& P) override;
+    void step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) override;
 
 private:
-    void write_state(const Eigen::VectorXd& error, const Eigen::MatrixXd& P);
+    void write_state(const Vector& error, const Matrix& P);
 
     OwnTrial& trial_;
     Trajectory& trajectory_;

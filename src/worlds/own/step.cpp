@@ -91,12 +91,12 @@ StepEvaluator::StepEvaluator(const RecordShape& shape, const StateSeries& all_se
             variance_places_[static_cast<std::size_t>(shape.groups[b].component(i))] = {static_cast<int>(b), i};
 }
 
-std::string StepEvaluator::judge(const CheckedStep& step, double* all_series, double* whitened) {
+std::string StepEvaluator::evaluate(const CheckedStep& step, double* all_series, double* whitened) {
     unknown_.clear();
     for (std::size_t b = 0; b < shape_.groups.size(); ++b)
-        if (const std::string wrong = judge_group(b, step, all_series); !wrong.empty()) return wrong;
+        if (const std::string wrong = evaluate_group(b, step, all_series); !wrong.empty()) return wrong;
     if (shape_.has_errors) standardise(step, all_series);
-    return shape_.has_innovations() ? judge_innovation(step, all_series, whitened) : "";
+    return shape_.has_innovations() ? evaluate_innovation(step, all_series, whitened) : "";
 }
 
 void StepEvaluator::forget_unknown(double* all_series) const {
@@ -116,7 +116,7 @@ void StepEvaluator::set_size_unknown(std::size_t b, double* all_series) {
 }
 
 template <class Matrix, class Vector>
-std::string StepEvaluator::judge_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon,
+std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon,
                                       double* all_series) {
     double rounding = 0;
     const std::string wrong = factor(P, epsilon, factors_[b], rounding);
@@ -145,24 +145,24 @@ void StepEvaluator::gather(const ComponentGroup& group, const CheckedStep& step)
     }
 }
 
-std::string StepEvaluator::judge_group(std::size_t b, const CheckedStep& step, double* all_series) {
+std::string StepEvaluator::evaluate_group(std::size_t b, const CheckedStep& step, double* all_series) {
     const ComponentGroup& group = shape_.groups[b];
     const bool whole = step.whole(group);
     switch (shape_.source(b)) {
         case GroupSource::joint:
             if (whole && group.contiguous())
-                return judge_part(b, step.P.block(group.first, group.first, group.count, group.count),
+                return evaluate_part(b, step.P.block(group.first, group.first, group.count, group.count),
                                   step.e.segment(group.first, group.count), shape_.covariance_epsilon, all_series);
             if (!whole && b != 0) break;
             gather(group, step);
-            return judge_part(b, part_P_, part_e_, shape_.covariance_epsilon, all_series);
+            return evaluate_part(b, part_P_, part_e_, shape_.covariance_epsilon, all_series);
         case GroupSource::own:
             if (!whole) break;
             gather(group, step);
-            return judge_part(b, step.own[b], part_e_, shape_.group_epsilons[b], all_series);
+            return evaluate_part(b, step.own[b], part_e_, shape_.group_epsilons[b], all_series);
         case GroupSource::variances:
             if (!whole && b != 0) break;
-            return judge_variances(b, step, all_series);
+            return evaluate_variances(b, step, all_series);
         case GroupSource::nees:
             set_size_unknown(b, all_series);
             all_series[b] = step.nees[b];
@@ -177,7 +177,7 @@ std::string StepEvaluator::judge_group(std::size_t b, const CheckedStep& step, d
 }
 
 /// Of variances alone only a single component has a NEES.
-std::string StepEvaluator::judge_variances(std::size_t b, const CheckedStep& step, double* all_series) {
+std::string StepEvaluator::evaluate_variances(std::size_t b, const CheckedStep& step, double* all_series) {
     const ComponentGroup& group = shape_.groups[b];
     double square = 0, variance = 0;
     for (int i = 0; i < group.count; ++i) {
@@ -214,7 +214,7 @@ void StepEvaluator::leave_out_innovation(double* all_series, double* whitened) c
     std::fill(all_series + places_.nis, all_series + places_.nis + 2 * (1 + shape_.row_groups.size()), 0.0);
 }
 
-std::string StepEvaluator::judge_innovation(const CheckedStep& step, double* all_series, double* whitened) {
+std::string StepEvaluator::evaluate_innovation(const CheckedStep& step, double* all_series, double* whitened) {
     leave_out_innovation(all_series, whitened);
     all_series[places_.rows] = static_cast<double>(step.rows.size());
     innovation_rounding_ = 0;
@@ -227,12 +227,12 @@ std::string StepEvaluator::judge_innovation(const CheckedStep& step, double* all
     for (std::size_t i = 0; i < step.rows.size(); ++i)
         whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
     for (std::size_t g = 0; g < shape_.row_groups.size(); ++g)
-        if (const std::string of_group = judge_row_group(g, step, all_series); !of_group.empty()) return of_group;
+        if (const std::string of_group = evaluate_row_group(g, step, all_series); !of_group.empty()) return of_group;
     return {};
 }
 
 /// The NIS of the observed rows of a group, by their part of S.
-std::string StepEvaluator::judge_row_group(std::size_t g, const CheckedStep& step, double* all_series) {
+std::string StepEvaluator::evaluate_row_group(std::size_t g, const CheckedStep& step, double* all_series) {
     members_.clear();
     for (std::size_t i = 0; i < step.rows.size(); ++i)
         if (std::ranges::find(shape_.row_groups[g].rows, step.rows[i]) != shape_.row_groups[g].rows.end())

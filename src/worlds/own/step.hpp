@@ -125,9 +125,9 @@ public:
     /// Writes the step's series [series_count], and L^-1 nu [m], S = LL', NaN in rows not observed; without
     /// innovations that is left alone. A series that has no value at this step is 0. Returns what is wrong with a
     /// covariance; empty where nothing is.
-    std::string judge(const CheckedStep& step, double* all_series, double* whitened);
+    std::string evaluate(const CheckedStep& step, double* all_series, double* whitened);
 
-    /// After `judge`: replaces the series that have no value at this step by NaN.
+    /// After `evaluate`: replaces the series that have no value at this step by NaN.
     void forget_unknown(double* all_series) const;
 
     /// After `judge`: what rounding may have done to its NIS, as a share of it; and that the step counts as one in which
@@ -138,14 +138,14 @@ public:
 private:
     using Factor = Eigen::LLT<Eigen::MatrixXd>;
 
-    std::string judge_group(std::size_t b, const CheckedStep& step, double* all_series);
+    std::string evaluate_group(std::size_t b, const CheckedStep& step, double* all_series);
     template <class Matrix, class Vector>
-    std::string judge_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon, double* all_series);
-    std::string judge_variances(std::size_t b, const CheckedStep& step, double* all_series);
+    std::string evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon, double* all_series);
+    std::string evaluate_variances(std::size_t b, const CheckedStep& step, double* all_series);
     void gather(const ComponentGroup& group, const CheckedStep& step);
     void standardise(const CheckedStep& step, double* all_series);
-    std::string judge_innovation(const CheckedStep& step, double* all_series, double* whitened);
-    std::string judge_row_group(std::size_t g, const CheckedStep& step, double* all_series);
+    std::string evaluate_innovation(const CheckedStep& step, double* all_series, double* whitened);
+    std::string evaluate_row_group(std::size_t g, const CheckedStep& step, double* all_series);
     void set_unknown(std::size_t series, double* all_series);
     void set_size_unknown(std::size_t b, double* all_series);
 

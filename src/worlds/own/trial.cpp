@@ -1,4 +1,4 @@
-// What a world of somebody's own declares.
+// What a user's own world declares.
 
 #include <credence/detail/own_simulation.hpp>
 
@@ -68,7 +68,7 @@ std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report
 void check_declared(const Scenario& scenario) {
     const auto n = static_cast<int>(scenario.components.size());
     check_names(scenario.world, "components", scenario.components, [](const Component& one) { return one.name; });
-    check_names(scenario.world, "blocks", scenario.groups, [](const ComponentGroup& one) { return one.name; });
+    check_names(scenario.world, "groups", scenario.groups, [](const ComponentGroup& one) { return one.name; });
     for (const std::string& arm : scenario.arms)
         if (!names_arm(arm))
             throw std::invalid_argument("world " + scenario.world + ": " + printable(arm) + " is no name for an arm.");
@@ -77,9 +77,9 @@ void check_declared(const Scenario& scenario) {
     for (const Component& component : scenario.components)
         if (!is_word(component.unit))
             throw std::invalid_argument("world " + scenario.world + ": a component's unit is one word, such as m/s.");
-    for (const ComponentGroup& block : scenario.groups)
-        if (!is_part_of(block, n))
-            throw std::invalid_argument("world " + scenario.world + ": block " + block.name + " is not in the state.");
+    for (const ComponentGroup& group : scenario.groups)
+        if (!is_part_of(group, n))
+            throw std::invalid_argument("world " + scenario.world + ": group " + group.name + " is not in the state.");
 }
 
 }  // namespace credence

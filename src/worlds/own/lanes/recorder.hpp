@@ -33,9 +33,8 @@ private:
         int poses() const override { return 0; }
         Eigen::Vector2d normal(int, int, int) const override { return {0, 0}; }
         double uniform(int, int, int) const override { return 0; }
-        void step(const Eigen::VectorXd&, const Eigen::MatrixXd&) override {}
-        void step(const Eigen::VectorXd&, const Eigen::MatrixXd&, const Eigen::VectorXd&,
-                  const Eigen::MatrixXd&) override {}
+        void step(const Vector&, const Matrix&) override {}
+        void step(const Vector&, const Matrix&, const Vector&, const Matrix&) override {}
         void set(std::size_t, double) override {}
     };
 

@@ -4,6 +4,7 @@
 #include <credence/detail/lanes_of.hpp>
 #include "numeric/chi_square.hpp"
 #include "scenario/state_series.hpp"
+#include "worlds/own/lanes/one_by_one.hpp"
 #include "worlds/own/lanes/recorder.hpp"
 #include "worlds/own/step.hpp"
 #include "worlds/own/trial_ends.hpp"
@@ -178,6 +179,15 @@ std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, cons
         if (one.target == target.name && one.run != nullptr)
             return std::make_unique<LaneSimulation>(scenario, report, target, one.run(), std::move(settings));
     return nullptr;
+}
+
+std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
+                                                 std::function<void(OwnTrial&)> run) {
+    if (!std::all_of(scenario.groups.begin(), scenario.groups.end(), [](const auto& group) { return group.contiguous(); }))
+        return one_at_a_time_simulation(scenario, report, std::move(run));
+    const Target target = best_target();
+    auto one_by_one = std::make_shared<const OneByOne>(OneByOne{std::move(run), target.lanes});
+    return std::make_unique<LaneSimulation>(scenario, report, target, run_one_by_one, std::move(one_by_one));
 }
 
 }  // namespace credence

@@ -51,6 +51,7 @@ public:
         : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors), moments_(moments) {
         world = view.world;
         arm = view.arm;
+        trials = lane_count(there);
         poses = view.poses;
         state_size = view.state_size;
         largest_innovation = view.largest_innovation;
