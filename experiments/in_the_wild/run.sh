@@ -7,15 +7,15 @@
 #   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
 #   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
 #
-# PYTHON is an interpreter that has credence and what requirements.txt names. Without it they are installed once in
+# PYTHON is an interpreter that has credence and what python/requirements.txt names. Without it they are installed once in
 # build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if [ -z "${PYTHON:-}" ]; then
   venv=$PWD/build/in-the-wild PYTHON=$PWD/build/in-the-wild/bin/python
-  if [ ! "$venv/complete" -nt experiments/in_the_wild/requirements.txt ]; then
+  if [ ! "$venv/complete" -nt python/requirements.txt ]; then
     python3 -m venv "$venv"
-    "$PYTHON" -m pip install --quiet . -r experiments/in_the_wild/requirements.txt >&2
+    "$PYTHON" -m pip install --quiet . -r python/requirements.txt >&2
     touch "$venv/complete"
   fi
 fi

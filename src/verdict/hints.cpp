@@ -17,13 +17,14 @@ std::string with_number(const char* format, double number) {
     return text;
 }
 
-/// All directions are off by nearly one factor.
+/// All directions are off by nearly one factor: it is beyond three margins, and their spread is small beside it.
 void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) {
     const std::vector<double>& spectrum = verdict.directions.spectrum;
     if (spectrum.size() < 2 || !(spectrum.front() > 0)) return;
-    const double middle = std::sqrt(spectrum.front() * spectrum.back()), spread = spectrum.back() / spectrum.front();
-    if (spread < 1.3 && std::abs(middle - 1) > 3 * verdict.limits.direction)
-        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?", middle));
+    const double middle = std::log(spectrum.front() * spectrum.back()) / 2;
+    const double half_spread = std::log(spectrum.back() / spectrum.front()) / 2;
+    if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) && half_spread < std::abs(middle) / 3)
+        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?", std::exp(middle)));
 }
 
 /// The errors have the size that P says, and yet some directions are far too large.

@@ -54,14 +54,14 @@ TEST_CASE("judge: where errors are too large on a manifold, NEES of the other ch
     CHECK(wrong["verdict"] == "optimistic");
     REQUIRE(wrong["other_charts"].size() == 2);
     CHECK(wrong["other_charts"][0]["chart"] == "global");
-    CHECK(wrong["other_charts"][0]["block"] == "all");
+    CHECK(wrong["other_charts"][0]["group"] == "all");
     CHECK(wrong["other_charts"][0]["nees_ratio"].get<double>() == Approx(1).margin(0.05));  // 2,000 steps: 4 sigma
     const std::string hint = wrong["hints"].back();
     CHECK_THAT(hint, Contains("in the chart `local`, and ") &&
                          Contains("in the chart `global`: does the covariance belong to the latter?"));
     write_poses(here.path("r.h5"), "global");
     const Json right = judged(here);
-    CHECK(right["blocks"][0]["nees_ratio"] ==
+    CHECK(right["groups"][0]["nees_ratio"] ==
           wrong["other_charts"][0]["nees_ratio"]);  // the same numbers, to the last bit
     CHECK(right["verdict"] == "undecided");
     CHECK_FALSE(right.contains("other_charts"));  // not tried where nothing is too large

@@ -88,8 +88,8 @@ struct Said {
     Said(const Workplace& here, const std::string& record) {
         const Json arm = Json::parse(here.credence("judge " + record + " --quiet --margin 10% --format json").out)[0];
         verdict = arm["verdict"];
-        for (const Json& group : arm["blocks"])
-            numbers["NEES of " + group["block"].get<std::string>()] = group["nees_ratio"];
+        for (const Json& group : arm["groups"])
+            numbers["NEES of " + group["group"].get<std::string>()] = group["nees_ratio"];
         for (const Json& bias : arm["bias"])
             numbers["bias of " + bias["component"].get<std::string>()] = bias["mean"][3];
         for (const Json& finding : arm["findings"]) add(finding);

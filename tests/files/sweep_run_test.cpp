@@ -240,7 +240,7 @@ TEST_CASE("sweep: of a large grid the page has the table and the curves, and no 
                                                "[scenario]\nposes = 3\n[arms]\ncontrollers = fixed\n");
     const auto page_of = [&] { return report_html(make_report(run(scenarios, 3), 0.05), {"r.h5", {}, "test"}); };
     const std::string large = page_of();
-    CHECK_THAT(large, !Contains("scenario:base_heading-0p01") && Contains("<th scope=\"row\">0.13</th>"));
+    CHECK_THAT(large, !Contains("scenario:base_heading-0p01") && Contains("<th scope=\"row\"><data value=\"0.13\">0.13</data></th>"));
     CHECK_THAT(large, Contains("The points of large grids have no section of their own here.") && !Contains("again.h5"));
     scenarios.pop_back();
     const std::string small = page_of();
@@ -291,7 +291,7 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     CHECK_THAT(page, Contains("Sweep of base over noise.heading, sensor.noise"));
     CHECK_THAT(page, Contains("class=\"spread s1\""));
     CHECK_THAT(page, Contains("greedy.ekf, noise.heading=0.1: "));
-    CHECK_THAT(page, Contains("<a href=\"#scenario:base_heading-0p1_noise-ranged\">0.1, ranged</a>"));
+    CHECK_THAT(page, Contains("<a href=\"#scenario:base_heading-0p1_noise-ranged\"><data value=\"0.1\">0.1</data></a></th><th scope=\"row\">ranged</th>"));
     CHECK_THAT(page, Contains("<figcaption>sensor.noise=ranged</figcaption>"));
     CHECK_THAT(report_html(make_report(run({scenarios.back()}, 40), 0.05), {"r.h5", {}, "test"}), !Contains("Sweep"));
 }

@@ -41,8 +41,8 @@ TEST_CASE("stopping: a goal is a mean or a paired difference, absolute or relati
 
 TEST_CASE("stopping: what is no goal is refused, saying why") {
     const std::vector<std::pair<std::string, std::string>> refused{
-        {"", "there is no = in it"}, {"trace_P", "there is no = in it"}, {"=1", "no figure stands before the ="},
-        {"[greedy-fixed]=1", "no figure"}, {"trace_P=", "not a number"}, {"trace_P=x", "not a number"},
+        {"", "there is no = in it"}, {"trace_P", "there is no = in it"}, {"=1", "there is no name before the ="},
+        {"[greedy-fixed]=1", "no name"}, {"trace_P=", "not a number"}, {"trace_P=x", "not a number"},
         {"trace_P=%", "not a number"}, {"trace_P=1%%", "not a number"}, {"trace_P=0", "above 0"},
         {"trace_P=0%", "above 0"}, {"trace_P=-1", "above 0"}, {"trace_P=nan", "above 0"}, {"trace_P=inf", "finite"},
         {"trace_P=1e-324%", "not a number"}, {"trace_P[greedy]=1", "two arms"}, {"trace_P[a-b-c]=1", "two arms"},
@@ -60,9 +60,9 @@ TEST_CASE("stopping: goals of which the study has not the column or the arms are
     CHECK(refusal_of("unseen[greedy-fixed]=1", study).empty());
     CHECK(refusal_of("unseen[greedy.kf-fixed]=1", study).empty());  // one scenario has both
     CHECK_THAT(refusal_of("trase_P=1", study), Contains("Did you mean trace_P?") && Contains("nees_ratio, nis_ratio"));
-    CHECK_THAT(refusal_of("nonsense=1", study), Contains("there is no figure nonsense). There are trace_P, unseen"));
-    CHECK_THAT(refusal_of("status=1", study), Contains("there is no figure status"));
-    CHECK_THAT(refusal_of("status_pose=1", study), Contains("there is no figure status_pose"));
+    CHECK_THAT(refusal_of("nonsense=1", study), Contains("there is no column nonsense). There are trace_P, unseen"));
+    CHECK_THAT(refusal_of("status=1", study), Contains("there is no column status"));
+    CHECK_THAT(refusal_of("status_pose=1", study), Contains("there is no column status_pose"));
     CHECK_THAT(refusal_of("trace_P[greedy-fixt]=1", study), Contains("has an arm fixt). Did you mean fixed?"));
     CHECK_THAT(refusal_of("trace_P[greedy.ekf-fixed.kf]=1", study), Contains("has both greedy.ekf and fixed.kf"));
     CHECK_THAT(refusal_of("trace_P[greedy-greedy]=1", study), Contains("an arm less itself"));

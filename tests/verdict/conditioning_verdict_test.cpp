@@ -59,10 +59,10 @@ TEST_CASE("conditioning: what is left out is nothing in JSON, and no number in t
     run_study(study, {300, 0, {}});
     const Report report = make_report(study, 0.05);
     const auto json = nlohmann::json::parse(report_json(report))[0];
-    CHECK(json["blocks"][0]["nees_ratio"].is_null());
-    CHECK(json["blocks"][0]["rounding"].get<double>() > 0.005);
+    CHECK(json["groups"][0]["nees_ratio"].is_null());
+    CHECK(json["groups"][0]["rounding"].get<double>() > 0.005);
     CHECK(json["nees_ratio"]["mean"].is_null());
-    CHECK(json["blocks"][1]["nees_ratio"].is_number());
+    CHECK(json["groups"][1]["nees_ratio"].is_number());
     CHECK_THAT(report_text(report), Contains("conditioning: NEES of all") && !Contains("nan"));
     CHECK_THAT(report_html(report, {"r.h5", {}, "test"}), Contains("conditioning: NEES of all") && !Contains(">nan"));
     CHECK_THAT(report_csv(report),

@@ -176,7 +176,7 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
 
     const std::string text = report_text(report), row = text.substr(text.find("  heading-straight/fixed.ekf"));
     CHECK_THAT(text, Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
-                              "figures.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are in the figures."));
+                              "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3"));
     CHECK_THAT(row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %\n"));
     const Json json = Json::parse(report_json(report));

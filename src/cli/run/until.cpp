@@ -84,7 +84,7 @@ InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunO
 std::string stopping_text(const InterimAnalysis& analysis) {
     std::string text = "stopped at interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) +
                        " trials: " + (analysis.met ? "" : "not ") + "as precise as asked. Intervals at " +
-                       formatted("%.*g", 6, 100 * (1 - analysis.alpha)) + " %, so that all analyses together keep 95 %:\n";
+                       formatted("%.*g", 6, 100 * (1 - analysis.alpha)) + " %, so that all analyses keep 95 %:\n";
     std::size_t width = 0;
     for (const GoalState& state : analysis.states) width = std::max(width, state.name.size());
     for (const GoalState& state : analysis.states)

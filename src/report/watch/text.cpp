@@ -75,10 +75,10 @@ void add_scenario(Table& table, const WatchedScenario& scenario) {
         std::vector<Cell> cells;
         for (const Moments& column : arm.columns) cells.push_back(mean_cell_of(column));
         cells.push_back(count_cell(static_cast<double>(arm.failed + arm.diverged)));
-        table.row(arm.name, std::move(cells));
+        table.row("  " + arm.name, std::move(cells));
     }
     for (const WatchedArm& arm : scenario.arms)
-        if (!arm.other.empty()) table.row(arm.name + " - " + arm.other, {mean_cell_of(arm.difference)});
+        if (!arm.other.empty()) table.row("  " + arm.name + " - " + arm.other, {mean_cell_of(arm.difference)});
 }
 
 Json moments_json(const Moments& moments) {
