@@ -10,7 +10,6 @@ import importlib
 import itertools
 import os
 import pathlib
-import re
 import sys
 import time
 from collections.abc import Iterator
@@ -75,11 +74,7 @@ def worst_direction(verdict: credence.Verdict) -> str:
     if not found:
         return "-"
     worst = max(found, key=lambda one: abs(float(np.log(one["ratio"]))))
-    terms = re.findall(r"([+-]? ?)([\d.]+) (\S+)", worst["direction"].removeprefix("about "))
-    strongest = sorted(terms, key=lambda term: -float(term[1]))[:4]  # of many components the four that weigh most
-    shown = " ".join("{}{} {}".format(*term) for term in terms if term in strongest)
-    shown = re.sub(r"^- ", "-", re.sub(r"^\+ ", "", shown))
-    return f"{rounded(worst['ratio'], 2)} along {shown}{' …' if len(terms) > 4 else ''}"
+    return f"{rounded(worst['ratio'], 2)} along {worst['direction']}"
 
 
 def cells(study: Study, chosen: Filter, trials: int, verdict: credence.Verdict) -> tuple[str, ...]:

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numeric>
 
 namespace credence {
@@ -19,17 +20,22 @@ std::string component_name(int j, const std::vector<BiasEvidence>& components) {
     return place < components.size() ? components[place].component : "x" + std::to_string(j);
 }
 
-/// `0.71 x - 0.71 y`
+/// `0.47 x - 0.79 y + 0.39 v …`: the four largest shares, in the order of the components; `…` where others are left out.
 std::string name_of(const Direction& direction, const std::vector<BiasEvidence>& components) {
-    std::string text = direction.approximate ? "about " : "";
-    for (std::size_t i = 0; i < direction.entries.size(); ++i) {
-        const DirectionEntry& entry = direction.entries[i];
+    constexpr std::size_t most = 4;
+    std::vector<double> sizes;
+    for (const DirectionEntry& entry : direction.entries) sizes.push_back(std::abs(entry.weight));
+    std::ranges::sort(sizes, std::greater());
+    const double least = sizes.size() > most ? sizes[most - 1] : 0;
+    std::string text;
+    for (const DirectionEntry& entry : direction.entries) {
+        if (std::abs(entry.weight) < least) continue;
         char weight[32];
         std::snprintf(weight, sizeof weight, "%.2f", std::abs(entry.weight));
-        text += i == 0 ? (entry.weight < 0 ? "-" : "") : entry.weight < 0 ? " - " : " + ";
+        text += text.empty() ? (entry.weight < 0 ? "-" : "") : entry.weight < 0 ? " - " : " + ";
         text += std::string(weight) + " " + component_name(entry.component, components);
     }
-    return text;
+    return text + (direction.approximate || sizes.size() > most ? " …" : "");
 }
 
 /// Ratios of the generalised eigenvectors of sum S against sum C, rising; none where C is singular.
