@@ -10,6 +10,7 @@ import importlib
 import itertools
 import os
 import pathlib
+import re
 import sys
 import time
 from collections.abc import Iterator
