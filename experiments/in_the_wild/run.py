@@ -75,7 +75,10 @@ def worst_direction(verdict: credence.Verdict) -> str:
     if not found:
         return "-"
     worst = max(found, key=lambda one: abs(float(np.log(one["ratio"]))))
-    return f"{rounded(worst['ratio'], 2)} along {worst['direction']}"
+    strongest = sorted(worst["loadings"].values(), key=abs)[-4:]  # of many components the four that weigh most
+    terms = [f"{weight:+.2f} {name}" for name, weight in worst["loadings"].items() if weight in strongest]
+    shown = " ".join(terms).replace("+", "+ ").replace(" -", " - ").removeprefix("+ ")
+    return f"{rounded(worst['ratio'], 2)} along {shown}{' …' if len(worst['loadings']) > 4 else ''}"
 
 
 def cells(study: Study, chosen: Filter, trials: int, verdict: credence.Verdict) -> tuple[str, ...]:

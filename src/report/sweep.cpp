@@ -82,18 +82,23 @@ SweepColumns::SweepColumns(const Report& report) {
     }
 }
 
-std::string SweepColumns::heads() const { return keys_.empty() ? "" : ",sweep_of," + joined(keys_, ","); }
+std::vector<Cell> SweepColumns::heads() const {
+    std::vector<Cell> heads;
+    if (!keys_.empty()) heads.push_back("sweep_of");
+    heads.insert(heads.end(), keys_.begin(), keys_.end());
+    return heads;
+}
 
-std::string SweepColumns::cells(const std::string& scenario) const {
+std::vector<Cell> SweepColumns::cells(const std::string& scenario) const {
+    if (keys_.empty()) return {};
     const auto found = places_.find(scenario);
     const SweepPoint place = found == places_.end() ? SweepPoint{} : found->second;
-    std::string text = keys_.empty() ? "" : "," + place.of;
+    std::vector<Cell> cells{place.of};
     for (const std::string& key : keys_) {
-        text += ",";
-        for (const SweepCoordinate& one : place.at)  // no value holds quotation marks
-            if (one.key == key) text += one.value.find(',') == std::string::npos ? one.value : "\"" + one.value + "\"";
+        const auto one = std::ranges::find(place.at, key, &SweepCoordinate::key);
+        cells.push_back(one == place.at.end() ? Cell() : Cell(one->value));
     }
-    return text;
+    return cells;
 }
 
 }  // namespace credence

@@ -58,9 +58,8 @@ std::vector<SweptColumn> swept_columns(const Comparison& pair);
 class SweepColumns {
 public:
     explicit SweepColumns(const Report& report);
-    /// Each with a comma before it.
-    std::string heads() const;
-    std::string cells(const std::string& scenario) const;
+    std::vector<Cell> heads() const;
+    std::vector<Cell> cells(const std::string& scenario) const;
 
 private:
     std::map<std::string, SweepPoint> places_;

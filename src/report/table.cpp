@@ -1,5 +1,7 @@
 #include "report/table.hpp"
 
+#include <credence/text.hpp>
+
 #include "report/format.hpp"
 
 #include <algorithm>
@@ -34,6 +36,13 @@ std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
     std::vector<std::string> texts;
     for (const Cell& cell : cells) texts.push_back(cell.text());
     return texts;
+}
+
+std::string quoted_for_csv(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
 }
 
 std::string without_end_blanks(std::string line) { return line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; }
@@ -88,6 +97,11 @@ Cell mean_cell(double mean, const Interval& interval) {
 Cell share_cell(double share) { return number_cell_as(share, percent(share)); }
 
 Cell p_cell(double p) { return number_cell_as(p, p_text(p)); }
+
+Cell exact_cell(double value) {
+    if (!std::isfinite(value)) return {};
+    return Cell::Piece{to_text(value), value};
+}
 
 Table& Table::row(std::vector<Cell> cells) {
     rows_.push_back({std::move(cells)});
@@ -144,5 +158,15 @@ private:
 }  // namespace
 
 std::string table_text(const Table& table, int indent) { return table.empty() ? "" : TextLines(table, indent).text(); }
+
+std::string csv_row(const std::vector<Cell>& cells) {
+    std::vector<std::string> texts;
+    for (const Cell& cell : cells) {
+        std::string text;
+        for (const Cell::Piece& piece : cell.pieces()) text += piece.exact ? to_text(*piece.exact) : piece.shown;
+        texts.push_back(quoted_for_csv(text));
+    }
+    return joined(texts, ",") + "\n";
+}
 
 }  // namespace credence

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of numbers as a report has them, rendered as text here and as HTML by report/html.
+// Tables of numbers as a report has them, rendered as text and CSV here, and as HTML by report/html.
 
 #include <credence/consistency.hpp>
 #include <credence/statistics.hpp>
@@ -52,6 +52,9 @@ Cell mean_cell(double mean, const Interval& interval);
 Cell share_cell(double share);
 Cell p_cell(double p);
 
+/// The exact number; nothing where it is not finite.
+Cell exact_cell(double value);
+
 /// A table with column heads. The first columns are the row heads.
 class Table {
 public:
@@ -84,5 +87,8 @@ private:
 /// The table without its caption: columns as wide as their content, two blanks apart; those of words to the left. Row
 /// heads that would make lines longer than `text_width` have lines of their own. Nothing without rows.
 std::string table_text(const Table& table, int indent = 2);
+
+/// A row as CSV, with the exact numbers, and quoted where that is needed [RFC 4180].
+std::string csv_row(const std::vector<Cell>& cells);
 
 }  // namespace credence

@@ -5,6 +5,8 @@
 #include "report/html/html.hpp"
 #include "report/table.hpp"
 
+#include <cmath>
+
 using namespace credence;
 using Catch::Contains;
 
@@ -44,4 +46,9 @@ TEST_CASE("table: as HTML, numbers carry their exact values") {
     CHECK_THAT(html, Contains("<tr><th scope=\"row\"><data value=\"0.5\">0.5</data></th><th scope=\"row\">ekf</th>"
                               "<td><data value=\"1.25\">1.25</data> ± 0.25</td><td><data value=\"0\">0</data></td></tr>"));
     CHECK_THAT(html, Contains("<th scope=\"rowgroup\" colspan=\"4\">first</th>"));
+}
+
+TEST_CASE("table: as CSV, a row has the exact numbers, nothing where there is none, and quotes where it must") {
+    CHECK(csv_row({"a,b", number_cell(1.0 / 3, 2), exact_cell(NAN), "say \"so\""}) ==
+          "\"a,b\",0.3333333333333333,,\"say \"\"so\"\"\"\n");
 }

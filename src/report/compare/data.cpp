@@ -5,6 +5,7 @@
 #include <credence/text.hpp>
 
 #include "report/data/json.hpp"
+#include "report/table.hpp"
 
 namespace credence {
 
@@ -41,28 +42,19 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     return json;
 }
 
-/// Quoted where CSV needs it [RFC 4180]: labels contain file names.
-std::string csv_text(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
-
-std::string csv_row(const ComparedPair& pair, std::size_t column) {
+std::string csv_of(const ComparedPair& pair, std::size_t column) {
     const ComparedColumn& compared = pair.comparison.columns[column];
     const PairedComparison& paired = compared.paired;
     const Summary& difference = paired.difference;
-    std::string text = csv_text(pair.comparison.scenario) + "," + csv_text(pair.comparison.a) + "," +
-                       csv_text(pair.comparison.b) + "," + csv_text(compared.name) + "," + csv_text(compared.unit) +
-                       "," + std::to_string(paired.pairs);
+    std::vector<Cell> cells{pair.comparison.scenario, pair.comparison.a, pair.comparison.b, compared.name, compared.unit,
+                            exact_cell(static_cast<double>(paired.pairs))};
     for (const double value :
          {pair.a.mean[column], pair.b.mean[column], difference.mean, difference.standard_error, difference.ci95.low,
           difference.ci95.high, paired.bootstrap95.low, paired.bootstrap95.high, difference.median,
           difference.standard_deviation, paired.wins_a, paired.wins_b, paired.ties, paired.wilcoxon_z,
           paired.wilcoxon_p, compared.holm_p, paired.effect_size, paired.variance_reduction})
-        text += "," + (std::isfinite(value) ? to_text(value) : "");
-    return text + "\n";
+        cells.push_back(exact_cell(value));
+    return csv_row(cells);
 }
 
 }  // namespace
@@ -79,7 +71,7 @@ std::string compare_csv(const CompareReport& report) {
         "scenario,a,b,name,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
         "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
     for (const ComparedPair& pair : report.pairs)
-        for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) text += csv_row(pair, f);
+        for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) text += csv_of(pair, f);
     return text;
 }
 

@@ -7,6 +7,7 @@
 #include "base/nan.hpp"
 #include "report/data/json.hpp"
 #include "report/sweep.hpp"
+#include "report/table.hpp"
 #include "report/words.hpp"
 
 #include <cmath>
@@ -122,22 +123,32 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     return json;
 }
 
-/// One row, with `end` after its numbers; NaN and infinity give empty cells.
-std::string csv_row(std::vector<std::string> cells, const Summary& s, const std::optional<Interval>& bootstrap,
-                    const std::optional<PublishedPlace>& published, const std::string& end) {
+using Cells = std::vector<Cell>;
+
+Cells operator+(Cells a, const Cells& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// One row, with `end` after its numbers.
+std::string row_of(Cells cells, const Summary& s, const std::optional<Interval>& bootstrap,
+                   const std::optional<PublishedPlace>& published, const Cells& end) {
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
     const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
     for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
                                s.standard_deviation, place.value, place.percentile})
-        cells.push_back(std::isfinite(value) ? to_text(value) : "");
-    cells.push_back(end);
-    return joined(cells, ",") + "\n";
+        cells.push_back(exact_cell(value));
+    return csv_row(std::move(cells) + end);
+}
+
+Cells start_of(const ArmReport& arm, const std::string& name, const std::string& unit) {
+    return {arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), name, unit};
 }
 
 /// Rows of an arm's evidence. The group or part is appended to the name after a colon, the step after a second one.
 class EvidenceRows {
 public:
-    EvidenceRows(const ArmReport& arm, const std::string& end) : arm_(arm), end_(end) {}
+    EvidenceRows(const ArmReport& arm, const Cells& end) : arm_(arm), end_(end) {}
 
     std::string text() {
         for (const GroupEvidence& group : arm_.evidence.groups) add_group(group);
@@ -174,8 +185,8 @@ private:
     static constexpr Interval none{nan, nan};
 
     void add(const std::string& column, double mean, double se, const Interval& interval, double sd = nan) {
-        text_ += csv_row({arm_.scenario, arm_.arm, std::to_string(arm_.trials), std::to_string(arm_.failed), column, "1"},
-                         {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt, end_);
+        text_ += row_of(start_of(arm_, column, "1"),
+                        {arm_.evidence.trials, mean, se, interval, nan, sd}, std::nullopt, std::nullopt, end_);
     }
     void add_moments(const std::string& column, const Moments& moments) {
         add(column, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
@@ -203,7 +214,7 @@ private:
     }
 
     const ArmReport& arm_;
-    const std::string& end_;
+    const Cells& end_;
     std::string text_;
 };
 
@@ -217,23 +228,20 @@ std::string report_json(const Report& report) {
 
 std::string report_csv(const Report& report) {
     const SweepColumns sweep(report);
-    std::string text =
-        "scenario,arm,trials,failed,name,unit,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,median,sd,"
-        "published,percentile,verdict" + sweep.heads() + ",failed_trials\n";
+    const Cells heads{"scenario", "arm", "trials", "failed", "name", "unit", "mean", "se", "ci95_low", "ci95_high",
+                      "bootstrap95_low", "bootstrap95_high", "median", "sd", "published", "percentile", "verdict"};
+    std::string text = csv_row(heads + sweep.heads() + Cells{"failed_trials"});
     for (const ArmReport& arm : report.arms) {
-        const std::string end =
-            verdict_word(arm) + sweep.cells(arm.scenario) + "," + std::to_string(arm.failed_trials());
+        const Cells end = Cells{verdict_word(arm)} + sweep.cells(arm.scenario) + Cells{std::to_string(arm.failed_trials())};
         for (const ColumnReport& column : arm.columns)
-            text += csv_row({arm.scenario, arm.arm, std::to_string(arm.trials), std::to_string(arm.failed), column.name,
-                             column.unit},
-                            column.summary, column.bootstrap95, column.published, end);
+            text += row_of(start_of(arm, column.name, column.unit), column.summary, column.bootstrap95, column.published, end);
         text += EvidenceRows(arm, end).text();
     }
     for (const Comparison& pair : report.pairs)
         for (const ComparedColumn& column : pair.columns)
-            text += csv_row({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
-                            column.paired.difference, column.paired.bootstrap95, std::nullopt,
-                            sweep.cells(pair.scenario) + ",");
+            text += row_of({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
+                           column.paired.difference, column.paired.bootstrap95, std::nullopt,
+                           Cells{""} + sweep.cells(pair.scenario) + Cells{""});
     return text;
 }
 
