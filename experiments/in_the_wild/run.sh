@@ -7,18 +7,18 @@
 #   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
 #   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
 #
-# PYTHON is an interpreter that has credence and what python/requirements.txt names. Without it they are installed once in
-# build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
+# CREDENCE_PYTHON is an interpreter that has credence and what python/requirements.txt names. Without it they are
+# installed once in build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-if [ -z "${PYTHON:-}" ]; then
-  venv=$PWD/build/in-the-wild PYTHON=$PWD/build/in-the-wild/bin/python
+if [ -z "${CREDENCE_PYTHON:-}" ]; then
+  venv=$PWD/build/in-the-wild CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
   if [ ! "$venv/complete" -nt python/requirements.txt ]; then
     python3 -m venv "$venv"
-    "$PYTHON" -m pip install --quiet . -r python/requirements.txt >&2
+    "$CREDENCE_PYTHON" -m pip install --quiet . -r python/requirements.txt >&2
     touch "$venv/complete"
   fi
 fi
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
-if [ "${1:-}" = --causes ]; then exec "$PYTHON" experiments/in_the_wild/causes.py; fi
-exec "$PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"
+if [ "${1:-}" = --causes ]; then exec "$CREDENCE_PYTHON" experiments/in_the_wild/causes.py; fi
+exec "$CREDENCE_PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"

@@ -11,4 +11,7 @@ for project in own_filter worlds; do
   { cmake -S experiments/$project -B "$work/$project" -DCMAKE_PREFIX_PATH="$work/usr" && cmake --build "$work/$project"; } \
     >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 done
+source tests/labels/package.sh
+package_venv "$work"
+export CREDENCE_PYTHON=$work/venv/bin/python
 PYTHON=/usr/bin/python3 FURTHER_PROGRAMS="$work/own_filter/tracker $work/worlds/gallery" bash tests/docs/check.sh --slow "$@"

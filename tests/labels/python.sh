@@ -9,23 +9,17 @@ $python -c 'import ensurepip, os, sysconfig; os.stat(sysconfig.get_path("include
 tree=$PWD
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-$python -m venv "$work/venv"
+source tests/labels/package.sh
+package_venv "$work"
 source "$work/venv/bin/activate"
-pip install -q --disable-pip-version-check -r python/requirements.txt
-
-# The installed library is linked, so that nothing but the bindings is compiled.
-cmake --install build --prefix "$work/installed" --component development >/dev/null
-pip wheel -q --disable-pip-version-check . --no-deps --no-build-isolation -w "$work" \
-  --config-settings=cmake.define.CREDENCE_PREFIX="$work/installed"
 if [ -n "$(find "$work" -maxdepth 1 -name '*.whl' -size +10M)" ]; then
   echo "the wheel is larger than 10 MB"
   exit 1
 fi
-pip install -q --disable-pip-version-check "$work"/*.whl
 
 cd "$work"  # python/credence itself has no compiled module
 CREDENCE=$tree/build/credence pytest -q -p no:cacheprovider "$tree/python/tests"
 cd "$tree"
-PYTHON=$work/venv/bin/python bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
+CREDENCE_PYTHON=$work/venv/bin/python bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
 mypy --cache-dir "$work/mypy" python/credence
 ruff check --no-cache python experiments/in_the_wild experiments/worlds
