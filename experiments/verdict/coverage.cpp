@@ -59,7 +59,7 @@ std::vector<Said> said_of(const Scenario& scenario, std::uint64_t seed, int tria
     std::vector<Said> all;
     for (const ArmResults& arm : study.scenarios.front().arms) {
         const Evidence evidence = evidence_of(study.scenarios.front(), arm);
-        const GroupEvidence& state = evidence.blocks.front();
+        const GroupEvidence& state = evidence.groups.front();
         all.push_back({state.run.mean, over_steps95(state), judge(evidence, Limits()).verdict});
     }
     return all;

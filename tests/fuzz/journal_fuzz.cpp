@@ -99,8 +99,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");
     try {
-        const Snapshot look = RunWatch(results).look();
-        require(watch_text(look).starts_with(results) && !watch_json(look).empty(), "a look can be shown");
+        const Snapshot snapshot = RunWatch(results).snapshot();
+        require(watch_text(snapshot).starts_with(results) && !watch_json(snapshot).empty(), "a snapshot can be shown");
     } catch (const InputError& error) {
         require_one_line(error.what());
     }

@@ -37,10 +37,10 @@ void check_mean(const Summary& ours, double theirs, double their_error) {
     CHECK(std::abs(ours.mean - theirs) < 4 * std::hypot(ours.standard_error, their_error));
 }
 
-double block_ratio(const ScenarioResults& results, std::size_t arm, const std::string& name) {
-    for (const GroupEvidence& b : evidence_of(results, results.arms[arm]).blocks)
-        if (b.name == name) return b.run.mean;
-    FAIL("no block " << name);
+double group_ratio(const ScenarioResults& results, std::size_t arm, const std::string& name) {
+    for (const GroupEvidence& group : evidence_of(results, results.arms[arm]).groups)
+        if (group.name == name) return group.run.mean;
+    FAIL("no group " << name);
     return 0;
 }
 
@@ -87,9 +87,9 @@ TEST_CASE("figures: the filter is pessimistic about the features and right about
                     const double nees = column(r, arm, column_nees_ratio).mean, nis = column(r, arm, column_nis_ratio).mean;
                     CHECK((nees > 0.57 && nees < 0.91));
                     CHECK(nis == Approx(0.715).margin(0.025));
-                    CHECK(block_ratio(r, arm, "pose") == Approx(1).margin(0.1));
+                    CHECK(group_ratio(r, arm, "pose") == Approx(1).margin(0.1));
                     // 0.45 to 0.76 on the fixed path; planning brings the features back into sight, and nearer to 1.
-                    const double features = block_ratio(r, arm, "features");
+                    const double features = group_ratio(r, arm, "features");
                     CHECK((features > 0.43 && features < (arm == 0 ? 0.78 : 0.88)));
                 }
             }
@@ -121,12 +121,12 @@ TEST_CASE("figures: misinformed filters are off where they were misinformed", "[
     s.filter.measurement = 0.8;
     ScenarioResults r = run(s, 10000);
     check_mean(column(r, 0, column_nees_ratio), 1.382, 0.006);
-    CHECK(block_ratio(r, 0, "pose") == Approx(0.98).margin(0.08));
-    CHECK(block_ratio(r, 0, "feature_0") == Approx(1.165).margin(0.05));
+    CHECK(group_ratio(r, 0, "pose") == Approx(0.98).margin(0.08));
+    CHECK(group_ratio(r, 0, "feature_0") == Approx(1.165).margin(0.05));
     s.filter = {};
     s.filter.heading = s.filter.odometry = s.filter.features = std::sqrt(0.7);  // Q times 0.7
     r = run(s, 10000);
     check_mean(column(r, 0, column_nees_ratio), 1.107, 0.006);
-    CHECK(block_ratio(r, 0, "pose") == Approx(1.41).margin(0.08));
-    CHECK(block_ratio(r, 0, "feature_0") == Approx(1.215).margin(0.05));
+    CHECK(group_ratio(r, 0, "pose") == Approx(1.41).margin(0.08));
+    CHECK(group_ratio(r, 0, "feature_0") == Approx(1.215).margin(0.05));
 }
