@@ -14,9 +14,8 @@ import tempfile
 import time
 
 import h5py
-import numpy as np
-
 import keyed_draws
+import numpy as np
 
 STEPS, SEED = 49, 1
 F = np.block([[np.eye(2), np.eye(2)], [np.zeros((2, 2)), np.eye(2)]])
@@ -29,10 +28,11 @@ def draws_of_credence(trials):
     """Of a study: start [N, 4], acceleration and noise [N, K, 2], detection [N, K]."""
     i, k = np.arange(trials)[:, None], np.arange(1, STEPS + 1)
     start = np.concatenate([keyed_draws.normal(SEED, i[:, 0], source, 0) for source in (0, 1)], axis=-1)
-    return start, keyed_draws.normal(SEED, i, 2, k), keyed_draws.normal(SEED, i, 3, k), keyed_draws.uniform(SEED, i, 4, k)
+    moves, measurements = (keyed_draws.normal(SEED, i, source, k) for source in (2, 3))
+    return start, moves, measurements, keyed_draws.uniform(SEED, i, 4, k)
 
 
-def draws_of_numpy(trials, random=np.random.default_rng(1)):
+def draws_of_numpy(trials, random):
     return (random.standard_normal((trials, 4)), random.standard_normal((trials, STEPS, 2)),
             random.standard_normal((trials, STEPS, 2)), random.random((trials, STEPS)))
 
@@ -117,8 +117,8 @@ def seconds_of_program(program, scenario, folder, arms):
 
 def main(program, scenario, *loops):
     folder = pathlib.Path(tempfile.mkdtemp())
-    subprocess.run([program, "run", scenario, "--trials", "2000", "--seed", str(SEED), "--quiet", "-o", folder / "study.h5"],
-                   check=True, stdout=subprocess.DEVNULL)
+    command = [program, "run", scenario, "--trials", "2000", "--seed", str(SEED), "--quiet", "-o", folder / "study.h5"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     with h5py.File(folder / "study.h5") as file:
         expected = file["tracker/kf/nees_ratio"][:]
     draws = draws_of_credence(len(expected))
@@ -139,7 +139,8 @@ def main(program, scenario, *loops):
         np.concatenate([np.pad(start, ((0, 0), (0, 1)))[:, None], flat], axis=1).tofile(folder / "draws")
         subprocess.run([path, folder / "draws", folder / "nees"], check=True)
         worst = agreement(name, np.fromfile(folder / "nees"))
-        runs = [float(subprocess.run([path, "1", "20000", "-"], check=True, capture_output=True, text=True).stdout.split()[0])
+        command = [path, "1", "20000", "-"]
+        runs = [float(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()[0])
                 for _ in range(5)]
         rows.append((name, "draws, filter, NEES", min(runs) / STEPS, worst))
     ways = {"numpy, batched": lambda: numpy_batched, "JAX, vmap and jit": jax_mapped, "simdkalman": simdkalman_filter}
@@ -150,15 +151,17 @@ def main(program, scenario, *loops):
             print(f"{name} is left out, because its package is missing.", file=sys.stderr)
             continue
         worst = agreement(name, run(draws))
-        times = []
+        times, random = [], np.random.default_rng(1)
         for _ in range(5):
             before = time.process_time()
-            run(draws_of_numpy(len(expected)))
+            run(draws_of_numpy(len(expected), random))
             times.append(time.process_time() - before)
         rows.append((name, "draws, filter, NEES", min(times) / len(expected) / STEPS, worst))
-    print("| way | what it computes | µs a step | × credence | NEES differs by |\n|---|---|---|---|---|")
+    times_credence = "\N{MULTIPLICATION SIGN} credence"
+    print(f"| way | what it computes | µs a step | {times_credence} | NEES differs by |\n|---|---|---|---|---|")
     for name, what, seconds, worst in rows:
-        print(f"| {name} | {what} | {seconds * 1e6:.3g} | {seconds / rows[0][2]:.3g} | {'' if worst == 0 else f'{worst:.0e}'} |")
+        difference = f"{worst:.0e}" if worst else ""
+        print(f"| {name} | {what} | {seconds * 1e6:.3g} | {seconds / rows[0][2]:.3g} | {difference} |")
 
 
 if __name__ == "__main__":

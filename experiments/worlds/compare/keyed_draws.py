@@ -1,4 +1,4 @@
-"""credence's draws (include/credence/detail/draws.hpp) in numpy: Philox4x32-10 of seed, trial, pose, source and index."""
+"""credence's draws (include/credence/detail/draws.hpp) in numpy: Philox4x32-10 of seed, trial, pose, source, index."""
 
 import numpy as np
 
