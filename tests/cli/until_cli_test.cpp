@@ -37,7 +37,7 @@ TEST_CASE("cli: run --until continues to a later interim analysis, with the numb
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
     CHECK_THAT(run.err, Contains("interim analysis 1, 4096 trials: trace_P of kf-circle-constant/fixed.kf 0.4") &&
-                            Contains("; about 8192 trials are needed\nlook 2, 8192 trials: "));
+                            Contains("; about 8192\n  trials are needed\ninterim analysis 2, 8192 trials: "));
     CHECK_THAT(run.out, Contains("stopped at interim analysis 2, 8192 trials") && Contains("at 98.75 %"));
     CHECK_THAT(here.shell("h5dump -H -d /kf-circle-constant/fixed.kf/trace_P credence.h5").out, Contains("( 8192 )"));
 }
