@@ -85,12 +85,12 @@ public:
 
     Eigen::Matrix<Real, 2, 1> normal(int source, int pose, int index = 0) const {
         double draw[2 * lanes<Real>];
-        pack_.normal(pack_, source, pose, key_index(source, pose, index), draw);
+        pack_.normal(pack_, source, pose, key_index(*pack_.world, source, pose, index), draw);
         return {load<Real>(draw), load<Real>(draw + lanes<Real>)};
     }
     Real uniform(int source, int pose, int index = 0) const {
         double draw[lanes<Real>];
-        pack_.uniform(pack_, source, pose, key_index(source, pose, index), draw);
+        pack_.uniform(pack_, source, pose, key_index(*pack_.world, source, pose, index), draw);
         return load<Real>(draw);
     }
 
@@ -137,11 +137,6 @@ public:
     }
 
 private:
-    int key_index(int source, int pose, int index) const {
-        const bool usual = ((source & ~15) | (index & ~0xffff)) == 0 && pose >= 0;
-        return usual ? index : rare_index(*pack_.world, source, pose, index);
-    }
-
     /// A matrix of Reals in memory: the one that is given, or the value of an expression.
     template <int rows, int columns, int most_rows, int most_columns>
     static const auto& as_reals(const Eigen::Matrix<Real, rows, columns, 0, most_rows, most_columns>& matrix) {

@@ -13,23 +13,30 @@ namespace credence {
 
 namespace {
 
-/// The widest cell of each column, of those that are not heads of groups.
-std::vector<int> widths_of(const Table& table) {
-    std::vector<int> widths;
-    for (const std::string& head : table.heads()) widths.push_back(characters(head));
-    for (const Table::Row& row : table.rows())
-        for (std::size_t c = 0; c < row.cells.size() && !row.heads_group; ++c)
-            widths[c] = std::max(widths[c], characters(row.cells[c].text()));
-    return widths;
+/// How a column is set: as wide as its widest cell, numbers to the right.
+struct ColumnLayout {
+    int width = 0;
+    bool numbers = false;
+};
+
+/// The columns of the heads, and those that only rows have; heads of groups are in none.
+std::vector<ColumnLayout> layout_of(const Table& table) {
+    std::vector<ColumnLayout> columns;
+    for (const std::string& head : table.heads()) columns.push_back({characters(head)});
+    for (const Table::Row& row : table.rows()) {
+        if (row.heads_group) continue;
+        columns.resize(std::max(columns.size(), row.cells.size()));
+        for (std::size_t c = 0; c < row.cells.size(); ++c) {
+            columns[c].width = std::max(columns[c].width, characters(row.cells[c].text()));
+            columns[c].numbers = columns[c].numbers || row.cells[c].is_number();
+        }
+    }
+    return columns;
 }
 
-/// Columns of numbers are aligned to the right.
-std::vector<bool> number_columns(const Table& table) {
-    std::vector<bool> numbers(table.heads().size());
-    for (const Table::Row& row : table.rows())
-        for (std::size_t c = 0; c < row.cells.size() && !row.heads_group; ++c)
-            if (row.cells[c].is_number()) numbers[c] = true;
-    return numbers;
+int width_of(const std::vector<ColumnLayout>& columns) {
+    return std::accumulate(columns.begin(), columns.end(), -2,
+                           [](int sum, const ColumnLayout& column) { return sum + column.width + 2; });
 }
 
 std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
@@ -99,8 +106,7 @@ Cell share_cell(double share) { return number_cell_as(share, percent(share)); }
 Cell p_cell(double p) { return number_cell_as(p, p_text(p)); }
 
 Cell exact_cell(double value) {
-    if (!std::isfinite(value)) return {};
-    return Cell::Piece{to_text(value), value};
+    return std::isfinite(value) ? Cell(to_text(value)) : Cell();
 }
 
 Table& Table::row(std::vector<Cell> cells) {
@@ -124,17 +130,15 @@ namespace {
 class TextLines {
 public:
     TextLines(const Table& table, int indent)
-        : table_(table), widths_(widths_of(table)), numbers_(number_columns(table)),
-          indent_(static_cast<std::size_t>(indent)),
-          first_(std::accumulate(widths_.begin(), widths_.end(), indent + 2 * static_cast<int>(widths_.size()) - 2) <= text_width
-                     ? 0 : table.row_heads()) {}
+        : table_(table), columns_(layout_of(table)), indent_(static_cast<std::size_t>(indent)),
+          first_(indent + width_of(columns_) <= text_width ? 0 : table.row_heads()) {}
 
     std::string line(const std::vector<std::string>& cells) const {
         const std::string margin(indent_, ' ');
         std::string text = first_ == 0 ? "" : margin + wrapped_list("", heads_of(cells), indent_) + "\n";
         std::string after = margin + (first_ == 0 ? "" : "  ");
         for (std::size_t c = first_; c < cells.size(); ++c)
-            after += (c == first_ ? "" : "  ") + aligned(cells[c], widths_[c], numbers_[c]);
+            after += (c == first_ ? "" : "  ") + aligned(cells[c], columns_[c].width, columns_[c].numbers);
         return text + without_end_blanks(std::move(after));
     }
     std::string text() const {
@@ -150,8 +154,7 @@ private:
     }
 
     const Table& table_;
-    const std::vector<int> widths_;
-    const std::vector<bool> numbers_;
+    const std::vector<ColumnLayout> columns_;
     const std::size_t indent_, first_;  ///< the first column of the lines
 };
 

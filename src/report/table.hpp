@@ -52,7 +52,7 @@ Cell mean_cell(double mean, const Interval& interval);
 Cell share_cell(double share);
 Cell p_cell(double p);
 
-/// The exact number; nothing where it is not finite.
+/// The exact number as words, for CSV; nothing where it is not finite.
 Cell exact_cell(double value);
 
 /// A table with column heads. The first columns are the row heads.

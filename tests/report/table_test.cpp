@@ -52,3 +52,12 @@ TEST_CASE("table: as CSV, a row has the exact numbers, nothing where there is no
     CHECK(csv_row({"a,b", number_cell(1.0 / 3, 2), exact_cell(NAN), "say \"so\""}) ==
           "\"a,b\",0.3333333333333333,,\"say \"\"so\"\"\"\n");
 }
+
+TEST_CASE("table: a row may have more columns than the heads") {
+    Table table("", {"arm", "mean"});
+    table.row({"fixed", count_cell(1)});
+    table.row({"greedy", count_cell(10), count_cell(3), "word"});
+    CHECK(table_text(table, 0) == "arm     mean\n"
+                                  "fixed      1\n"
+                                  "greedy    10  3  word\n");
+}

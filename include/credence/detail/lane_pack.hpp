@@ -44,5 +44,10 @@ using RunPack = void (*)(const void* settings, LanePack& pack);
 /// The index of a draw as a key has it. Two keys that the counter could not tell apart would be one draw; they end the
 /// run with std::logic_error.
 int rare_index(const std::string& world, int source, int pose, int index);
+/// The same, at once for the usual keys. (Inline everywhere: no target may share a function with another one.)
+[[gnu::always_inline]] inline int key_index(const std::string& world, int source, int pose, int index) {
+    const bool usual = ((source & ~15) | (index & ~0xffff)) == 0 && pose >= 0;
+    return usual ? index : rare_index(world, source, pose, index);
+}
 
 }  // namespace credence

@@ -15,17 +15,14 @@ namespace {
 /// A table whose rows are grouped by arm.
 template <class AddRows>
 Html by_arm(const Part& part, Table table, const AddRows& add_rows) {
-    bool any = false;
     for (const ArmReport* arm : part.arms) {
         if (arm->evidence.trials == 0) continue;
         Table rows("", {});
         add_rows(arm->evidence, rows);
-        if (rows.empty()) continue;
-        if (part.arms.size() > 1) table.group(arm->arm);
-        add_rows(arm->evidence, table);
-        any = true;
+        if (part.arms.size() > 1 && !rows.empty()) table.group(arm->arm);
+        for (const Table::Row& row : rows.rows()) table.row(row.cells);
     }
-    return any ? html_of(table) : Html();
+    return html_of(table);
 }
 
 Html groups_table(const Part& part) {

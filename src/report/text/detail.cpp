@@ -44,9 +44,9 @@ void add_column(Table& table, const Report& report, const std::string& scenario,
         }
 }
 
-std::string groups_part(const ArmReport& arm) {
+std::string groups_part(const ArmReport& arm, const std::vector<const GroupEvidence*>& groups) {
     Table table("", {arm.arm, "NEES/dim", "steps out", "95 % covers", "var/2dim", "RMSE/sigma"});
-    for (const GroupEvidence* group : shown_groups(arm.evidence))
+    for (const GroupEvidence* group : groups)
         table.row({"  " + group->name, mean_cell(group->run.mean, over_steps95(*group)),
                    of_steps(group->anees.outside_simultaneous, group->anees.observed),
                    number_cell_as(group->coverage[2].over_steps, number(100 * group->coverage[2].over_steps, 1) + " %"),
@@ -95,8 +95,8 @@ std::string distribution_part(const Evidence& evidence) {
 
 std::string consistency_part(const ArmReport& arm) {
     if (arm.evidence.groups.empty() || arm.evidence.trials == 0) return "";
-    std::string text = groups_part(arm);
-    const auto groups = shown_groups(arm.evidence);
+    const std::vector<const GroupEvidence*> groups = shown_groups(arm.evidence);
+    std::string text = groups_part(arm, groups);
     if (groups.size() < arm.evidence.groups.size())
         text += "    (" + std::to_string(arm.evidence.groups.size() - groups.size()) +
                 " more groups are nearer to 1; JSON has all)\n";

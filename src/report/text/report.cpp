@@ -20,7 +20,7 @@ std::string why(const ArmReport& arm) {
     constexpr std::size_t indent = 6;
     std::vector<std::string> lines;
     for (const Reason& reason : reasons_of(arm)) lines.push_back("    " + wrapped_list(reason.head, reason.parts, indent));
-    return joined(lines, "\n" + std::string(2, ' '));
+    return joined(lines, "\n  ");
 }
 
 /// Arms of scenarios that are not in a sweep: a sweep has a table of its own.

@@ -93,11 +93,11 @@ public:
     int poses() const override { return case_.scenario.poses; }
     // (Left to itself, g++ keeps the generator's rounds out of line, which costs a fifteenth of a tracker's time.)
     CREDENCE_FLAT Eigen::Vector2d normal(int source, int pose, int index) const override {
-        const Vector2<double> draw = draws_->normal(static_cast<Source>(source), pose, key_index(source, pose, index));
+        const Vector2<double> draw = draws_->normal(static_cast<Source>(source), pose, key_index(case_.scenario.world, source, pose, index));
         return {draw.x, draw.y};
     }
     CREDENCE_FLAT double uniform(int source, int pose, int index) const override {
-        return draws_->uniform(static_cast<Source>(source), pose, key_index(source, pose, index));
+        return draws_->uniform(static_cast<Source>(source), pose, key_index(case_.scenario.world, source, pose, index));
     }
     void set(std::size_t column, double value) override {
         require(column < own_.size(), "a column that it does not have is set");
@@ -153,10 +153,6 @@ public:
     }
 
 private:
-    int key_index(int source, int pose, int index) const {
-        const bool usual = ((source & ~(source_count - 1)) | (index & ~0xffff)) == 0 && pose >= 0;
-        return usual ? index : rare_index(case_.scenario.world, source, pose, index);
-    }
     void require(bool good, const char* otherwise) const {
         if (!good) throw std::logic_error("world " + case_.scenario.world + ": " + otherwise + ".");
     }

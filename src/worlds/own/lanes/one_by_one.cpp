@@ -95,11 +95,11 @@ public:
     std::size_t arm() const override { return pack_.arm; }
     int poses() const override { return pack_.poses; }
     Eigen::Vector2d normal(int source, int pose, int index) const override {
-        const double* draw = draws_.numbers(pack_.normal, source, pose, key_index(source, pose, index));
+        const double* draw = draws_.numbers(pack_.normal, source, pose, key_index(*pack_.world, source, pose, index));
         return {draw[lane_], draw[lanes_ + lane_]};
     }
     double uniform(int source, int pose, int index) const override {
-        return draws_.numbers(pack_.uniform, source, pose, key_index(source, pose, index))[lane_];
+        return draws_.numbers(pack_.uniform, source, pose, key_index(*pack_.world, source, pose, index))[lane_];
     }
     void set(std::size_t column, double value) override {
         if (column >= pack_.own_column_count) refuse(pack_, "a column that it does not have is set");
@@ -125,10 +125,6 @@ public:
     }
 
 private:
-    int key_index(int source, int pose, int index) const {
-        const bool usual = ((source & ~15) | (index & ~0xffff)) == 0 && pose >= 0;
-        return usual ? index : rare_index(*pack_.world, source, pose, index);
-    }
     double* at(std::vector<double>& all, std::size_t k, int count) { return all.data() + k * cells(count) * lanes_; }
 
     void take(const Vector& error, const Matrix& P) {
