@@ -13,8 +13,8 @@ double rounding_bound(const Eigen::MatrixXd& P, double epsilon) {
     if (there.empty()) return 0;
     const Eigen::MatrixXd part = P(there, there);
     const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * part * scale.asDiagonal(),
-                                                                Eigen::EigenvaluesOnly);
+    const Eigen::MatrixXd correlation = scale.asDiagonal() * part * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
     const double smallest = solver.eigenvalues()[0], d = static_cast<double>(there.size());
     return smallest > 0 ? d * epsilon / smallest : std::numeric_limits<double>::infinity();
 }

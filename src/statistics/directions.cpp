@@ -29,7 +29,8 @@ Extremes extremes_of(const MatrixXd& S, const MatrixXd& C, const MatrixXd& basis
     if (basis.cols() == 0 || factor.info() != Eigen::Success) return {};
     const MatrixXd half = factor.matrixL().solve(basis.transpose() * S * basis);
     const MatrixXd whole = factor.matrixL().solve(half.transpose());
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver((whole + whole.transpose()) / 2);
+    const MatrixXd symmetric = (whole + whole.transpose()) / 2;
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
     if (solver.info() != Eigen::Success) return {};
     return {solver.eigenvalues(), basis * factor.matrixU().solve(solver.eigenvectors())};
 }
@@ -152,8 +153,7 @@ DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& 
     if (!all.known()) return accepted;
     const PositiveSample smallest = ratio_in(all.of(false), state, sums), largest = ratio_in(all.of(true), state, sums);
     accepted.acceptance = accept_means(smallest, largest, limits.accepted);
-    accepted.smallest = smallest.mean;
-    accepted.largest = largest.mean;
+    accepted.spectrum = {all.values.begin(), all.values.end()};
     accepted.bounds = {lower_bound(smallest, levels::acceptance), upper_bound(largest, levels::acceptance, 0)};
     return accepted;
 }

@@ -57,8 +57,8 @@ struct DirectionsAccepted {
     GroupDirections::State state = GroupDirections::State::few_trials;
     Acceptance acceptance = Acceptance::more_trials;
     int left_out = 0;
-    double smallest = 0, largest = 0;  ///< eigenvalues of all trials: their range is too wide on average
-    Interval bounds;                   ///< lower bound of the smallest to upper bound of the largest, 95 %
+    std::vector<double> spectrum;  ///< ratios of all trials, rising, d - left_out: their range is too wide on average
+    Interval bounds;               ///< lower bound of the smallest to upper bound of the largest, 95 %
 };
 DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& sums,
                                      const DirectionLimits& limits = {});

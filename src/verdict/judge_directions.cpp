@@ -3,8 +3,6 @@
 #include "statistics/bias.hpp"
 #include "verdict/judgement.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -36,13 +34,6 @@ std::string name_of(const Direction& direction, const std::vector<BiasEvidence>&
         text += std::string(weight) + " " + component_name(entry.component, components);
     }
     return text + (direction.approximate || sizes.size() > most ? " …" : "");
-}
-
-/// Ratios of the generalised eigenvectors of sum S against sum C, rising; none where C is singular.
-std::vector<double> spectrum_of(const FoldSums& sums) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(sums.all_S(), sums.all_C(), Eigen::EigenvaluesOnly);
-    if (solver.info() != Eigen::Success) return {};
-    return {solver.eigenvalues().begin(), solver.eigenvalues().end()};
 }
 
 /// The loadings of a direction with the names of components.
@@ -99,6 +90,7 @@ void accept_state(const Evidence& evidence, const GroupMoments& state, const Fol
             true);
     const DirectionsAccepted accepted = accept_directions(state, sums, limits_of(evidence, judgement));
     judgement.directions.range = accepted.bounds;
+    judgement.directions.spectrum = accepted.spectrum;
     if (accepted.left_out > 0)
         judgement.not_shown("conditioning: P cannot be told from singular in " + std::to_string(accepted.left_out) +
                                 (accepted.left_out == 1 ? " direction" : " directions"),
@@ -133,9 +125,7 @@ void judge_directions(const Evidence& evidence, Judgement& judgement) {
         const FoldSums sums = fold_sums(moments);
         const double level = level_of_group(levels::direction, static_cast<int>(g), static_cast<int>(groups.size())) / 2;
         judge_group(evidence, *groups[g], moments, sums, level, judgement);
-        if (g > 0) continue;
-        judgement.directions.spectrum = spectrum_of(sums);
-        accept_state(evidence, moments, sums, judgement);
+        if (g == 0) accept_state(evidence, moments, sums, judgement);
     }
 }
 

@@ -104,8 +104,8 @@ TEST_CASE("verdict: the acceptance of all directions agrees with the oracle's") 
         if (state.trials() < direction_trials) CHECK(accepted.state == GroupDirections::State::few_trials);
         if (expected.is_null()) continue;
         REQUIRE(accepted.state == GroupDirections::State::known);
-        check_close(accepted.smallest, expected["smallest"]);
-        check_close(accepted.largest, expected["largest"]);
+        check_close(accepted.spectrum.front(), expected["smallest"]);
+        check_close(accepted.spectrum.back(), expected["largest"]);
         check_close(accepted.bounds, expected["bounds"]);
         CHECK((accepted.acceptance == Acceptance::shown) == expected["accepted"]);
         accepted_studies += accepted.acceptance == Acceptance::shown;
