@@ -51,7 +51,7 @@ struct GroupEvidence {
     std::vector<Coverage> coverage;
     std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
     Accuracy accuracy;
-    /// Bound on what rounding may have done to NEES, as a share of it [statistics/conditioning.hpp]; 0 where unknown.
+    /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where unknown.
     double rounding = 0;
 };
 
@@ -94,7 +94,7 @@ struct BiasEvidence {
     double largest_error = 0;                  ///< of the detailed trials, in the component's unit
 };
 
-/// The numbers of single trials from which directions are computed [src/statistics/trial_moments.hpp].
+/// The numbers of single trials from which directions are computed [src/statistics/moments/trial_moments.hpp].
 struct TrialMoments;
 
 /// Distance of the NEES of the whole state from chi-square(n), step by step.

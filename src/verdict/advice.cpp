@@ -1,6 +1,6 @@
 // How many trials would show that a filter is consistent.
 
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials.
 
-#include "statistics/conditioning.hpp"
+#include "statistics/moments/conditioning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/nan.hpp"
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 #include "verdict/evidence_parts.hpp"
 #include "verdict/judgement.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 #include "statistics/whiteness.hpp"
 
 #include "verdict/evidence_parts.hpp"

@@ -1,6 +1,6 @@
 // The verdict's bias: mean errors against a margin, over all steps.
 
-#include "statistics/bias.hpp"
+#include "statistics/moments/bias.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

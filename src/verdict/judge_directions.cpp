@@ -1,6 +1,6 @@
 // The verdict's directions: which combination of the state has errors that P does not allow for.
 
-#include "statistics/bias.hpp"
+#include "statistics/moments/bias.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

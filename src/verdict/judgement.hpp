@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "statistics/directions.hpp"
+#include "statistics/moments/directions.hpp"
 #include "statistics/mean_bounds.hpp"
 #include "verdict/consistency_parts.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/nan.hpp"
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 #include "verdict/judgement.hpp"
 
 namespace credence {

@@ -3,7 +3,7 @@
 #include "catch.hpp"
 
 #include "report/format.hpp"
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 #include <credence/histogram.hpp>
 #include "report/html/html.hpp"
 

@@ -1,6 +1,6 @@
 // The advised number of trials: what it does not depend on, and that it is where a finding is made.
 
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 
 #include "statistics/verdict_cases.hpp"
 

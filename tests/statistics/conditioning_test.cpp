@@ -1,6 +1,6 @@
 // The bound on what rounding may do to e'P^-1e.
 
-#include "statistics/conditioning.hpp"
+#include "statistics/moments/conditioning.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -1,6 +1,6 @@
 // Directions: what they do not depend on, what they find, and what they refuse.
 
-#include "statistics/directions.hpp"
+#include "statistics/moments/directions.hpp"
 
 #include "statistics/verdict_cases.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.hpp"
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 
 namespace credence::test {
 

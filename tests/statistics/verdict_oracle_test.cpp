@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include "statistics/advice.hpp"
-#include "statistics/bias.hpp"
-#include "statistics/directions.hpp"
+#include "statistics/moments/advice.hpp"
+#include "statistics/moments/bias.hpp"
+#include "statistics/moments/directions.hpp"
 #include "statistics/tails.hpp"
 #include "statistics/verdict_cases.hpp"
 #include "statistics/whiteness.hpp"

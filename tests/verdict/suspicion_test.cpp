@@ -4,7 +4,7 @@
 #include <random>
 
 #include "catch.hpp"
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 #include "verdict/judgement.hpp"
 
 using namespace credence;

@@ -1,7 +1,7 @@
 #pragma once
 // The datasets of a record for `judge`: their extents checked against each other, and read part by part.
 
-#include "files/record/layout.hpp"
+#include "files/record/layout/layout.hpp"
 #include "worlds/own/step.hpp"
 
 #include <cstdint>

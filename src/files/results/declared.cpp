@@ -5,7 +5,7 @@
 #include "scenario/state_series.hpp"
 #include <credence/text.hpp>
 
-#include "files/record/groups.hpp"
+#include "files/record/layout/groups.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -1,6 +1,6 @@
 // The page's tables by step: every value that the charts draw, and those behind the findings.
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 #include <credence/text.hpp>
 
 #include "report/format.hpp"

@@ -4,7 +4,7 @@
 
 #include "report/format.hpp"
 #include "report/html/page.hpp"
-#include "report/html/curves.hpp"
+#include "report/html/charts/curves.hpp"
 #include "report/sweep.hpp"
 #include "report/words.hpp"
 

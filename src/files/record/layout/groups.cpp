@@ -1,4 +1,4 @@
-#include "files/record/groups.hpp"
+#include "files/record/layout/groups.hpp"
 
 #include <credence/scenario.hpp>
 #include <credence/text.hpp>

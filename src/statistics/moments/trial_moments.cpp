@@ -1,4 +1,4 @@
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 
 #include <algorithm>
 #include <cmath>

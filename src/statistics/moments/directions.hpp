@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "statistics/mean_bounds.hpp"
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 
 namespace credence {
 

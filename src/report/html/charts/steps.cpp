@@ -1,7 +1,7 @@
 // The page's charts by step and by lag: a panel for each component group, each group of rows, each arm.
 
 #include "report/format.hpp"
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 
 #include "report/html/page.hpp"
 #include "report/words.hpp"

@@ -1,4 +1,4 @@
-#include "statistics/requirements.hpp"
+#include "statistics/moments/requirements.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

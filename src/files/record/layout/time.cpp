@@ -4,7 +4,7 @@
 #include <credence/text.hpp>
 #include <limits>
 
-#include "files/record/layout_parts.hpp"
+#include "files/record/layout/parts.hpp"
 
 namespace credence {
 

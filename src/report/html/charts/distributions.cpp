@@ -1,6 +1,6 @@
 // The page's histograms: columns of trials, and differences of pairs.
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 #include <credence/text.hpp>
 
 #include "report/format.hpp"

@@ -1,4 +1,4 @@
-#include "files/record/extents.hpp"
+#include "files/record/layout/extents.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Marks and axes as SVG.
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,11 +1,11 @@
 // Which datasets a record has, of either version.
 
-#include "files/record/layout.hpp"
+#include "files/record/layout/layout.hpp"
 
 #include <credence/text.hpp>
 
-#include "files/record/groups.hpp"
-#include "files/record/layout_parts.hpp"
+#include "files/record/layout/groups.hpp"
+#include "files/record/layout/parts.hpp"
 
 namespace credence {
 

@@ -1,4 +1,4 @@
-#include "statistics/conditioning.hpp"
+#include "statistics/moments/conditioning.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <limits>

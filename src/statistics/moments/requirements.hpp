@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 
 namespace credence {
 

@@ -1,11 +1,11 @@
-#include "statistics/advice.hpp"
+#include "statistics/moments/advice.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "statistics/directions.hpp"
-#include "statistics/requirements.hpp"
+#include "statistics/moments/directions.hpp"
+#include "statistics/moments/requirements.hpp"
 
 namespace credence {
 

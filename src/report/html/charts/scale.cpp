@@ -1,6 +1,6 @@
 // Scales, their ticks, and the selection of points where there are many.
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 
 #include "report/format.hpp"
 

@@ -1,11 +1,11 @@
-#include "statistics/directions.hpp"
+#include "statistics/moments/directions.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
-#include "statistics/conditioning.hpp"
+#include "statistics/moments/conditioning.hpp"
 
 namespace credence {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/record/groups.hpp"
-#include "files/record/layout_parts.hpp"
+#include "files/record/layout/groups.hpp"
+#include "files/record/layout/parts.hpp"
 
 namespace credence {
 

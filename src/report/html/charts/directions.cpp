@@ -3,7 +3,7 @@
 #include <credence/text.hpp>
 
 #include "report/format.hpp"
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 #include "report/html/page.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The page's charts over all steps: the verdict as a picture, coverage, whiteness; and the layout of charts on the
 // page.
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 #include <credence/text.hpp>
 
 #include "report/format.hpp"

@@ -1,7 +1,7 @@
 #include "report/format.hpp"
-#include "report/html/curves.hpp"
+#include "report/html/charts/curves.hpp"
 
-#include "report/html/chart.hpp"
+#include "report/html/charts/chart.hpp"
 
 #include "report/html/page.hpp"
 

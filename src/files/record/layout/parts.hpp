@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "files/record/extents.hpp"
-#include "files/record/layout.hpp"
+#include "files/record/layout/extents.hpp"
+#include "files/record/layout/layout.hpp"
 
 namespace credence {
 

@@ -1,4 +1,4 @@
-#include "statistics/bias.hpp"
+#include "statistics/moments/bias.hpp"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "statistics/mean_bounds.hpp"
-#include "statistics/trial_moments.hpp"
+#include "statistics/moments/trial_moments.hpp"
 
 namespace credence {
 
