@@ -12,7 +12,7 @@ for scenario in "$here"/*.ini; do
   build/worlds/gallery run "$scenario" --trials "${1:-4000}" --quiet --overwrite -o "results/$name.h5"
   build/worlds/gallery report "results/$name.h5" | awk -v RS= '/verdict +NEES/ { print $0 "\n" }'
   [ -n "${PICTURES:-}" ] || continue
-  "${PYTHON:-python3}" "$here/../../analysis/plot.py" "results/$name.h5" --credence "$prefix/bin/credence" -o build/pictures
+  PYTHONPATH=$here/../../python "${PYTHON:-python3}" -m credence.pictures "results/$name.h5" --kind nees -o build/pictures
   mkdir -p "$PICTURES"
-  cp "build/pictures/$name-blocks.png" "$PICTURES/$name.png"
+  cp "build/pictures/$name-nees.png" "$PICTURES/$name.png"
 done
