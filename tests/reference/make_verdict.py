@@ -14,55 +14,22 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "oracle"))
+tree = os.path.join(os.path.dirname(__file__), "..", "..")
+sys.path[:0] = [os.path.join(tree, "tests", "oracle"), os.path.join(tree, "experiments", "worlds", "compare")]
+from keyed_draws import normal, uniform  # noqa: E402
 from verdict_oracle import *  # noqa: E402,F403
 
 WALK, MEASUREMENT, DETECTION = 2, 4, 6  # sources of draws
 ADVICE_KEY = 0x616476696365
 
 
-def philox(counter, seed):
-    """Philox4x32-10: four words [4, ...] of a counter [4, ...]."""
-    w = [np.asarray(word, dtype=np.uint64) for word in np.broadcast_arrays(*counter)]
-    k0, k1 = seed & 0xFFFFFFFF, seed >> 32
-    low = np.uint64(0xFFFFFFFF)
-    for _ in range(10):
-        p0, p1 = w[0] * np.uint64(0xD2511F53), w[2] * np.uint64(0xCD9E8D57)
-        w = [(p1 >> np.uint64(32)) ^ w[1] ^ np.uint64(k0), p1 & low,
-             (p0 >> np.uint64(32)) ^ w[3] ^ np.uint64(k1), p0 & low]
-        k0, k1 = (k0 + 0x9E3779B9) & 0xFFFFFFFF, (k1 + 0xBB67AE85) & 0xFFFFFFFF
-    return w
-
-
-def fraction(high, low):
-    return (((high << np.uint64(32)) | low) >> np.uint64(12)).astype(float) / 2.0**52
-
-
-def words(seed, trial, source, pose, index):
-    trial = np.asarray(trial, dtype=np.uint64)
-    return philox([trial & np.uint64(0xFFFFFFFF), trial >> np.uint64(32), np.asarray(pose, dtype=np.uint64),
-                   np.uint64(source << 16) | np.asarray(index, dtype=np.uint64)], seed)
-
-
-def normal(*key):
-    """Pairs of standard normal draws."""
-    w = words(*key)
-    radius, angle = np.sqrt(-2 * np.log(1 - fraction(w[1], w[0]))), 2 * np.pi * fraction(w[3], w[2])
-    return radius * np.cos(angle), radius * np.sin(angle)
-
-
-def uniform(*key):
-    w = words(*key)
-    return fraction(w[1], w[0])
-
-
 def scales(case, index):
     """One factor a trial, of mean square 1."""
     if case["tails"] == "t5":
-        q = sum(normal(case["seed"], index, WALK, 0, j)[0] ** 2 for j in range(5))
+        q = sum(normal(case["seed"], index, WALK, 0, j)[..., 0] ** 2 for j in range(5))
         return np.sqrt(3 / q)
     if case["tails"] == "contaminated":
-        return np.where(uniform(case["seed"], index, DETECTION, 0, 0) < 0.05, 3, 1) / np.sqrt(1.4)
+        return np.where(uniform(case["seed"], index, DETECTION, 0) < 0.05, 3, 1) / np.sqrt(1.4)
     return np.ones(len(index))
 
 
@@ -70,7 +37,7 @@ def study(case):
     n, K, seed = case["n"], case["steps"], case["seed"]
     index = np.array([i for i in range(2 * case["trials"]) if not (case["gaps"] and i % 7 == 5)][: case["trials"]])
     i, k, j = index[:, None, None], np.arange(K)[:, None], np.arange(n)
-    w = normal(seed, i, MEASUREMENT, k, j)[0]
+    w = normal(seed, i, MEASUREMENT, k, j)[..., 0]
     for step in range(1, K):
         w[:, step] = case["rho"] * w[:, step - 1] + np.sqrt(1 - case["rho"] ** 2) * w[:, step]
     wobble = (0.8 + 0.4 * uniform(seed, index, DETECTION, 0, 1))[:, None] * (1 - np.arange(K) / (2 * K))
@@ -154,7 +121,7 @@ def advised(x, case, limits):
         return None
     weights = np.empty((ADVICE_DRAWS, x.trials))
     for b in range(0, ADVICE_DRAWS, 2):
-        weights[b], weights[b + 1] = normal(case["seed"] ^ ADVICE_KEY, x.index, 0, b // 2, 0)
+        weights[b : b + 2] = normal(case["seed"] ^ ADVICE_KEY, x.index, 0, b // 2).T
     low, number, high, (kind, where, side) = advice(x, limits, weights)
     return {"range": [low, high], "number": number, "kind": kind, "where": where, "side": side}
 

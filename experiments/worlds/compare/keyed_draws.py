@@ -4,10 +4,10 @@ import numpy as np
 
 
 def words(seed, trial, source, pose, index=0):
-    """Four 32-bit words of each key, as 64-bit numbers."""
+    """Four 32-bit words of each key, as 64-bit numbers; trial, pose and index may be arrays."""
     low = np.uint64(0xFFFFFFFF)
-    trial, pose = np.broadcast_arrays(np.asarray(trial, np.uint64), np.asarray(pose, np.uint64))
-    a, b, c, d = trial & low, trial >> np.uint64(32), pose, np.full_like(pose, source << 16 | index)
+    trial, pose, index = np.broadcast_arrays(*(np.asarray(number, np.uint64) for number in (trial, pose, index)))
+    a, b, c, d = trial & low, trial >> np.uint64(32), pose, np.uint64(source << 16) | index
     first, second = seed & 0xFFFFFFFF, seed >> 32
     for _ in range(10):
         p, q = a * np.uint64(0xD2511F53), c * np.uint64(0xCD9E8D57)
