@@ -1,6 +1,7 @@
 // Planning several steps ahead: as the oracle's brute force, and as a brute force of plain steps.
 
 #include "catch.hpp"
+#include "choice_comparison.hpp"
 #include "support.hpp"
 
 #include "worlds/deformable/deformable.hpp"
@@ -46,65 +47,21 @@ double plain_cost(const ProblemView& view, const Layout& layout, const Belief& b
     return cost + least;
 }
 
-/// Compares, at every step of a trial that plans ahead, what was chosen with what brute force chooses.
-class Comparison {
-public:
-    int choices = 0, different = 0, ties = 0;
-
-    explicit Comparison(const ProblemView& view) : view_(view) {}
-
-    template <class... Anything>
-    void started(const Anything&...) {}
-    template <class... Anything>
-    void updated(const Anything&...) {}
-
-    template <class Layout, class Belief>
-    void planned(int k, const Layout& layout, const Belief& belief) {
-        const int steps = view_.steps_ahead(Controller::horizon, k);
-        Choice<double> choice;
-        int within = 0;  // candidates within the tie rule's measure of the least cost so far
-        for (int i = 0; i < view_.control.candidate_count; ++i) {
-            const double cost = plain_cost(view_, layout, belief, i, k, steps);
-            within = cost < choice.best * (1 - 1e-12) ? 1 : within + (cost <= choice.best * (1 + 1e-12));
-            choice.offer(command_from<double>(view_.control.candidates[i]), cost);
-        }
-        plain_ = choice.command;
-        ties += within > 1;
-        ++choices;
-    }
-
-    template <class Layout, class Truth, class... More>
-    void predicted(int, const Layout&, const Truth&, const Command<double>& command, const More&...) {
-        different += command.turn != plain_.turn || command.move.x != plain_.move.x || command.move.y != plain_.move.y;
-    }
-
-private:
-    const ProblemView& view_;
-    Command<double> plain_;
-};
-
-template <class Layout>
-void run_compared(const ProblemView& view, int trials, Comparison& comparison) {
-    const auto work = std::make_unique<Workspace<Layout, double>>();
-    std::vector<double> columns(column_count);
-    std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
-    for (int trial = 0; trial < trials; ++trial) {
-        const KeyedDraws<double> draws(9, static_cast<std::uint64_t>(trial), view.world.truncate);
-        run_trial(view, Controller::horizon, draws, comparison, *work, columns.data(), figures.data());
-    }
-}
-
-Comparison compared(const Settings& settings, int trials) {
+/// Compares what trials that plan ahead choose with what brute force chooses.
+ChoiceTally compared(const Settings& settings, int trials) {
     const Problem problem(planning(settings));
     const ProblemView& view = problem.view();
-    Comparison comparison(view);
-    if (view.process == Process::heading)
-        view.features == 3 ? run_compared<Layout<Process::heading, 3>>(view, trials, comparison)
-                           : run_compared<Layout<Process::heading, any_count>>(view, trials, comparison);
-    else
-        view.features == 3 ? run_compared<Layout<Process::translation, 3>>(view, trials, comparison)
-                           : run_compared<Layout<Process::translation, any_count>>(view, trials, comparison);
-    return Comparison(comparison);
+    const auto plain = [&](int k, const auto& layout, const auto& belief, Ties& ties) {
+        const int steps = view.steps_ahead(Controller::horizon, k);
+        Choice<double> choice;
+        for (int i = 0; i < view.control.candidate_count; ++i) {
+            const double cost = plain_cost(view, layout, belief, i, k, steps);
+            ties.offer(cost);
+            choice.offer(command_from<double>(view.control.candidates[i]), cost);
+        }
+        return choice.command;
+    };
+    return compare_choices(view, Controller::horizon, 9, trials, plain);
 }
 
 std::vector<std::vector<double>> all_figures(const Run& run) {
@@ -167,23 +124,23 @@ TEST_CASE("horizon: every fast form of the last step chooses as brute force of p
         with(ranged, {{"planner.horizon", "3"}, {"filter.measurement", "0.3"}, {"scenario.poses", "5"}})};
     for (const Settings& kind : kinds) {
         CAPTURE(described(kind));
-        const Comparison comparison = compared(kind, 2);
-        CHECK(comparison.choices > 0);
-        CHECK(comparison.different == 0);
+        const ChoiceTally tally = compared(kind, 2);
+        CHECK(tally.choices > 0);
+        CHECK(tally.different == 0);
     }
 }
 
 TEST_CASE("horizon: ties are decided as in the plain rule, the later candidate of equals") {
     // Standing still is one move on six rays, and the last step's turn has no cost; in the translation model with
     // constant noise all sequences that see the same tie.
-    const Comparison rays = compared({{"features.path", "static"}, {"sensor.noise", "ranged"}, {"features.step", "1"},
+    const ChoiceTally rays = compared({{"features.path", "static"}, {"sensor.noise", "ranged"}, {"features.step", "1"},
                                       {"planner.speeds", "2"}, {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
                                       {"scenario.poses", "6"}}, 6);
-    const Comparison sets = compared({{"model.process", "translation"}, {"features.path", "circle"},
+    const ChoiceTally sets = compared({{"model.process", "translation"}, {"features.path", "circle"},
                                       {"planner.speeds", "2"}, {"scenario.poses", "6"}}, 20);
-    for (const Comparison& comparison : {rays, sets}) {
-        CHECK(comparison.ties > comparison.choices / 20);
-        CHECK(comparison.different == 0);
+    for (const ChoiceTally& tally : {rays, sets}) {
+        CHECK(tally.ties > tally.choices / 20);
+        CHECK(tally.different == 0);
     }
 }
 

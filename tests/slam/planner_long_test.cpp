@@ -1,9 +1,8 @@
 // The planner's fast forms choose as the plain form does, and the plain form as the oracle (controller_test).
 
 #include "catch.hpp"
+#include "choice_comparison.hpp"
 #include "filter_samples.hpp"
-
-#include "slam/trial/trial.hpp"
 
 #include <memory>
 
@@ -12,74 +11,19 @@ using namespace credence::test;
 
 namespace {
 
-/// The choices of one planner, step by step, beside the direct form.
-struct Tally {
-    std::int64_t candidates = 0, choices = 0, different = 0, ties = 0;
-};
-
-/// Compares, at every step of a greedy trial, the choice with that of the direct form.
-class Comparison {
-public:
-    Comparison(const ProblemView& view, Tally& tally) : view_(view), tally_(tally) {}
-
-    template <class... Anything>
-    void started(const Anything&...) {}
-    template <class... Anything>
-    void updated(const Anything&...) {}
-
-    template <class Layout, class Belief>
-    void planned(int k, const Layout& layout, const Belief& belief) {
-        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
-        double best = infinity;
-        int within = 0;  // candidates within the tie rule's measure of the least cost so far
-        plain_ = plan_plainly(belief, view_.control, view_.filter, view_.sensor, layout, k, *base, *next,
-                              [&](int, double cost) {
-                                  within = cost < best * (1 - 1e-12) ? 1 : within + (cost <= best * (1 + 1e-12));
-                                  best = std::min(best, cost);
-                              }).command;
-        tally_.candidates += view_.control.candidate_count;
-        tally_.ties += within > 1;
-        ++tally_.choices;
-    }
-
-    template <class Layout, class Truth, class... More>
-    void predicted(int, const Layout&, const Truth&, const Command<double>& command, const More&...) {
-        tally_.different +=
-            command.turn != plain_.turn || command.move.x != plain_.move.x || command.move.y != plain_.move.y;
-    }
-
-private:
-    const ProblemView& view_;
-    Tally& tally_;
-    Command<double> plain_;
-};
-
-template <class Layout>
-void run_trials(const Problem& problem, int trials, Tally& tally) {
-    const ProblemView& view = problem.view();
-    const auto work = std::make_unique<Workspace<Layout, double>>();
-    std::vector<double> columns(column_count);
-    std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
-    for (int trial = 0; trial < trials; ++trial) {
-        Comparison comparison(view, tally);
-        const KeyedDraws<double> draws(7, static_cast<std::uint64_t>(trial), view.world.truncate);
-        run_trial(view, Controller::greedy, draws, comparison, *work, columns.data(), figures.data());
-    }
-}
-
-/// Runs trials until so many candidates were compared.
-Tally compared(const Settings& settings, std::int64_t candidates) {
+/// Compares the choices of greedy trials with those of the direct form, until so many candidates were compared.
+ChoiceTally compared(const Settings& settings, std::int64_t candidates) {
     const Problem problem(scenario_with(settings));
-    Tally tally;
-    const std::int64_t per_trial = std::int64_t{problem.view().control.candidate_count} * (problem.view().poses - 1);
+    const ProblemView& view = problem.view();
+    const std::int64_t per_trial = std::int64_t{view.control.candidate_count} * (view.poses - 1);
     const int trials = static_cast<int>(candidates / per_trial) + 1;
-    const bool three = problem.view().features == 3;
-    if (problem.view().process == Process::heading)
-        three ? run_trials<Layout<Process::heading, 3>>(problem, trials, tally)
-              : run_trials<Layout<Process::heading, any_count>>(problem, trials, tally);
-    else
-        three ? run_trials<Layout<Process::translation, 3>>(problem, trials, tally)
-              : run_trials<Layout<Process::translation, any_count>>(problem, trials, tally);
+    const auto plain = [&]<class Belief>(int k, const auto& layout, const Belief& belief, Ties& ties) {
+        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
+        return plan_plainly(belief, view.control, view.filter, view.sensor, layout, k, *base, *next,
+                            [&](int, double cost) { ties.offer(cost); }).command;
+    };
+    const ChoiceTally tally = compare_choices(view, Controller::greedy, 7, trials, plain);
+    CHECK(tally.choices * view.control.candidate_count >= candidates);
     return tally;
 }
 
@@ -112,9 +56,7 @@ std::vector<Settings> kinds() {
 void check_choices(std::int64_t candidates) {
     for (const Settings& kind : kinds()) {
         CAPTURE(described(kind));
-        const Tally tally = compared(kind, candidates);
-        CHECK(tally.different == 0);
-        CHECK(tally.candidates >= candidates);
+        CHECK(compared(kind, candidates).different == 0);
     }
 }
 
@@ -132,7 +74,7 @@ TEST_CASE("planner: ties are decided alike") {
                                           {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"}},
                                  {{"model.process", "translation"}, {"features.path", "circle"}},
                                  {{"model.process", "translation"}, {"features.path", "circle"}, {"planner.speeds", "8"}}}) {
-        const Tally tally = compared(kind, 50000);
+        const ChoiceTally tally = compared(kind, 50000);
         CAPTURE(described(kind));
         CHECK(tally.ties > tally.choices / 20);
         CHECK(tally.different == 0);
