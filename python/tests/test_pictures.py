@@ -178,11 +178,13 @@ def test_a_trial_is_drawn():
     drawn(studies.trajectory(), "path", ellipse="1-sigma", width=style.COLUMN)
 
 
-def test_a_trial_moves(tmp_path):
+def test_a_trial_moves(tmp_path, monkeypatch):
     from PIL import Image
 
-    path = credence.animate(studies.two_scenarios(), path=tmp_path / "trial.gif", trial=17, arm="greedy.ekf",
-                            scenario="ekf-circle-ranged", credence=studies.CREDENCE)
+    study, trajectory = studies.two_scenarios(), studies.trajectory()
+    monkeypatch.chdir(tmp_path)
+    path = credence.animate(study, trial=17, arm="greedy.ekf", scenario="ekf-circle-ranged", credence=studies.CREDENCE)
+    assert path.name == "ekf-circle-ranged-greedy.ekf-17.gif"
     with Image.open(path) as gif:
         frames, shown = [], []
         for frame in range(gif.n_frames):
@@ -194,10 +196,11 @@ def test_a_trial_moves(tmp_path):
     assert shown[-1] >= 1000
     for before, after in itertools.pairwise(frames):
         assert np.abs(before - after).sum() > 0
-    again = credence.animate(studies.trajectory(), path=tmp_path / "again.gif")
+    assert credence.animate(trajectory).name == "ekf-circle-ranged-greedy.ekf.gif"
+    again = credence.animate(trajectory, path=tmp_path / "again.gif")
     assert again.read_bytes() == path.read_bytes()
     with pytest.raises(ValueError, match="must end in"):
-        credence.animate(studies.trajectory(), path=tmp_path / "trial.png")
+        credence.animate(trajectory, path=tmp_path / "trial.png")
 
 
 def test_a_film_needs_ffmpeg(tmp_path, monkeypatch):

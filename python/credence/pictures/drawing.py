@@ -122,7 +122,7 @@ def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[...,
 def animate(
     what: Study | Trajectory | str | os.PathLike[str],
     *,
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None = None,
     trial: int = 0,
     scenario: str | None = None,
     arm: str | None = None,
@@ -136,8 +136,9 @@ def animate(
     ----------
     what : Study, Trajectory or path
         A study or results file, of which the trial is run again; or a trajectory.
-    path : path
-        The file to write: .gif, or .mp4 where ffmpeg is installed.
+    path : path, optional
+        The file to write: .gif, or .mp4 where ffmpeg is installed; by default SCENARIO-ARM-TRIAL.gif in the current
+        folder, SCENARIO-ARM.gif of a trajectory.
     trial : int
         The trial of a study, from 0.
     scenario, arm : str, optional
@@ -157,12 +158,14 @@ def animate(
     if isinstance(what, str | os.PathLike):
         what = _first(what)
     if isinstance(what, Trajectory):
-        animation.animate(what, os.fspath(path), ellipse=ellipse, frames_per_second=frames_per_second)
-        return pathlib.Path(path)
+        path = pathlib.Path(path or f"{what.scenario.name}-{what.name}.gif")
+        animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second)
+        return path
     scenario = scenario or next(iter(what))
     arm = arm or list(what.scenarios[scenario])[-1]
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         file = os.path.join(folder, "trial.h5")
         program.replay(what.path, scenario, arm, trial, file, credence)
         (trajectory_of_trial,) = open_trajectories(file)
-        return animate(trajectory_of_trial, path=path, ellipse=ellipse, frames_per_second=frames_per_second)
+        return animate(trajectory_of_trial, path=path or f"{scenario}-{arm}-{trial}.gif", ellipse=ellipse,
+                       frames_per_second=frames_per_second)
