@@ -8,6 +8,7 @@ std::string squared_unit(const std::vector<Component>& components, const Compone
     std::vector<std::string> units;
     for (int i = 0; i < group.count; ++i) {
         const std::string& unit = components[static_cast<std::size_t>(group.component(i))].unit;
+        if (unit.empty()) return "unit of error squared";
         if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
     }
     std::string text;

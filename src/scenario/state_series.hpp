@@ -26,7 +26,8 @@ struct StateSeries {
     std::size_t nis = 0, rows = 0, squared_error = 0, variance = 0, standardised_error = 0;  ///< where each kind begins
 };
 
-/// Unit of a squared error of some components, and of a trace of their covariance: the sum of their units' squares.
+/// Unit of a squared error of some components, and of a trace of their covariance: the sum of their units' squares;
+/// `unit of error squared` where one has no unit.
 std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& group);
 
 // The series of every world, by kind. `unit_of` is the unit of a group's squared error.

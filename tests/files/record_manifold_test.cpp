@@ -140,6 +140,42 @@ TEST_CASE("record 2: angles are wrapped, and products put their errors one after
     }
 }
 
+TEST_CASE("record 2: components have the names of their manifold where the record has none for them") {
+    using Names = std::vector<std::string>;
+    // Names of a record of two steps with truth = estimate = `state` and P = I, and what `more` adds.
+    const auto names = [](const std::string& manifold, const std::vector<double>& state, int n,
+                          const Names& more = {}) {
+        const Record record = read_written([&](const Handle& root) {
+            std::vector<double> states = state, P(static_cast<std::size_t>(2 * n * n), 0);
+            states.insert(states.end(), state.begin(), state.end());
+            for (int i = 0; i < 2 * n; ++i) P[static_cast<std::size_t>(i * n + i % n)] = 1;
+            for (const char* name : {"truth", "estimate"}) write_values(root, name, {1, 2, state.size()}, states);
+            write_values(root, "covariance", extents_of(DrawnRecord(1, 2, n), {n, n}), P);
+            hdf5::write_text(root, "manifold", manifold);
+            hdf5::write_text(root, "chart", "local");
+            hdf5::write_text(root, "quaternion", "wxyz");
+            for (std::size_t i = 0; i < more.size(); i += 2) hdf5::write_text(root, more[i], more[i + 1]);
+        });
+        Names found{record.results.all_series[series_named(record, "trace_P_step")].unit};
+        for (const Series& series : record.results.all_series)
+            if (series.role == SeriesRole::standardised_error) found.push_back(series.part);
+        return found;
+    };
+    const std::string unknown = "unit of error squared";
+    CHECK(names("SO2", {0}, 1) == Names{"rad^2", "theta"});
+    CHECK(names("SE2", {1, 2, 3}, 3) == Names{unknown, "x", "y", "theta"});
+    CHECK(names("SO3", {1, 0, 0, 0}, 3) == Names{"rad^2", "rotation_x", "rotation_y", "rotation_z"});
+    CHECK(names("SE3 x R2", {1, 2, 3, 1, 0, 0, 0, 4, 5}, 8) ==
+          Names{unknown, "translation_x", "translation_y", "translation_z", "rotation_x", "rotation_y", "rotation_z",
+                "x6", "x7"});
+    CHECK(names("SE2 x SO2", {1, 2, 3, 0}, 4) == Names{unknown, "x", "y", "theta_1", "theta_2"});
+    CHECK(names("R2", {1, 2}, 2) == Names{unknown, "x0", "x1"});
+    CHECK(names("SE2", {1, 2, 3}, 3, {"component_units", "m, m, rad"}) == Names{"m^2 + rad^2", "x", "y", "theta"});
+    CHECK(names("SE2", {1, 2, 3}, 3, {"component_names", "a, b, c"}) == Names{unknown, "a", "b", "c"});
+    CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "theta 2"}) == Names{unknown, "x", "y", "theta"});
+    CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "x 0 1"}) == Names{unknown, "x0", "x1", "x2"});  // the group keeps its name
+}
+
 TEST_CASE("record 2: a manifold, chart or quaternion that cannot be is refused by name") {
     const Poses poses(6, 0.3, true, true);
     const auto with = [&](const std::string& manifold, const std::string& quaternion) {

@@ -101,6 +101,42 @@ bool Manifold::has_charts() const {
                                [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
 }
 
+/// `first` is the index of its first component in the whole error.
+std::vector<Component> Manifold::factor_components(const Factor& factor, std::size_t first) {
+    const std::vector<Component> rotation{{"rotation_x", "rad"}, {"rotation_y", "rad"}, {"rotation_z", "rad"}};
+    std::vector<Component> components;
+    switch (factor.kind) {
+        case Kind::SO2: return {{"theta", "rad"}};
+        case Kind::SE2: return {{"x", ""}, {"y", ""}, {"theta", "rad"}};
+        case Kind::SO3: return rotation;
+        case Kind::SE3:
+            components = {{"translation_x", ""}, {"translation_y", ""}, {"translation_z", ""}};
+            components.insert(components.end(), rotation.begin(), rotation.end());
+            return components;
+        case Kind::R:
+            for (std::size_t i = 0; i < static_cast<std::size_t>(factor.dimension); ++i)
+                components.push_back({"x" + std::to_string(first + i), ""});
+            return components;
+    }
+    return components;
+}
+
+std::vector<Component> Manifold::components() const {
+    if (std::ranges::all_of(factors_, [](const Factor& factor) { return factor.kind == Kind::R; })) return {};
+    std::vector<Component> components;
+    std::vector<std::size_t> factor_of;  // of each component
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+        const std::vector<Component> more = factor_components(factors_[f], components.size());
+        components.insert(components.end(), more.begin(), more.end());
+        factor_of.resize(components.size(), f);
+    }
+    const std::vector<Component> plain = components;
+    for (std::size_t j = 0; j < components.size(); ++j)
+        if (std::ranges::count(plain, plain[j].name, &Component::name) > 1)
+            components[j].name += "_" + std::to_string(factor_of[j] + 1);
+    return components;
+}
+
 void Manifold::error(const double* truth, const double* estimate, double* error) const {
     for (const Factor& factor : factors_) {
         double sum = 0;  // NaN or infinite where a coordinate is

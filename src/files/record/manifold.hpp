@@ -1,6 +1,8 @@
 #pragma once
 // States on a manifold: the error in the tangent space, from a truth and an estimate [Sola, Deray, Atchuthan 2018].
 
+#include <credence/columns.hpp>
+
 #include "files/record/source.hpp"
 
 #include <string>
@@ -24,6 +26,10 @@ public:
     ErrorChart chart() const { return chart_; }
     /// Whether the error differs between the charts: angles and numbers alone have but one.
     bool has_charts() const;
+
+    /// Names and units of the error's components, such as x, y, theta (rad) of SE2; x3 for a number (R) that is the
+    /// fourth. A name that several factors have ends in the number of its factor. Empty where all are numbers.
+    std::vector<Component> components() const;
     void take_other_chart() { chart_ = chart_ == ErrorChart::local ? ErrorChart::global : ErrorChart::local; }
 
     /// Writes the error [n]. In a factor of the product where a coordinate is not finite, all of it is so: NaN, or
@@ -39,6 +45,7 @@ private:
         Kind kind;
         int coordinates, dimension;
     };
+    static std::vector<Component> factor_components(const Factor& factor, std::size_t first);
     static Factor parse_factor(const std::string& text, const std::string& place);
     void factor_error(const Factor& factor, const double* truth, const double* estimate, double* error) const;
 

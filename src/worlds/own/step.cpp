@@ -69,12 +69,7 @@ StateSeries record_series(const RecordShape& shape) {
     for (const RowGroup& rows : shape.row_groups) row_groups.push_back(rows.name);
     const Innovations innovations = shape.has_innovations() ? Innovations::given : Innovations::none;
     if (!shape.has_errors) return {shape.groups, innovations, row_groups};
-    StateSeries all_series(components, shape.groups, innovations, row_groups);
-    const bool has_units = std::any_of(components.begin(), components.end(), [](const Component& c) { return !c.unit.empty(); });
-    for (Series& series : all_series.list)
-        if (!has_units && (series.role == SeriesRole::squared_error || series.role == SeriesRole::variance))
-            series.unit = "unit of error squared";
-    return all_series;
+    return {components, shape.groups, innovations, row_groups};
 }
 
 bool figures_add_up(const double* all_series, std::size_t count) {

@@ -181,20 +181,24 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
     return parse_groups(groups || blocks ? source.text(groups ? "groups" : "blocks") : "", n, place);
 }
 
-std::vector<Component> read_components(const RecordSource& source, int n) {
+std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults) {
     const std::vector<std::string> names = read_list(source, "component_names", n), units = read_list(source, "component_units", n);
-    std::vector<Component> components;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(n) && (!names.empty() || !units.empty()); ++j) {
-        Component component{names.empty() ? "x" + std::to_string(j) : names[j], units.empty() ? "" : units[j]};
+    if (names.empty() && units.empty()) return defaults;
+    std::vector<Component> components = names.empty() ? defaults : std::vector<Component>();
+    components.resize(static_cast<std::size_t>(n));
+    for (std::size_t j = 0; j < components.size(); ++j) {
+        Component& component = components[j];
+        if (!names.empty()) component.name = names[j];
+        else if (defaults.empty()) component.name = "x" + std::to_string(j);
+        if (!units.empty()) component.unit = units[j];
         if (!names.empty()) require_group_name(component.name, "component", record_attribute_place("component_names"));
         if (!units.empty() && (component.unit.empty() || component.unit.find_first_of(" \t\r\n") != std::string::npos))
             throw Error(record_attribute_place("component_units"), quoted(component.unit) + " is no unit",
                         "Write one word for each component, such as m/s, and 1 where it has no unit");
-        for (const Component& other : components)
-            if (other.name == component.name)
+        for (std::size_t i = 0; i < j; ++i)
+            if (components[i].name == component.name)
                 throw Error(record_attribute_place("component_names"), "names two components " + quoted(component.name),
                             "Give each component a name of its own");
-        components.push_back(std::move(component));
     }
     return components;
 }

@@ -24,9 +24,10 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);
 /// Those of version 1, of the attribute `blocks`.
 std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n);
 
-/// Names and units of the n components by the attributes `component_names` and `component_units`; empty without both. A
-/// component without a name is x0, x1 ..., one without a unit has an empty one.
-std::vector<Component> read_components(const RecordSource& source, int n);
+/// Names and units of the n components by the attributes `component_names` and `component_units`; without both,
+/// `defaults` (n, or empty). Without names they are those of `defaults`, or x0, x1 ...; of names without units, the units
+/// are empty.
+std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults);
 
 /// Throws where a name cannot be that of a group of components (`what`: `group`).
 void require_group_name(const std::string& name, const std::string& what, const std::string& place);

@@ -36,6 +36,17 @@ std::size_t find_group(const RecordShape& shape, const std::string& name) {
     return static_cast<std::size_t>(found - shape.groups.begin());
 }
 
+/// Those of the manifold, unless a group of other components has such a name.
+std::vector<Component> default_components(const RecordLayout& layout) {
+    if (!layout.data.manifold) return {};
+    const std::vector<Component> components = layout.data.manifold->components();
+    for (const ComponentGroup& group : layout.shape.groups)
+        for (int j = 0; j < static_cast<int>(components.size()); ++j)
+            if (components[static_cast<std::size_t>(j)].name == group.name && (group.count > 1 || group.component(0) != j))
+                return {};
+    return components;
+}
+
 /// Of variances each component is judged by itself, whether the record names it as a group or not.
 void add_single_groups(RecordShape& shape) {
     std::vector<char> alone(static_cast<std::size_t>(shape.n), 0);
@@ -125,8 +136,8 @@ PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data) {
 void open_states(const RecordSource& source, const PlacedExtents& error, RecordLayout& layout) {
     RecordShape& shape = layout.shape;
     set_state(error, layout);
-    shape.components = read_components(source, shape.n);
     shape.groups = read_groups(source, shape.n);
+    shape.components = read_components(source, shape.n, default_components(layout));
     open_covariance(source, error, layout);
     if (shape.has_variances) add_single_groups(shape);
     set_sources(!layout.data.covariance ? GroupSource::nothing
