@@ -47,6 +47,9 @@ inline void replace(const Handle& root, const std::string& path, const hdf5::Ext
     hdf5::write_dataset(root, path, hdf5::type_of<T>(), values.data(), extents, {"", ""});
 }
 
+/// So that what reads behind the checksum is reached.
+inline void forget_checksum(const Handle& dataset) { H5Adelete(dataset.id(), hdf5::checksum_name); }
+
 /// Multiplies the numbers of a dataset; by a power of two the parts of a total stay parts of one.
 inline void scale(const Handle& root, const std::string& path, double factor) {
     const Handle dataset = open(root, path);
@@ -55,6 +58,7 @@ inline void scale(const Handle& root, const std::string& path, double factor) {
     REQUIRE(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
     for (double& value : values) value *= factor;
     REQUIRE(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+    forget_checksum(dataset);
 }
 
 /// A copy of a file after `damage`.

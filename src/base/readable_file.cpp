@@ -22,6 +22,7 @@ std::string remedy_for_reading(int error) {
         case EACCES:
         case EPERM: return "Check its permissions";
         case EIO: return "Check the disk";
+        case ENOMEM: return "Free some memory; where there is enough, the file is damaged";
         default: return "Check the path";
     }
 }

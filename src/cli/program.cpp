@@ -123,12 +123,9 @@ void cli::check_process(const std::vector<std::string>& words) {
     if (names_command(words) && words.front() != "help") best_target(), check_stack();
 }
 
-int program(int argc, char** argv) {
-    cli::hold_standard_streams();
-    // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
-    // from being closed. Files that credence writes are closed, and checked, long before.
-    H5dont_atexit();
-    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+namespace {
+
+int obey_or_complain(const std::vector<std::string>& words) {
     const std::string name = names_command(words) ? words.front() : "";
     const std::string prefix = "credence" + (name.empty() ? "" : " " + name) + ": ";
     try {
@@ -148,6 +145,21 @@ int program(int argc, char** argv) {
                         1);
     } catch (const std::exception& error) {
         return complain(prefix + error.what(), 1);
+    }
+}
+
+}  // namespace
+
+int program(int argc, char** argv) {
+    cli::hold_standard_streams();
+    // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
+    // from being closed. Files that credence writes are closed, and checked, long before.
+    H5dont_atexit();
+    try {
+        return obey_or_complain({argv + std::min(argc, 1), argv + argc});
+    } catch (const std::bad_alloc&) {  // of the command line or of a message
+        std::cerr << "credence: out of memory.\n";
+        return 1;
     }
 }
 

@@ -1,10 +1,10 @@
-# Sourced by the scripts here, with the program as their first argument: the library that crashes it, a folder to work
+# Sourced by the scripts here, with the program as their first argument: the library that crashes it (shim/crash.c), a folder to work
 # in, a scenario whose file takes few writes, and what must be true of every file that a run leaves.
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cc -O1 -Wall -Wextra -shared -fPIC -o "$work/crash.so" "$here/crash_at_write.c" -ldl
+cc -O1 -Wall -Wextra -Wno-missing-field-initializers -shared -fPIC -o "$work/shim.so" "$here"/shim/*.c -ldl
 mkdir "$work/at"
 cd "$work/at"
 
@@ -39,7 +39,7 @@ crashing() {
   local environment=$1
   shift
   status=0
-  { env $environment LD_PRELOAD="$work/crash.so" "$credence" "$@" >../said 2>&1; } 2>/dev/null || status=$?
+  { env $environment LD_PRELOAD="$work/shim.so" "$credence" "$@" >../said 2>&1; } 2>/dev/null || status=$?
 }
 
 # Empties the folder, but for the file that the run starts with.

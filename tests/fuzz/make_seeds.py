@@ -7,7 +7,7 @@ import sys
 import h5py
 import numpy as np
 
-FOR_OTHERS = ("long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
+FOR_OTHERS = ("crc32", "long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
               "flag_meanings", "series", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
 
 

@@ -2,6 +2,8 @@
 
 #include "files/hdf5/read.hpp"
 
+#include "files/hdf5/write.hpp"
+
 #include <algorithm>
 
 namespace credence::hdf5 {
@@ -72,6 +74,11 @@ std::vector<double> Dataset::read_real() const {
     std::vector<double> values(count_);
     read_into(H5T_NATIVE_DOUBLE, values.data());
     return values;
+}
+
+void Dataset::check_sum(std::uint32_t crc) const {
+    if (has_attribute(dataset_, checksum_name) && read_number<std::int64_t>(dataset_, checksum_name) != crc)
+        throw Error(place_, "is damaged: its values do not have their checksum");
 }
 
 void Dataset::read_into(hid_t memory_type, void* values) const {

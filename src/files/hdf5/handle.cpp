@@ -5,6 +5,7 @@
 #include "base/readable_file.hpp"
 #include "files/system/system_file.hpp"
 
+#include <cerrno>
 #include <cstdlib>
 #include <exception>
 
@@ -22,11 +23,15 @@ QuietErrors::~QuietErrors() {
 
 namespace {
 
-/// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`.
+/// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`; where
+/// it gets no memory, by the entry's number.
 herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
+    int& error = *static_cast<int*>(to);
     if (const std::size_t at = said.rfind(number); at != std::string::npos)
-        *static_cast<int*>(to) = std::atoi(said.c_str() + at + number.size());
+        error = std::atoi(said.c_str() + at + number.size());
+    else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE))
+        error = ENOMEM;
     return 0;
 }
 
@@ -36,6 +41,7 @@ Error failure(const std::string& place, const std::string& problem) {
     int error = 0;
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_system_error, &error);
     if (error == 0) return Error(place, problem);
+    if (error == ENOMEM) return Error(place, "HDF5 got no memory", remedy_for_reading(error));
     return Error(place, "cannot be read (" + words_for(error) + ")", remedy_for_reading(error));
 }
 

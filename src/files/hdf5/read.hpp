@@ -5,6 +5,9 @@
 #include <credence/error.hpp>
 
 #include "files/hdf5/handle.hpp"
+#include "files/system/checksum.hpp"
+
+#include <algorithm>
 
 namespace credence::hdf5 {
 
@@ -45,7 +48,7 @@ T read_number(const Handle& object, const std::string& name) {
     return value;
 }
 
-/// A dataset whose storage is consistent with its extents.
+/// A dataset whose storage is consistent with its extents. Where it has a checksum, its values must have it too.
 class Dataset {
 public:
     Dataset(const Handle& group, const std::string& name);
@@ -68,6 +71,7 @@ public:
         require<T>();
         std::vector<T> values(count_);
         read_into(type_of<T>().memory, values.data());
+        check_sum(checksum(values.data(), values.size() * sizeof(T)));
         return values;
     }
     /// Of a one-dimensional dataset: values first ... first + count - 1, which must exist; the type as for read().
@@ -77,6 +81,18 @@ public:
         std::vector<T> values(count);
         read_some_into(type_of<T>().memory, first, count, values.data());
         return values;
+    }
+    /// Of a one-dimensional dataset: reads all of it, a part at a time, and throws where the values do not have the
+    /// checksum that was written with them.
+    template <class T>
+    void check_all() const {
+        constexpr hsize_t at_once = hsize_t{1} << 17;
+        std::uint32_t crc = 0;
+        for (hsize_t first = 0; first < count_; first += at_once) {
+            const std::vector<T> some = read_some<T>(first, std::min(at_once, count_ - first));
+            crc = checksum(some.data(), some.size() * sizeof(T), crc);
+        }
+        check_sum(crc);
     }
     /// Throws unless the type in the file is exactly T's.
     template <class T>
@@ -91,6 +107,7 @@ private:
     void check_storage(H5D_layout_t layout) const;
     bool has_type(hid_t type) const;
     void require_type(hid_t type) const;
+    void check_sum(std::uint32_t crc) const;
     void read_into(hid_t memory_type, void* values) const;
     void read_some_into(hid_t memory_type, hsize_t first, hsize_t count, void* values) const;
 

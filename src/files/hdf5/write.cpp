@@ -83,6 +83,9 @@ Handle write_dataset(const Handle& group, const std::string& name, Type type, co
     Handle dataset = new_dataset(group, name, type, extents, description);
     check(H5Dwrite(dataset.id(), type.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), place_of(dataset),
           "HDF5 could not write its values");
+    std::size_t size = H5Tget_size(type.memory);
+    for (const hsize_t extent : extents) size *= extent;
+    write_number<std::int64_t>(dataset, checksum_name, checksum(values, size));
     return dataset;
 }
 

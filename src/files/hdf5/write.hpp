@@ -3,6 +3,7 @@
 // contiguous data, no filters.
 
 #include "files/hdf5/handle.hpp"
+#include "files/system/checksum.hpp"
 
 #include <algorithm>
 
@@ -12,6 +13,9 @@ namespace credence::hdf5 {
 struct Description {
     std::string long_name, units;
 };
+
+/// The attribute of a variable that holds the checksum of its values. Files written before there was one lack it.
+inline constexpr const char* checksum_name = "crc32";
 
 /// A dimension of variables, with its coordinate: an HDF5 dimension scale, a netCDF dimension.
 struct Dimension {
@@ -57,10 +61,13 @@ template <class T, class Values>
 Handle new_long_dataset(const Handle& group, const std::string& name, std::int64_t count,
                         const Description& description, Values values) {
     Handle dataset = new_dataset(group, name, type_of<T>(), {static_cast<hsize_t>(count)}, description);
+    std::uint32_t crc = 0;
     for (std::int64_t first = 0; first < count; first += rows_at_once) {
         const std::vector<T> some = values(first, std::min(rows_at_once, count - first));
         write_values(dataset, type_of<T>(), static_cast<hsize_t>(first), some.size(), some.data());
+        crc = checksum(some.data(), some.size() * sizeof(T), crc);
     }
+    write_number<std::int64_t>(dataset, checksum_name, crc);
     return dataset;
 }
 

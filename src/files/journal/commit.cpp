@@ -1,7 +1,5 @@
 #include "files/journal/commit.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 
 namespace credence {
@@ -11,10 +9,6 @@ namespace {
 constexpr std::uint32_t commit_magic = 0x6b636f6c;
 
 }  // namespace
-
-std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc) {
-    return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const Bytef*>(bytes), size));
-}
 
 void put_shard(ByteWriter& to, const Shard& shard) {
     to.put(shard.index);

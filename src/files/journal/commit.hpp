@@ -5,6 +5,7 @@
 #include <credence/store.hpp>
 
 #include "base/bytes.hpp"
+#include "files/system/checksum.hpp"
 
 #include <string>
 #include <vector>
@@ -116,9 +117,6 @@ Shard get_shard(ByteReader& from);
 std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, const std::string& values,
                          const std::string& totals);
 std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, std::size_t size_after);
-
-/// zlib's CRC-32, continued from `crc`.
-std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);
 
 /// The checksum over a journal's header and the checksums of its commits, continued with one more checksum.
 inline std::uint32_t seal_with(std::uint32_t seal, std::uint32_t record) { return checksum(&record, sizeof record, seal); }

@@ -49,6 +49,8 @@ double JournalBytes::seconds_since_change() const {
     return std::max(0.0, seconds);  // another machine's clock may be ahead
 }
 
+bool JournalBytes::is_cut() const { return status_of(file_, path_).st_size < size_; }
+
 std::string JournalBytes::read(std::int64_t position, std::int64_t size) const {
     std::string bytes(static_cast<std::size_t>(size), '\0');
     read(position, bytes.data(), bytes.size());

@@ -19,6 +19,8 @@ public:
 
     const std::string& path() const { return path_; }
     std::int64_t size() const { return size_; }
+    /// Whether the file is now shorter than that.
+    bool is_cut() const;
     /// Exactly `size` bytes from `position` on. Throws InputError where the file is shorter or cannot be read.
     void read(std::int64_t position, void* bytes, std::size_t size) const;
     std::string read(std::int64_t position, std::int64_t size) const;

@@ -144,7 +144,8 @@ void Journal::check_unchanged() const {
                            [&](const FoundCommit& record) { seal = seal_with(seal, record.checksum); });
         if (end == file_.size() && seal == seal_) return;
     } catch (const BadBytes&) {  // whole commits, but not of this study
-    } catch (const InputError&) {  // the results file is too short
+    } catch (const InputError& error) {
+        if (!file_.is_cut()) throw Failure(error.what());  // what the system said
     }
     throw Failure("cannot read back " + file_.path() + " (another program changed it, or the disk damaged it). What is " +
                   "damaged is to be computed again.");

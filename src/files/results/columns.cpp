@@ -64,10 +64,11 @@ std::optional<std::int64_t> check_column(const Handle& group, const Column& colu
     const Dataset dataset(group, column.name);
     dataset.require_extents({static_cast<hsize_t>(trials)});
     switch (column.type) {
-        case ColumnType::real: dataset.require<double>(); return std::nullopt;
-        case ColumnType::integer: dataset.require<std::int32_t>(); return std::nullopt;
+        case ColumnType::real: dataset.check_all<double>(); return std::nullopt;
+        case ColumnType::integer: dataset.check_all<std::int32_t>(); return std::nullopt;
         case ColumnType::status: break;
     }
+    dataset.check_all<std::int8_t>();
     std::int64_t counted = 0;
     for (std::int64_t first = 0; first < trials; first += rows_at_once)
         for (const double status : read_rows(dataset, column, first, std::min(rows_at_once, trials - first)))
@@ -78,6 +79,7 @@ std::optional<std::int64_t> check_column(const Handle& group, const Column& colu
 BlockRanges read_blocks(const Handle& group, std::int64_t asked) {
     const Dataset dataset(group, "trial");
     if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
+    dataset.check_all<std::int64_t>();
     const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
     BlockRanges blocks;
     std::int64_t next = 0, end = 0;  // the next trial, and the end of its block

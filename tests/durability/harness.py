@@ -1,0 +1,103 @@
+"""What the harnesses in Python share: the program, the library of shim/, a folder, and small studies."""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TRIALS = 1500  # five blocks and a partial one
+LESS = 700  # two blocks and a partial one
+
+
+class Failed(Exception):
+    pass
+
+
+def arguments(description, **numbers):
+    """The command line of a harness: the program, and numbers with their defaults."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("credence", type=Path)
+    for name, default in numbers.items():
+        parser.add_argument("--" + name.replace("_", "-"), type=type(default), default=default)
+    return parser.parse_args()
+
+
+class Bench:
+    """A folder with the library, the scenario and studies of it, undisturbed; `at` is the folder to work in."""
+
+    def __init__(self, credence):
+        self.credence = str(Path(credence).resolve())
+        self.root = Path(tempfile.mkdtemp(prefix="credence-durability-"))
+        self.shim = str(self.root / "shim.so")
+        subprocess.run(["cc", "-O1", "-Wno-missing-field-initializers", "-shared", "-fPIC", "-o", self.shim,
+                        *map(str, sorted((HERE / "shim").glob("*.c"))), "-ldl"], check=True)
+        shutil.copy(HERE / "tiny.ini", self.root)
+        self.at = self.root / "at"
+        self.at.mkdir()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.root, ignore_errors=True)
+
+    def study(self, *more, output="x.h5", trials=TRIALS, threads=1):
+        return ["run", "../tiny.ini", "--trials", str(trials), "--quiet", "-o", output, "--commit-every", "1",
+                "--threads", str(threads), *more]
+
+    def make(self, name, *more, trials=TRIALS):
+        """Runs a study, undisturbed, to the file `name` beside the folder."""
+        path = self.root / name
+        if not path.exists():
+            self.expect(0, *self.study(*more, output=str(path), trials=trials))
+        return path
+
+    def run(self, *command, environment=None, timeout=20, **more):
+        """Runs the program in the folder; `environment` is the library's."""
+        variables = {k: v for k, v in os.environ.items() if not k.startswith(("OMP_", "CREDENCE"))}
+        if environment is not None:
+            variables.update({k: str(v) for k, v in environment.items()}, LD_PRELOAD=self.shim)
+        more.setdefault("stdin", subprocess.DEVNULL)
+        try:
+            return subprocess.run([self.credence, *command], cwd=self.at, env=variables, timeout=timeout,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", **more)
+        except subprocess.TimeoutExpired:
+            raise Failed(f"{' '.join(command)} did not end in {timeout} s") from None
+
+    def expect(self, code, *command, **more):
+        done = self.run(*command, **more)
+        if done.returncode != code:
+            raise Failed(f"{' '.join(command)} ended with {done.returncode}: {done.stderr}")
+        return done
+
+    def empty(self):
+        """Empties the folder."""
+        for path in self.at.iterdir():
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+
+    def files(self):
+        """The folder's files and their bytes."""
+        return {path.name: path.read_bytes() for path in sorted(self.at.iterdir()) if path.is_file()}
+
+    def same_results(self, one, other):
+        """Whether two files have the same results: outside /run the same links, values and attributes."""
+        done = subprocess.run(["h5diff", "--exclude-path", "/run", str(one), str(other)], capture_output=True)
+        return done.returncode == 0 and not done.stdout
+
+    def check_same(self, expected, path="x.h5", what=""):
+        if not self.same_results(expected, self.at / path):
+            raise Failed(f"{what}: other results than those of an undisturbed run")
+
+
+def finish(name, counts, failures):
+    """Prints what was done; ends with 1 where something failed."""
+    print(f"{name}: " + ", ".join(f"{number:,} {what}" for what, number in counts.items()), flush=True)
+    for failure in failures[:20]:
+        print("FAILED: " + failure, file=sys.stderr)
+    if failures:
+        print(f"FAILED: {name}, {len(failures)} times", file=sys.stderr)
+        sys.exit(1)

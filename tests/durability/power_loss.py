@@ -1,0 +1,198 @@
+"""Power loss: every write and sync of a run, resume, overwrite, merge and report is recorded (shim/record.c); after every
+one of them the disk forgets what it may (replay.py), and the program goes on from there. It ends with the results of an
+undisturbed run and computes no block again whose commit had returned. It may refuse only before anything was committed.
+
+With --mutants every sync of a run is left out in turn: then this must fail. Two are not needed for what is promised: that
+of the header, which the first commit's covers, and that of the journal's removal."""
+
+import os
+import struct
+
+from harness import LESS, Bench, Failed, arguments, finish
+from replay import Disk, read_trace
+
+BLOCKS, PRESENT = 6, 2  # of the study; of less.h5 that it keeps
+
+
+def commits_in(journal):
+    """Whole commits (docs/durability.md, The journal), by their lengths."""
+    if len(journal) < 24:
+        return 0
+    position, count = 28 + struct.unpack_from("<I", journal, 20)[0], 0
+    while position + 16 <= len(journal):
+        position += 20 + struct.unpack_from("<q", journal, position + 8)[0]
+        count += position <= len(journal)
+    return count
+
+
+class Case:
+    """A command, the files that it starts with, and the command that goes on after a power failure."""
+
+    def __init__(self, name, command, again, base=None, start=None, whole="whole.h5", blocks=BLOCKS, environment=None,
+                 code=0):
+        self.name, self.command, self.again, self.base, self.start = name, command, again, base, start or {}
+        self.whole, self.blocks, self.environment, self.code = whole, blocks, environment or {}, code
+
+
+def cases(bench):
+    study, resume = bench.study(), bench.study("--resume")
+    aggregates = ["--keep", "aggregates"]
+    bench.make("whole.h5")
+    less, other = bench.make("less.h5", trials=LESS), bench.make("other.h5", "--seed", "2", trials=300)
+    shards = [str(bench.make(f"{i}.h5", "--shard", f"{i}/3")) for i in range(3)]
+    bench.make("aggregates.h5", *aggregates)
+    merge = ["merge", *shards, "-o", "x.h5", "--quiet"]
+    yield Case("fresh", study, resume)
+    yield Case("stopped", study, resume, environment={"CRASH_SIGNAL_AT": 14}, code=3)
+    yield Case("torn", resume, resume, start=torn(bench, study))
+    yield Case("grown", resume, resume, base=less, blocks=BLOCKS - PRESENT)
+    yield Case("overwritten", bench.study("--overwrite"), resume, base=other)
+    yield Case("aggregates", bench.study(*aggregates), bench.study(*aggregates, "--resume"), whole="aggregates.h5")
+    yield Case("merge", merge, [*merge, "--overwrite"], blocks=0)
+
+
+def torn(bench, study):
+    """What a run leaves that is killed within a commit."""
+    bench.empty()
+    bench.run(*study, environment={"CRASH_AT": 11, "CRASH_HALF": 1})
+    return bench.files()
+
+
+class PowerLoss:
+    def __init__(self, bench, case, some, left_out=0):
+        self.bench, self.case, self.some, self.left_out = bench, case, some, left_out  # which sync; 0: none
+        self.counts = {"changes": 0, "folders": 0, "resumed": 0, "refused": 0}
+        self.failures, self.seen = [], set()
+
+    def record(self):
+        bench, case = self.bench, self.case
+        bench.empty()
+        if case.base:
+            os.link(case.base, bench.at / "x.h5")  # its inode is in the journal
+        for name, data in case.start.items():
+            (bench.at / name).write_bytes(data)
+        start = {path.name: (path.stat().st_ino, path.read_bytes()) for path in bench.at.iterdir()}
+        trace = bench.root / "trace"
+        trace.unlink(missing_ok=True)
+        bench.expect(case.code, *case.command,
+                     environment={"RECORD": trace, "RECORD_LEFT_OUT": self.left_out, **case.environment})
+        self.events = read_trace(trace)
+        disk = Disk(start)
+        for event in self.events:
+            disk.happens(event)
+        if {name: disk.files[inode].now() for name, inode in disk.names.items()} != bench.files():
+            raise Failed(f"{case.name}: a change passed unrecorded")
+        self.base = start.get("x.h5")
+        return start
+
+    def all(self):
+        """Power fails before every change, and after the last."""
+        disk, promised = Disk(self.record()), 0
+        for number, event in enumerate([*self.events, None]):
+            self.try_folders(disk, promised, number)
+            if event is None or (self.left_out and self.failures):
+                break
+            journal = disk.names.get("x.h5.journal")
+            if event.call.startswith("pwrite") and event.inode == journal and event.at > 0:
+                # The program goes on to the next commit, so the ones before it have returned.
+                promised = max(promised, commits_in(disk.files[journal].now()))
+            disk.happens(event)
+            if event.call == "fdatasync" and event.inode == journal:
+                promised = max(promised, commits_in(disk.files[journal].durable))
+        self.counts["changes"] = len(self.events)
+        return self
+
+    def try_folders(self, disk, promised, number):
+        for folder in disk.outcomes(number, self.some):
+            key = (promised if self.case.blocks else 0, number == len(self.events),
+                   frozenset((name, hash(image) if not name.endswith("partial") else 0)
+                             for name, (_, image) in folder.items()))
+            if key in self.seen:
+                continue
+            self.seen.add(key)
+            self.counts["folders"] += 1
+            try:
+                self.go_on(folder, promised, number == len(self.events))
+            except (Failed, OSError) as error:
+                self.failures.append(f"{self.case.name}, power lost before change {number + 1}: {error}")
+
+    def put(self, folder):
+        self.bench.empty()
+        for name, (inode, image) in folder.items():
+            if self.base and inode == self.base[0] and image == self.base[1]:
+                os.link(self.case.base, self.bench.at / name)
+            else:
+                (self.bench.at / name).write_bytes(image)
+
+    def go_on(self, folder, promised, ended):
+        bench, case = self.bench, self.case
+        self.put(folder)
+        trace = bench.root / "again"
+        trace.unlink(missing_ok=True)
+        done = bench.run(*case.again, environment={"RECORD": trace})
+        if done.returncode == 2:
+            return self.refused(done, folder, promised, ended)
+        if done.returncode != 0:
+            raise Failed(f"going on ended with {done.returncode}: {done.stderr.strip()}")
+        self.counts["resumed"] += 1
+        if [path.name for path in bench.at.iterdir()] != ["x.h5"]:
+            raise Failed("it left " + " ".join(path.name for path in bench.at.iterdir()))
+        bench.check_same(bench.root / case.whole, what=case.name)
+        again = computed(read_trace(trace))
+        if case.blocks and again + promised > case.blocks:
+            raise Failed(f"{promised} commits had returned, but {again} of {case.blocks} blocks ran again")
+        if ended and case.code == 0 and trace.exists() and again:
+            raise Failed("the command had ended with 0, but blocks ran again")
+
+    def refused(self, done, folder, promised, ended):
+        """A refusal changes nothing, is about a file that is there, and costs no commit that had returned."""
+        self.counts["refused"] += 1
+        if {name: image for name, (_, image) in folder.items()} != self.bench.files():
+            raise Failed(f"it refused, and changed files: {done.stderr.strip()}")
+        untouched = folder.get("x.h5", (None, None))[1] == (self.base and self.base[1])
+        if promised or ended or not untouched or "x.h5" not in done.stderr:
+            raise Failed(f"it refused after {promised} commits: {done.stderr.strip()}")
+
+
+def computed(events):
+    """Commits that a run appended; the write at 0 is the header's."""
+    count = appended = 0
+    for event in events:
+        if event.call.startswith("pwrite") and event.path == "" and event.at > 0:
+            appended = 1
+        if event.call == "fdatasync":
+            count, appended = count + appended, 0
+    return count
+
+
+def mutants(bench):
+    """Leaves out each sync of a run in turn."""
+    fresh = next(cases(bench))
+    undisturbed = PowerLoss(bench, fresh, 0)
+    undisturbed.record()
+    syncs = sum(event.call in ("fsync", "fdatasync") for event in undisturbed.events)
+    needed = range(2, syncs)
+    survived = [n for n in needed if not PowerLoss(bench, fresh, 1, n).all().failures]
+    finish("power loss, a sync left out", {"syncs": syncs, "needed": len(needed), "noticed": len(needed) - len(survived)},
+           [f"nothing was lost without sync {n}" for n in survived])
+
+
+def main():
+    given = arguments(__doc__, some=40, case="", mutants=0)
+    total, failures = {}, []
+    with Bench(given.credence) as bench:
+        if given.mutants:
+            return mutants(bench)
+        for case in cases(bench):
+            if given.case and case.name != given.case:
+                continue
+            done = PowerLoss(bench, case, given.some).all()
+            print(f"  {case.name}: " + ", ".join(f"{n:,} {what}" for what, n in done.counts.items()), flush=True)
+            failures += done.failures
+            for what, n in done.counts.items():
+                total[what] = total.get(what, 0) + n
+    finish("power loss", total, failures)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+/* A resource fails once.
+
+   FAIL=kind        malloc, open, read, mmap, thread, sync, rename, remove, lock or write; `held` plants a bug instead:
+                    fcntl says of closed standard streams that they are open
+   FAIL_AT=n        the n-th of these calls fails, counted from 1 (0: none)
+   FAIL_SILENT=1    plants a bug: the call does not happen and says that it did
+   FAIL_COUNT=file  8 bytes: how many of these calls there were */
+#include "shim.h"
+
+#include <execinfo.h>
+
+static enum kind kind;
+static long at;
+static int failure, silent;
+static atomic_long own, *count = &own;
+static int main_began;
+
+/* Says where the program ends by itself: inside a library, before main() or in its own code. */
+static void say_where(void) {
+    void *frames[60];
+    Dl_info found;
+    const char *where = main_began ? "the program" : "what runs before main";
+    for (int i = 0, n = backtrace(frames, 60); i < n; ++i)
+        if (dladdr(frames[i], &found) && found.dli_fname && strstr(found.dli_fname, "hdf5")) where = "libhdf5";
+    dprintf(2, "shim: it ended in %s\n", where);
+}
+static void on_signal(int signal_number) {
+    say_where();
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+}
+void exit(int code) {
+    REAL(exit, "exit");
+    if (code != 0 && at > 0) say_where();
+    real(code);
+    die();
+}
+
+__attribute__((constructor)) static void read_environment(void) {
+    static const struct { const char *name; enum kind kind; int error; } kinds[] = {
+        {"malloc", ALLOCATING, ENOMEM}, {"open", OPENING, EMFILE}, {"read", READING, EIO},   {"mmap", MAPPING, ENOMEM},
+        {"thread", THREADING, EAGAIN},  {"sync", SYNCING, EIO},    {"rename", RENAMING, EIO}, {"remove", REMOVING, EIO},
+        {"lock", LOCKING, ENOLCK},      {"write", WRITING, EIO},  {"held", ASKING, EBADF}};
+    const char *name = getenv("FAIL"), *counted = getenv("FAIL_COUNT");
+    if (!name) return;
+    at = number("FAIL_AT");
+    silent = is_on("FAIL_SILENT");
+    void *frame;
+    backtrace(&frame, 1); /* loads what it needs */
+    signal(SIGSEGV, on_signal);
+    signal(SIGABRT, on_signal);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
+        if (strcmp(name, kinds[i].name) == 0) kind = kinds[i].kind, failure = kinds[i].error;
+    if (failure == 0) _exit(99);
+    if (!counted) return;
+    const int file = (int)syscall(SYS_openat, AT_FDCWD, counted, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0 || syscall(SYS_ftruncate, file, sizeof own) != 0) _exit(99);
+    void *shared = (void *)syscall(SYS_mmap, NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    syscall(SYS_close, file);
+    if (shared == MAP_FAILED) _exit(99);
+    count = shared;
+}
+
+enum fate fail_fate(const struct call *call, int *error) {
+    if (call->kind != kind && call->kind != ASKING) return goes_on;
+    *error = failure;
+    if (call->kind == ASKING) main_began = 1; /* the program looks at its standard streams first */
+    if (call->kind == ASKING && kind != ASKING) return goes_on;
+    if (kind == ASKING) return call->fd <= 2 && call->flags == F_GETFD ? is_left_out : goes_on;
+    return atomic_fetch_add(count, 1) + 1 == at ? (silent ? is_left_out : fails) : goes_on;
+}
