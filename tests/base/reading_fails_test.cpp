@@ -23,3 +23,13 @@ TEST_CASE("cli: a disk that fails in the middle of a file is what the message sa
         for (const std::string command : {"report", "compare", "watch"}) check(command, "x.h5", from);
     for (const int from : {4, 700, 2500}) check("judge --quiet", "record.h5", from);
 }
+
+TEST_CASE("cli: a journal that the system cannot read back is said to be that, not to be changed by another program") {
+    const Workplace here;
+    const Outcome outcome = here.shell("LD_PRELOAD=" CREDENCE_READING_FAILS " READING_FAILS=x.h5.journal READING_FAILS_FROM=900 "
+                                       CREDENCE_PROGRAM " run " + seed_scenario("ekf-straight-constant") +
+                                       " --trials 300 --quiet -o x.h5");
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Contains("x.h5.journal: cannot be read (input/output error). Check the disk."));
+}

@@ -3,6 +3,7 @@
    FAIL=kind        malloc, open, read, mmap, thread, sync, rename, remove, lock or write; `held` plants a bug instead:
                     fcntl says of closed standard streams that they are open
    FAIL_AT=n        the n-th of these calls fails, counted from 1 (0: none)
+   FAIL_ALWAYS=1    not only the n-th, but each
    FAIL_SILENT=1    plants a bug: the call does not happen and says that it did
    FAIL_COUNT=file  8 bytes: how many of these calls there were */
 #include "shim.h"
@@ -11,7 +12,7 @@
 
 static enum kind kind;
 static long at;
-static int failure, silent;
+static int failure, silent, always;
 static atomic_long own, *count = &own;
 static int main_began;
 
@@ -45,6 +46,7 @@ __attribute__((constructor)) static void read_environment(void) {
     if (!name) return;
     at = number("FAIL_AT");
     silent = is_on("FAIL_SILENT");
+    always = is_on("FAIL_ALWAYS");
     void *frame;
     backtrace(&frame, 1); /* loads what it needs */
     signal(SIGSEGV, on_signal);
@@ -67,5 +69,5 @@ enum fate fail_fate(const struct call *call, int *error) {
     if (call->kind == ASKING) main_began = 1; /* the program looks at its standard streams first */
     if (call->kind == ASKING && kind != ASKING) return goes_on;
     if (kind == ASKING) return call->fd <= 2 && call->flags == F_GETFD ? is_left_out : goes_on;
-    return atomic_fetch_add(count, 1) + 1 == at ? (silent ? is_left_out : fails) : goes_on;
+    return atomic_fetch_add(count, 1) + 1 == at || always ? (silent ? is_left_out : fails) : goes_on;
 }

@@ -1,0 +1,78 @@
+// Checksums of the datasets of results files.
+// Kind: foreign files.
+
+#include "of_scenarios.hpp"
+#include "store_damage.hpp"
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+using Visit = std::function<void(const std::string& path, const Handle& dataset)>;
+
+void for_each_dataset(const Handle& group, const std::string& path, const Visit& visit) {
+    for (const std::string& name : hdf5::link_names(group)) {
+        const Handle object = open(group, name);
+        const bool is_group = H5Iget_type(object.id()) == H5I_GROUP;
+        if (is_group) for_each_dataset(object, path + "/" + name, visit);
+        else visit(path + "/" + name, object);
+    }
+}
+
+/// A study of both kinds of worlds and of what is kept, in the file `path`.
+void write_small(const std::string& path, Keep keep) {
+    Study study = new_study({scenario("one", "heading"), scenario("two", "translation")}, 1, keep);
+    run_study(study, {300, 1, {}});
+    write_results(path, study, {});
+}
+
+}  // namespace
+
+TEST_CASE("checksum: one changed bit of any dataset is refused by the dataset's name") {
+    const TemporaryFolder folder;
+    const std::string good = folder / "good.h5", bad = folder / "bad.h5";
+    for (const Keep keep : {Keep::trials, Keep::aggregates}) {
+        write_small(good, keep);
+        std::map<std::string, std::size_t> middle;  // byte of each dataset
+        for_each_dataset(hdf5::open_file(good), "", [&](const std::string& path, const Handle& dataset) {
+            middle[path] = H5Dget_offset(dataset.id()) + H5Dget_storage_size(dataset.id()) / 2;
+        });
+        CHECK(middle.size() > 100);
+        const std::string bytes = bytes_of(good);
+        for (const auto& [path, at] : middle) {
+            CAPTURE(path);
+            std::string changed = bytes;
+            changed[at] = static_cast<char>(changed[at] ^ 1);
+            put_bytes(bad, changed);
+            const std::string said = refusal<InputError>([&] { read_results(bad); });
+            CHECK(said.find(path + ": is damaged: its values do not have their checksum") != std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("checksum: a file that was written before there were any reads back") {
+    const TemporaryFolder folder;
+    write_small(folder / "new.h5", Keep::trials);
+    std::size_t forgotten = 0;
+    damaged_copy(folder / "new.h5", folder / "old.h5", [&](const Handle& root) {
+        for_each_dataset(root, "", [&](const std::string&, const Handle& dataset) {
+            forget_checksum(dataset);
+            ++forgotten;
+        });
+    });
+    CHECK(forgotten > 100);
+    const Study now = read_results(folder / "new.h5").study, then = read_results(folder / "old.h5").study;
+    CHECK(study_hash(then) == study_hash(now));
+    for (std::size_t s = 0; s < now.scenarios.size(); ++s)
+        for (std::size_t a = 0; a < now.scenarios[s].arms.size(); ++a)
+            CHECK(column_values(then.scenarios[s].arms[a], 0, 0, 300) == column_values(now.scenarios[s].arms[a], 0, 0, 300));
+}
+
+TEST_CASE("hdf5: where HDF5 gets no memory, the message says so") {
+    const hdf5::QuietErrors quiet;
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_RESOURCE, H5E_NOSPACE, "no room");
+    CHECK(std::string(hdf5::failure("/x", "is no group").what()) == "/x: HDF5 got no memory");
+    H5Eclear2(H5E_DEFAULT);
+    CHECK(std::string(hdf5::failure("/x", "is no group").what()) == "/x: is no group");
+}
