@@ -1,7 +1,7 @@
 """Every state of the standard streams: descriptors 0, 1 and 2 closed in all combinations, while libraries print what they
 can: OpenMP's settings and threads, the dynamic linker's statistics, HDF5's tracing, MPI's. No byte of it gets into a file.
 
-With --mutants fcntl says of closed descriptors that they are open (shim/fail.c), so that the program does not hold them:
+Of these states every --every-th is tried. With --mutants fcntl says of closed descriptors that they are open (shim/fail.c), so that the program does not hold them:
 then this must fail."""
 
 import itertools
@@ -78,8 +78,8 @@ def check(bench, done, output, whole):
 
 
 def main():
-    given = arguments(__doc__, mutants=0)
-    counts, failures = {"states": 0, "ended with 0": 0, "ended with 1": 0}, []
+    given = arguments(__doc__, every=1, mutants=0)
+    number, counts, failures = 0, {"states": 0, "ended with 0": 0, "ended with 1": 0}, []
     closings = [closed for n in range(4) for closed in itertools.combinations((0, 1, 2), n)]
     with Bench(given.credence) as bench:
         launchers = [((), TALK)]
@@ -90,6 +90,9 @@ def main():
                       for talk in talks.items() if not launcher or one[0][0] == "run"]
         for (command, output, whole), launcher, (name, talk) in everything:
             for closed in closings:
+                number += 1
+                if number % given.every:
+                    continue
                 counts["states"] += 1
                 try:
                     done = start(bench, command, closed, talk, given.mutants, launcher)

@@ -30,7 +30,8 @@ herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     int& error = *static_cast<int*>(to);
     if (const std::size_t at = said.rfind(number); at != std::string::npos)
         error = std::atoi(said.c_str() + at + number.size());
-    else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE))
+    else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE ||
+                            entry->min_num == H5E_CANTALLOC))
         error = ENOMEM;
     return 0;
 }

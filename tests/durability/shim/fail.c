@@ -49,8 +49,10 @@ __attribute__((constructor)) static void read_environment(void) {
     always = is_on("FAIL_ALWAYS");
     void *frame;
     backtrace(&frame, 1); /* loads what it needs */
-    signal(SIGSEGV, on_signal);
-    signal(SIGABRT, on_signal);
+    static char room[1 << 16]; /* libhdf5 may have used up the stack */
+    sigaltstack(&(stack_t){.ss_sp = room, .ss_size = sizeof room}, NULL);
+    sigaction(SIGSEGV, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
+    sigaction(SIGABRT, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
         if (strcmp(name, kinds[i].name) == 0) kind = kinds[i].kind, failure = kinds[i].error;
     if (failure == 0) _exit(99);

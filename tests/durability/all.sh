@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Runs everything here, and first that each harness notices the bugs that are planted for it. Prints a line for each.
+# usage: all.sh CREDENCE [DEPTH]
+#   sample   some of each, in minutes: the label durability
+#   evening  more of each, in about two hours
+#   full     every allocation, every byte, every folder: a day or so
+# After the last two the lines are kept in counts.txt, which docs/durability.md shows.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+credence=$(realpath "$1")
+depth=${2:-full}
+case $depth in
+  sample)  sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1" streams="--every 7" bytes="--every 20011" turns=44 ;;
+  evening) sweep=20 kills=100 folders="--some 10" calls="--most 60" streams="" bytes="--every 401" turns=1000 ;;
+  full)    sweep=1 kills=200 folders="--some 60" calls="--most 0" streams="" bytes="--every 1" turns=10000 ;;
+  *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
+esac
+
+harnesses() {
+  python3 "$here/interleave.py" "$credence" --mutants 1
+  python3 "$here/corruption.py" "$credence" --every 997 --mutants 1
+  python3 "$here/fail_once.py" "$credence" --mutants 1
+  python3 "$here/descriptors.py" "$credence" --mutants 1
+  [ "$depth" = sample ] || python3 "$here/power_loss.py" "$credence" --mutants 1
+  python3 "$here/power_loss.py" "$credence" $folders
+  python3 "$here/fail_once.py" "$credence" $calls
+  python3 "$here/descriptors.py" "$credence" $streams
+  python3 "$here/corruption.py" "$credence" $bytes
+  python3 "$here/interleave.py" "$credence" --schedules $turns
+  python3 "$here/versions.py" "$credence"
+}
+
+# Kills and refusals at chosen writes, and at random times.
+scripts() {
+  bash "$here/sweep.sh" "$credence" $sweep
+  bash "$here/random_kills.sh" "$credence" $kills
+  bash "$here/no_space.sh" "$credence" $sweep
+}
+
+lines=$(mktemp)
+trap 'rm -f "$lines"' EXIT
+harnesses | grep --line-buffered -v '^  ' | tee -a "$lines"
+scripts | tee -a "$lines"
+if [ "$depth" != sample ]; then
+  { echo "$("$credence" --version | head -n 1), depth $depth"; cat "$lines"; } >"$here/counts.txt"
+fi

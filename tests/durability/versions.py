@@ -1,0 +1,88 @@
+"""Journals of every version and results files of every schema version that were written, by the releases that wrote them
+(versions/, and for schema version 2 the seeds of the fuzz targets): what is safe is gone on with, and the file says whose
+trials are whose; anything else is refused, changes nothing and says which release to use."""
+
+import gzip
+import re
+import subprocess
+
+from harness import HERE, Bench, Failed, arguments, finish
+
+WORLD = HERE.parent / "fuzz" / "journal.ini"
+SEEDS = HERE.parent / "fuzz" / "seeds" / "results"
+KEPT = {1: "trials", 2: "trials", 3: "aggregates", 4: "trials", 5: "aggregates", 6: "trials", 7: "aggregates"}
+
+
+def stored(name):
+    path = HERE / "versions" / name
+    return path.read_bytes() if path.exists() else gzip.decompress(path.with_name(name + ".gz").read_bytes())
+
+
+class Versions:
+    def __init__(self, bench):
+        self.bench = bench
+        self.counts = {"journals": 0, "results files": 0, "gone on with": 0, "refused": 0}
+
+    def journal(self, version):
+        self.counts["journals"] += 1
+        self.bench.empty()
+        data = stored(f"journal-{version}")
+        (self.bench.at / "x.h5.journal").write_bytes(data)
+        self.grow(f"journal {version}", {"x.h5.journal": data}, KEPT[version])
+
+    def results(self, version, data):
+        self.counts["results files"] += 1
+        self.bench.empty()
+        (self.bench.at / "x.h5").write_bytes(data)
+        self.bench.expect(0, "report", "x.h5")
+        self.grow(f"results {version}", {"x.h5": data}, "trials")
+
+    def grow(self, name, before, keep):
+        """Goes on for more trials than are there."""
+        done = self.bench.run("run", str(WORLD), "--trials", "600", "--keep", keep, "--quiet", "-o", "x.h5", "--resume")
+        if done.returncode == 2:
+            self.counts["refused"] += 1
+            if self.bench.files() != before:
+                raise Failed(f"{name}: it was refused, but changed")
+            if not re.search(r"is a journal of version \d, this program's is \d.*release that began it|schema.version (is )?\d|"
+                             r"computed trials of it", done.stderr):
+                raise Failed(f"{name}: the refusal does not say whose it is: {done.stderr.strip()}")
+            return
+        if done.returncode != 0:
+            raise Failed(f"{name}: it ended with {done.returncode}: {done.stderr.strip()}")
+        self.counts["gone on with"] += 1
+        whole = self.bench.root / f"{keep}.h5"
+        if not whole.exists():
+            self.bench.expect(0, "run", str(WORLD), "--trials", "600", "--keep", keep, "--quiet", "-o", str(whole))
+        self.bench.check_same(whole, what=name)
+        self.check_releases(name)
+
+    def check_releases(self, name):
+        """Blocks that the older release computed are said to be its own."""
+        text = subprocess.run(["h5dump", "-a", "/run/computed_by", "x.h5"], cwd=self.bench.at, capture_output=True,
+                              text=True, check=True).stdout
+        own = re.search(r"git_revision: (\S+)", self.bench.expect(0, "--version").stdout)
+        others = [revision for revision in re.findall(r"git revision ([0-9a-f]+(?:-dirty)?)", text)
+                  if not own or revision != own[1]]
+        if not others and "journal" not in name:  # those have a partial block alone, which is computed again
+            raise Failed(f"{name}: it does not say whose trials are whose: {text}")
+
+
+def main():
+    given = arguments(__doc__)
+    failures = []
+    with Bench(given.credence) as bench:
+        versions = Versions(bench)
+        checks = [lambda v=v: versions.journal(v) for v in KEPT]
+        checks += [lambda: versions.results(2, (SEEDS / "heading.h5").read_bytes()),
+                   lambda: versions.results(3, stored("results-3.h5"))]
+        for check in checks:
+            try:
+                check()
+            except Failed as error:
+                failures.append(str(error))
+    finish("versions", versions.counts, failures)
+
+
+if __name__ == "__main__":
+    main()
