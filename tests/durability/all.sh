@@ -41,6 +41,10 @@ lines=$(mktemp)
 trap 'rm -f "$lines"' EXIT
 harnesses | grep --line-buffered -v '^  ' | tee -a "$lines"
 scripts | tee -a "$lines"
+# What is counted is what the page shows.
+cut -d: -f1 "$lines" | while read -r name; do
+  [ "$depth" != sample ] || grep -q "^$name:" "$here/counts.txt" || { echo "FAILED: counts.txt lacks: $name" >&2; exit 1; }
+done
 if [ "$depth" != sample ]; then
   { echo "$("$credence" --version | head -n 1), depth $depth"; cat "$lines"; } >"$here/counts.txt"
 fi

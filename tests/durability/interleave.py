@@ -189,6 +189,8 @@ def main():
                     failures.append(f"{pair.name}, {kind}, schedule {number}: {error}")
                 if given.mutants and failures:
                     break
+                if (number + 1) % 100 == 0:
+                    print(f"  {number + 1} schedules, {len(failures)} failures", flush=True)
         finally:
             if harness.mounts:
                 subprocess.run(["umount", str(bench.root / "mounted")], check=False)

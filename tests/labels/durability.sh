@@ -1,14 +1,9 @@
 #!/usr/bin/env bash
-# Label durability: killed before and after changes to its files, killed at random times, and refused by the system, the
-# program loses nothing that was committed. Only a part of the long middle of each sweep is run; sweep.sh without a
-# number runs all of it.
+# Label durability: a sample of everything in tests/durability, all of which `all.sh` runs: power fails, each resource
+# fails once, streams are closed, bytes flip, two programs take turns; the program is killed before and after changes to
+# its files and at random times, and refused by the system. It loses nothing that was committed.
 set -euo pipefail
-for tool in cc h5diff; do
+for tool in cc h5diff h5dump python3; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
 done
-every=300
-bash tests/durability/sweep.sh build/credence $every &
-sweep=$!
-bash tests/durability/random_kills.sh build/credence 50
-bash tests/durability/no_space.sh build/credence $every
-wait $sweep
+bash tests/durability/all.sh build/credence sample
