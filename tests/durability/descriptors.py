@@ -14,7 +14,7 @@ from harness import Bench, Failed, arguments, finish
 TALK = {
     "libgomp, settings": {"OMP_DISPLAY_ENV": "verbose"},
     "libgomp, threads": {"OMP_DISPLAY_AFFINITY": "true", "OMP_AFFINITY_FORMAT": "OpenMP thread %n of %N"},
-    "libgomp, no thread": {"FAIL": "thread", "FAIL_AT": "1"},
+    "libgomp, no thread": {"FAIL": "thread", "FAIL_AT": "2", "OMP_NUM_THREADS": "2"},  # of those that compute
     "glibc, linker": {"LD_DEBUG": "libs,statistics"},
     "glibc, allocation": {"FAIL": "malloc", "FAIL_AT": "30000"},
     "HDF5": {"HDF5_DEBUG": "all"},
@@ -30,7 +30,7 @@ def commands(bench):
     whole = bench.make("whole.h5")
     shards = [str(bench.make(f"{i}.h5", "--shard", f"{i}/3")) for i in range(3)]
     trial = ["--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3"]
-    yield bench.study(threads=2), "x.h5", whole
+    yield bench.study(threads=4), "x.h5", whole
     yield ["merge", *shards, "-o", "x.h5", "--quiet"], "x.h5", whole
     yield ["report", "../whole.h5", "-o", "r.txt"], "r.txt", made(bench, ["report", "../whole.h5", "-o", "../r.txt"], "r.txt")
     yield (["replay", "../whole.h5", *trial, "-o", "t.h5"], "t.h5",
@@ -50,11 +50,12 @@ def start(bench, command, closed, talk, mutant, launcher=()):
     if "FAIL" in talk or mutant:
         environment["LD_PRELOAD"] = bench.shim
     if mutant:
-        environment["FAIL"] = "held"
+        environment = {"FAIL": "none", **environment, "FAIL_HELD": "1"}
     closed = ["bash", "-c", f'exec "$@" {closing}', "-", bench.credence]  # under mpirun those of the ranks, not its own
     done = subprocess.run([*launcher, *closed, *command], cwd=bench.at, env=environment, timeout=60,
                           stdin=subprocess.DEVNULL, capture_output=True)
-    if done.returncode not in (0, 1, 2):
+    # Without memory libhdf5 may end it: fail_once.py looks at that.
+    if done.returncode not in (0, 1, 2) and talk.get("FAIL") != "malloc":
         raise Failed(f"it ended with {done.returncode}: {done.stderr[-200:]!r}")
     return done
 
@@ -79,7 +80,7 @@ def check(bench, done, output, whole):
 
 def main():
     given = arguments(__doc__, every=1, mutants=0)
-    number, counts, failures = 0, {"states": 0, "ended with 0": 0, "ended with 1": 0, "ended with 2": 0}, []
+    number, counts, failures = 0, {"states": 0, "ended with 0": 0, "ended with 1": 0, "ended with 2": 0, "ended otherwise": 0}, []
     closings = [closed for n in range(4) for closed in itertools.combinations((0, 1, 2), n)]
     with Bench(given.credence) as bench:
         launchers = [((), TALK)]
@@ -91,12 +92,12 @@ def main():
         for (command, output, whole), launcher, (name, talk) in everything:
             for closed in closings:
                 number += 1
-                if number % given.every:
+                if number % given.every or (given.mutants and failures):
                     continue
                 counts["states"] += 1
                 try:
                     done = start(bench, command, closed, talk, given.mutants, launcher)
-                    counts[f"ended with {done.returncode}"] += 1
+                    counts[f"ended with {done.returncode}" if done.returncode in (0, 1, 2) else "ended otherwise"] += 1
                     check(bench, done, output, whole)
                 except (Failed, subprocess.TimeoutExpired) as error:
                     failures.append(f"{command[0]}, {name}, closed {closed}: {error}")

@@ -1,8 +1,11 @@
 // Checksums of the datasets of results files.
 // Kind: foreign files.
 
+#include "files/hdf5/read.hpp"
 #include "of_scenarios.hpp"
 #include "store_damage.hpp"
+
+#include <map>
 
 using namespace credence;
 using namespace credence::test;
@@ -15,12 +18,14 @@ void for_each_dataset(const Handle& group, const std::string& path, const Visit&
     for (const std::string& name : hdf5::link_names(group)) {
         const Handle object = open(group, name);
         const bool is_group = H5Iget_type(object.id()) == H5I_GROUP;
-        if (is_group) for_each_dataset(object, path + "/" + name, visit);
-        else visit(path + "/" + name, object);
+        if (is_group)
+            for_each_dataset(object, path + "/" + name, visit);
+        else
+            visit(path + "/" + name, object);
     }
 }
 
-/// A study of both kinds of worlds and of what is kept, in the file `path`.
+/// A study of two scenarios in the file `path`.
 void write_small(const std::string& path, Keep keep) {
     Study study = new_study({scenario("one", "heading"), scenario("two", "translation")}, 1, keep);
     run_study(study, {300, 1, {}});
