@@ -1,8 +1,9 @@
-"""Every state of the standard streams: descriptors 0, 1 and 2 closed in all combinations, while libraries print what they
-can: OpenMP's settings and threads, the dynamic linker's statistics, HDF5's tracing, MPI's. No byte of it gets into a file.
+"""Every state of the standard streams: descriptors 0, 1 and 2 closed in all combinations, while libraries print what
+they can: OpenMP's settings and threads, the dynamic linker's statistics, HDF5's tracing, MPI's. No byte of it gets
+into a file.
 
-Of these states every --every-th is tried. With --mutants fcntl says of closed descriptors that they are open (shim/fail.c), so that the program does not hold them:
-then this must fail."""
+Of these states every --every-th is tried. With --mutants fcntl says of closed descriptors that they are open
+(shim/fail.c), so that the program does not hold them: then this must fail."""
 
 import itertools
 import os
@@ -21,8 +22,9 @@ TALK = {
 }
 SAID = (b"OMP_", b"OpenMP thread", b"libgomp", b"calling init", b"runtime linker", b"HDF5-DIAG", b"terminate called",
         b"H5Fcreate(", b"credence run:", b"PMIX", b"mca_")
-MPI = {"MPI": {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_mpi_show_mca_params": "all",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_btl_base_verbose": "100"}}
+MPI = {"MPI": {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_mpi_show_mca_params": "all", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_btl_base_verbose": "100"}}
 
 
 def commands(bench):
@@ -32,7 +34,8 @@ def commands(bench):
     trial = ["--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3"]
     yield bench.study(threads=4), "x.h5", whole
     yield ["merge", *shards, "-o", "x.h5", "--quiet"], "x.h5", whole
-    yield ["report", "../whole.h5", "-o", "r.txt"], "r.txt", made(bench, ["report", "../whole.h5", "-o", "../r.txt"], "r.txt")
+    yield (["report", "../whole.h5", "-o", "r.txt"], "r.txt",
+           made(bench, ["report", "../whole.h5", "-o", "../r.txt"], "r.txt"))
     yield (["replay", "../whole.h5", *trial, "-o", "t.h5"], "t.h5",
            made(bench, ["replay", "../whole.h5", *trial, "-o", "../t.h5"], "t.h5"))
 
@@ -80,7 +83,8 @@ def check(bench, done, output, whole):
 
 def main():
     given = arguments(__doc__, every=1, mutants=0)
-    number, counts, failures = 0, {"states": 0, "ended with 0": 0, "ended with 1": 0, "ended with 2": 0, "ended otherwise": 0}, []
+    ends = ("ended with 0", "ended with 1", "ended with 2", "ended otherwise")
+    number, counts, failures = 0, {"states": 0, **dict.fromkeys(ends, 0)}, []
     closings = [closed for n in range(4) for closed in itertools.combinations((0, 1, 2), n)]
     with Bench(given.credence) as bench:
         launchers = [((), TALK)]
@@ -97,7 +101,8 @@ def main():
                 counts["states"] += 1
                 try:
                     done = start(bench, command, closed, talk, given.mutants, launcher)
-                    counts[f"ended with {done.returncode}" if done.returncode in (0, 1, 2) else "ended otherwise"] += 1
+                    code = done.returncode
+                    counts[f"ended with {code}" if code in (0, 1, 2) else "ended otherwise"] += 1
                     check(bench, done, output, whole)
                 except (Failed, subprocess.TimeoutExpired) as error:
                     failures.append(f"{command[0]}, {name}, closed {closed}: {error}")

@@ -1,7 +1,7 @@
 """Every resource fails once: the n-th allocation, open, read, lock, thread, sync, rename, removal or write of every
-command (shim/fail.c). The command does its work all the same, or ends with 1 or 2 and one line that says what the system
-said; nothing is lost: the same command without the failure ends as it always does.
-Where memory is refused, libhdf5 1.10 may end the process itself, and so do constants made before main().
+command (shim/fail.c). The command does its work all the same, or ends with 1 or 2 and one line that says what the
+system said; nothing is lost: the same command without the failure ends as it always does. Where memory is refused,
+libhdf5 1.10 may end the process itself, and so do constants made before main().
 
 With --most N at most N of the calls of a kind fail, at random; 0: each. With --mutants failing calls say that they
 succeeded, as if the program did not look: then this must fail."""
@@ -70,7 +70,8 @@ class Failing:
     def once(self, kind, n):
         count = self.bench.root / "count"
         count.unlink(missing_ok=True)
-        done = self.bench.run(*self.command.command, environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count, **self.silent})
+        done = self.bench.run(*self.command.command, environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count,
+                                                                  **self.silent})
         return done, int.from_bytes(count.read_bytes(), "little")
 
     def all(self):

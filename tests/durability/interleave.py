@@ -1,7 +1,7 @@
 """Two programs on the same files take turns: before each call on a file the one waits while the other goes on
-(shim/meet.c), in a schedule that a seed gives. They meet under one name, a symbolic link, a hard link or a bind mount of
-the folder. No command that ends with 0 may lose its work: what it wrote, or what it went on with, is there at the end,
-or was replaced by another one that was asked to.
+(shim/meet.c), in a schedule that a seed gives. They meet under one name, a symbolic link, a hard link or a bind
+mount of the folder. No command that ends with 0 may lose its work: what it wrote, or what it went on with, is
+there at the end, or was replaced by another one that was asked to.
 
 With --mutants locks are not taken, as if files were locked by name only (FAIL=lock): then this must fail."""
 
@@ -95,7 +95,8 @@ def pairs(bench):
     yield Pair("resume, resume", run("--resume"), run("--resume"), {"x.h5": less}, (whole, whole))
     yield Pair("run, overwrite", run(), run("--seed", "2", "--overwrite"), {}, (whole, other))
     yield Pair("resume, overwrite", run("--resume"), run("--seed", "2", "--overwrite"), {"x.h5": less}, (whole, other))
-    yield Pair("overwrite, overwrite", run("--overwrite"), run("--seed", "2", "--overwrite"), {"x.h5": less}, (whole, other))
+    yield Pair("overwrite, overwrite", run("--overwrite"), run("--seed", "2", "--overwrite"), {"x.h5": less},
+               (whole, other))
     yield Pair("merge, run", merge(), run("--seed", "2"), {}, (whole, other))
     yield Pair("merge, resume", merge("--overwrite"), run("--resume"), {"x.h5": less}, (whole, whole))
     yield Pair("merge, merge", merge(), merge("--overwrite"), {}, (whole, whole))
@@ -153,13 +154,14 @@ class Interleaving:
             if sides[number].code != 0 or expected is None:
                 continue
             allowed = {expected}
-            if sides[1 - number].code == 0 and other and name == ("x.h5", second_name)[1 - number] and "--overwrite" in \
-                    sides[1 - number].name:
+            same_name = name == ("x.h5", second_name)[1 - number]
+            if sides[1 - number].code == 0 and other and same_name and "--overwrite" in sides[1 - number].name:
                 allowed.add(other)
             if not (self.bench.at / name).exists() or not any(
                     self.bench.same_results(self.bench.root / one, self.bench.at / name) for one in allowed):
-                raise Failed(f"{sides[number].name} ended with 0, and its work is gone (the other: {sides[1 - number].name} "
-                             f"with {sides[1 - number].code}; there is {sorted(self.bench.files())})")
+                raise Failed(f"{sides[number].name} ended with 0, and its work is gone (the other: "
+                             f"{sides[1 - number].name} with {sides[1 - number].code}; there is "
+                             f"{sorted(self.bench.files())})")
         left = [path for path in self.bench.files() if path.endswith(".credence-partial")]
         if left:
             raise Failed(f"it left {left}")

@@ -1,10 +1,11 @@
-"""Power loss: every write and sync of a run, resume, overwrite, merge and report is recorded (shim/record.c); after every
-one of them the disk forgets what it may (replay.py), and the program goes on from there. It ends with the results of an
-undisturbed run and computes no block again whose commit had returned. It may refuse only before anything was committed.
-Of the ways in which many unsynced sectors reach the disk --some random ones are tried; of all folders every --every-th.
+"""Power loss: every write and sync of a run, resume, overwrite, merge and report is recorded (shim/record.c); after
+every one of them the disk forgets what it may (replay.py), and the program goes on from there. It ends with the
+results of an undisturbed run and computes no block again whose commit had returned. It may refuse only before
+anything was committed. Of the ways in which many unsynced sectors reach the disk --some random ones are tried; of
+all folders every --every-th.
 
-With --mutants every sync of a run is left out in turn: then this must fail. Two are not needed for what is promised: that
-of the header, which the first commit's covers, and that of the journal's removal."""
+With --mutants every sync of a run is left out in turn: then this must fail. Two are not needed for what is promised:
+that of the header, which the first commit's covers, and that of the journal's removal."""
 
 import os
 import struct

@@ -1,8 +1,8 @@
 """A model of a disk that forgets: what record.c wrote, and every folder that a power failure may leave of it.
 
-A write reaches the disk in sectors of 512 bytes, in any order, until its file is synced; a sector that did not has zeros
-or old bytes. The size of a file may be ahead of its data. A name that was made, renamed or removed is there or not, in
-any order, until its folder is synced."""
+A write reaches the disk in sectors of 512 bytes, in any order, until its file is synced; a sector that did not has
+zeros or old bytes. The size of a file may be ahead of its data. A name that was made, renamed or removed is there or
+not, in any order, until its folder is synced."""
 
 import itertools
 import random

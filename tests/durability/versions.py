@@ -1,6 +1,6 @@
-"""Journals of every version and results files of every schema version that were written, by the releases that wrote them
-(versions/, and for schema version 2 the seeds of the fuzz targets): what is safe is gone on with, and the file says whose
-trials are whose; anything else is refused, changes nothing and says which release to use."""
+"""Journals of every version and results files of every schema version that were written, by the releases that wrote
+them (versions/, and for schema version 2 the seeds of the fuzz targets): what is safe is gone on with, and the
+file says whose trials are whose; anything else is refused, changes nothing and says which release to use."""
 
 import gzip
 import re
@@ -44,8 +44,8 @@ class Versions:
             self.counts["refused"] += 1
             if self.bench.files() != before:
                 raise Failed(f"{name}: it was refused, but changed")
-            if not re.search(r"is a journal of version \d, this program's is \d.*release that began it|schema.version (is )?\d|"
-                             r"computed trials of it", done.stderr):
+            if not re.search(r"is a journal of version \d, this program's is \d.*release that began it|"
+                             r"schema.version (is )?\d|computed trials of it", done.stderr):
                 raise Failed(f"{name}: the refusal does not say whose it is: {done.stderr.strip()}")
             return
         if done.returncode != 0:

@@ -1,4 +1,4 @@
-/* A library to preload: every call that a program makes to files, memory and threads goes through calls.c, and the modes
+/* A library to preload: every call that a program makes to files, memory and threads goes through calls.c, and modes
    decide what becomes of it. Each mode is a source of its own, which lists the variables that switch it on. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
