@@ -26,8 +26,8 @@ TEST_CASE("cli: a disk that fails in the middle of a file is what the message sa
 
 TEST_CASE("cli: a journal that the system cannot read back is said to be that, not to be changed by another program") {
     const Workplace here;
-    const Outcome outcome = here.shell("LD_PRELOAD=" CREDENCE_READING_FAILS " READING_FAILS=x.h5.journal READING_FAILS_FROM=900 "
-                                       CREDENCE_PROGRAM " run " + seed_scenario("ekf-straight-constant") +
+    const Outcome outcome = here.shell("LD_PRELOAD=" CREDENCE_READING_FAILS " READING_FAILS=x.h5.journal "
+                                       "READING_FAILS_FROM=900 " CREDENCE_PROGRAM " run " + seed_scenario("ekf-straight-constant") +
                                        " --trials 300 --quiet -o x.h5");
     CAPTURE(outcome.err);
     CHECK(outcome.exit_code == 1);

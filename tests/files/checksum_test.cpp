@@ -73,7 +73,8 @@ TEST_CASE("checksum: a file that was written before there were any reads back") 
     CHECK(study_hash(then) == study_hash(now));
     for (std::size_t s = 0; s < now.scenarios.size(); ++s)
         for (std::size_t a = 0; a < now.scenarios[s].arms.size(); ++a)
-            CHECK(column_values(then.scenarios[s].arms[a], 0, 0, 300) == column_values(now.scenarios[s].arms[a], 0, 0, 300));
+            CHECK(column_values(then.scenarios[s].arms[a], 0, 0, 300) ==
+                  column_values(now.scenarios[s].arms[a], 0, 0, 300));
 }
 
 TEST_CASE("hdf5: where HDF5 gets no memory, the message says so") {

@@ -18,8 +18,8 @@ const std::vector<std::pair<std::string, double>> lengths{
 /// A scenario with one arm whose unit of length is 1/factor of another's.
 DeformableSettings scaled(double factor, const std::string& process, const std::string& more, int poses = 8) {
     DeformableSettings settings = read_deformable_text("[scenario]\nname = one\nposes = " + std::to_string(poses) +
-                                                           "\n[arms]\ncontrollers = fixed\n[model]\nprocess = " + process +
-                                                           "\n" + more,
+                                                           "\n[arms]\ncontrollers = fixed\n[model]\nprocess = " +
+                                                           process + "\n" + more,
                                                        "one", "one");
     std::string positions;
     for (const auto& [x, y] : {std::pair{0.5, 0.5}, {0.9, 0.8}, {0.3, 0.4}})
