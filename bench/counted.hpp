@@ -49,6 +49,9 @@ struct BitsOf<Counted> {
     using type = std::uint64_t;
 };
 
+/// A scalar of filters' equations (functions.hpp).
+constexpr bool is_pack(const Counted*) { return true; }
+
 /// One after the other: from_bits gives doubles, which Several would not convert to Counted.
 template <int count>
 void draw_several(const KeyedDraws<Counted>& noise, const DrawKey* keys, Vector2<Counted>* draws) {

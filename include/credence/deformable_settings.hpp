@@ -48,8 +48,12 @@ enum class RangeNoise { constant, ranged };
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
 enum class EdgeGraph { all, chain, none, list };
-/// greedy: the control whose next trace(P) is least; horizon: the one whose sum over several steps is least.
-enum class Controller { fixed, greedy, horizon };
+/// greedy: the control whose next cost is least; horizon: the one whose sum over several steps is least; random: any
+/// candidate; nearest: towards the feature least well known; follow: to the centre of the features; waypoints: along
+/// control.waypoints. In the order of controller_names.
+enum class Controller { fixed, greedy, horizon, random, nearest, follow, waypoints };
+/// What the planners minimise [docs/model.md, Criteria].
+enum class Criterion { trace, log_det, max_eigenvalue, pose_trace, pose_log_det, features_trace };
 /// How the state is estimated, in the order of estimator_list.hpp.
 enum class Estimator {
 #define CREDENCE_ESTIMATOR(name, process, Type) name,
@@ -101,6 +105,8 @@ struct FilterSettings {
 };
 
 struct PlannerSettings {
+    Criterion criterion = Criterion::trace;
+    double heading_weight = 1;                    ///< length units^2 per rad^2
     std::optional<int> speeds;                    ///< half-width of the grid in steps of d/5; none: the process's own
     std::optional<std::vector<double>> turns;     ///< rad; none: the path's own
     std::optional<int> horizon;                   ///< steps; none: 2 where an arm plans by a horizon, else 1
@@ -128,6 +134,7 @@ struct DeformableSettings {
     EdgeSettings edges;
     FilterSettings filter;
     FixedPath fixed_path = FixedPath::as_features;
+    std::vector<Point> waypoints;                 ///< of the controller of that name, from (0, 0) on
     PlannerSettings planner;
     ArmSettings arms;
     PublishedSettings published;
@@ -142,6 +149,7 @@ struct Arm {
 
 inline constexpr int largest_feature_count = 64;
 inline constexpr int largest_pose_count = 100000;
+inline constexpr int largest_waypoint_count = 1000;
 inline constexpr int largest_horizon = 8;
 /// The largest number of sequences of candidates that a horizon may have: each step of each trial evaluates all of
 /// them.
@@ -167,6 +175,11 @@ std::vector<Edge> edge_list(const DeformableSettings& scenario);
 
 /// The planners' candidates at each pose, of a resolved scenario [docs/model.md, Controllers].
 int candidate_count(const DeformableSettings& scenario);
+
+/// Whether a controller plans: whether it evaluates the planners' candidates.
+constexpr bool plans(Controller controller) {
+    return controller == Controller::greedy || controller == Controller::horizon;
+}
 
 /// The path along which the robot is steered: control.path, or the features' own.
 Path robot_path(const DeformableSettings& scenario);

@@ -57,8 +57,8 @@ public:
     virtual std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const = 0;
 };
 
-/// The arm that each of these is compared with: `fixed.X` beside `greedy.X`; beside `horizon.X` the greedy one, or the
-/// fixed one. Empty where there is none.
+/// The arm that each of these is compared with: `fixed.X`; beside a planner without it, another controller that does not
+/// plan; beside `horizon.X` first of all the greedy one. Empty where there is none.
 std::vector<std::string> baselines_among(const std::vector<std::string>& arms);
 
 /// Adds a world to those that there are. Not thread-safe: before anything else. Throws InputError where there is one of

@@ -18,7 +18,8 @@ Vector2<double> RecordedDraws::normal(Source source, int pose, int index) const 
         case Source::measurement: return pair(record.measurement, pose, record.features, index);
         case Source::edge: return pair(record.edge, pose, record.edges, index);
         case Source::detection:
-        case Source::landmark_prior: break;  // a noise record does not have these
+        case Source::landmark_prior:
+        case Source::control: break;  // a noise record does not have these
     }
     return {};
 }

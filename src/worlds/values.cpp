@@ -71,8 +71,7 @@ std::size_t parse_choice(const std::string& name, const std::string& value, cons
     return static_cast<std::size_t>(found - choices.begin());
 }
 
-std::vector<Point> parse_positions(const std::string& value) {
-    const std::string name = "features.positions";
+std::vector<Point> parse_points(const std::string& name, const std::string& value, std::size_t most) {
     std::vector<Point> positions;
     for (const std::string& pair : split_list(value)) {
         const std::size_t space = pair.find_first_of(" \t");
@@ -80,9 +79,9 @@ std::vector<Point> parse_positions(const std::string& value) {
         const ValueRange anywhere = between(-largest_value, largest_value);
         positions.push_back({parse_real(name, x, anywhere), parse_real(name, y, anywhere)});
     }
-    if (positions.empty() || positions.size() > largest_feature_count)
-        throw invalid_value(name, value, std::to_string(positions.size()) + " features",
-                            "Give 1 to " + std::to_string(largest_feature_count) + " as `x y, x y`");
+    if (positions.empty() || positions.size() > most)
+        throw invalid_value(name, value, std::to_string(positions.size()) + " points",
+                            "Give 1 to " + std::to_string(most) + " as `x y, x y`");
     return positions;
 }
 
@@ -153,7 +152,8 @@ std::string turns_text(const std::optional<std::vector<double>>& turns) {
 }
 
 const std::vector<std::string>& controller_names() {
-    static const std::vector<std::string> names{"fixed", "greedy", "horizon"};
+    static const std::vector<std::string> names{"fixed",  "greedy", "horizon", "random",
+                                                "nearest", "follow", "waypoints"};
     return names;
 }
 

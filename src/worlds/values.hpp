@@ -30,7 +30,8 @@ double parse_real(const std::string& name, const std::string& value, const Value
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
 
-std::vector<Point> parse_positions(const std::string& value);
+/// 1 to `most` points as `x y, x y`.
+std::vector<Point> parse_points(const std::string& name, const std::string& value, std::size_t most);
 std::string positions_text(const std::vector<Point>& positions);
 EdgeSettings parse_graph(const std::string& value);
 std::string graph_text(const EdgeSettings& edges);

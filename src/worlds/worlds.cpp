@@ -28,8 +28,11 @@ std::vector<std::string> baselines_among(const std::vector<std::string>& arms) {
     for (const std::string& arm : arms) {
         const std::string controller = controller_of(arm), rest = arm.substr(controller.size());
         std::vector<std::string> simpler;
-        if (controller == "horizon") simpler = {"greedy", "fixed"};
-        if (controller == "greedy") simpler = {"fixed"};
+        if (controller == "greedy" || controller == "horizon")
+            simpler = {"fixed", "waypoints", "follow", "nearest", "random"};
+        else if (controller != "fixed")
+            simpler = {"fixed"};
+        if (controller == "horizon") simpler.insert(simpler.begin(), "greedy");
         const auto runs = [&](const std::string& other) {
             return std::find(arms.begin(), arms.end(), other + rest) != arms.end();
         };

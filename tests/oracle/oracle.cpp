@@ -28,9 +28,10 @@ double condition(const Eigen::MatrixXd& symmetric) {
 
 /// Control from pose k-1 to k, with the candidates' costs when planned [docs/model.md, Controllers]. A horizon ends at
 /// the last pose.
-void choose_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k, Step& step) {
-    if (controller == Controller::fixed) {
-        step.control = fixed_control(scenario, k - 1);
+void choose_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k,
+                    const Noise& noise, Step& step) {
+    if (controller != Controller::greedy && controller != Controller::horizon) {
+        step.control = baseline_control(scenario, controller, belief, k, noise);
         return;
     }
     const std::vector<Control> list = candidates(scenario);
@@ -38,7 +39,7 @@ void choose_control(const DeformableSettings& scenario, Controller controller, c
     const int steps = controller == Controller::greedy ? 1 : std::min(*scenario.planner.horizon, scenario.poses - k);
     for (std::size_t i = 0; i < list.size(); ++i)
         step.candidate_cost[static_cast<Eigen::Index>(i)] = cost_ahead(scenario, belief, list[i], k, steps);
-    step.control = list[static_cast<std::size_t>(greedy_choice(step.candidate_cost))];
+    step.control = list[static_cast<std::size_t>(greedy_choice(scenario, step.candidate_cost))];
 }
 
 /// Measurements z (m) at pose k: the seen features, then all edges [docs/model.md, Filter, See and Edges].
@@ -118,7 +119,7 @@ Trial run(const DeformableSettings& scenario, Controller controller, const Noise
     note(scenario, world, belief, trial.steps.back());
     for (int k = 1; k < scenario.poses; ++k) {
         Step step;
-        choose_control(scenario, controller, belief, k, step);
+        choose_control(scenario, controller, belief, k, noise, step);
         world = next_world(scenario, world, step.control, k, noise);
         const Belief prior = predict(scenario, belief, step.control, k);
         step.prior_mean = prior.x;

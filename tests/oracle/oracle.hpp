@@ -45,7 +45,7 @@ struct Step {
     double nis = 0;                                       ///< 0 if there are no rows
     double trace_P = 0;                                   ///< of the reported covariance; adds rad^2 to length^2
     int rows = 0;                                         ///< m
-    Eigen::VectorXd candidate_cost;                       ///< per candidate, unreported trace(P), summed over the horizon
+    Eigen::VectorXd candidate_cost;                       ///< per candidate, of unreported P, summed over the horizon
     double condition_of_S = 1;                            ///< 2-norm; 1 if there are no rows
 };
 
@@ -130,8 +130,11 @@ Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction)
 Path path_of_robot(const DeformableSettings& scenario);                      ///< control.path, or the features' own
 Control fixed_control(const DeformableSettings& scenario, int k);            ///< from pose k to k+1
 std::vector<Control> candidates(const DeformableSettings& scenario);         ///< in the order of model.md
+double cost_of(const DeformableSettings& scenario, const Eigen::MatrixXd& P);  ///< planner.criterion
 double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k);
 double cost_ahead(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k, int steps);
-int greedy_choice(const Eigen::VectorXd& cost);                    ///< index of the chosen candidate
+int greedy_choice(const DeformableSettings& scenario, const Eigen::VectorXd& cost);  ///< index of the chosen candidate
+Control baseline_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k,
+                         const Noise& noise);                      ///< of a controller that does not plan
 
 }  // namespace credence::oracle

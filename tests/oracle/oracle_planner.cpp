@@ -105,32 +105,129 @@ Belief expected(const DeformableSettings& scenario, const Belief& belief, const 
     return {prior.x, correct(prior.P, prediction).P};
 }
 
-/// Cost of a control from the belief at pose k-1 to pose k: trace(P) there [docs/model.md, Controllers, greedy].
-double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
-    return expected(scenario, belief, control, k).P.trace();
+/// What planner.criterion makes of P; headings count planner.heading_weight in traces and eigenvalues [docs/model.md,
+/// Criteria].
+double cost_of(const DeformableSettings& scenario, const Eigen::MatrixXd& P) {
+    const int pose = pose_dimension(scenario);
+    Eigen::VectorXd root = Eigen::VectorXd::Ones(P.rows());
+    if (pose == 3) root[0] = std::sqrt(scenario.planner.heading_weight);
+    const Eigen::MatrixXd weighted = root.asDiagonal() * P * root.asDiagonal();
+    switch (scenario.planner.criterion) {
+        case Criterion::trace: break;
+        case Criterion::log_det: return std::log(P.determinant());
+        case Criterion::max_eigenvalue:
+            return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(weighted).eigenvalues().maxCoeff();
+        case Criterion::pose_trace: return weighted.topLeftCorner(pose, pose).trace();
+        case Criterion::pose_log_det: return std::log(P.topLeftCorner(pose, pose).determinant());
+        case Criterion::features_trace: return P.trace() - P.topLeftCorner(pose, pose).trace();
+    }
+    return weighted.trace();
 }
 
-/// Cost of a control that `steps` - 1 others follow: the least sum of trace(P), after each of the steps, that any
+/// Cost of a control from the belief at pose k-1 to pose k [docs/model.md, Controllers, greedy].
+double candidate_cost(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
+    return cost_of(scenario, expected(scenario, belief, control, k).P);
+}
+
+/// Cost of a control that `steps` - 1 others follow: the least sum of costs, after each of the steps, that any
 /// sequence of them has.
 double cost_ahead(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k, int steps) {
     const Belief next = expected(scenario, belief, control, k);
-    if (steps == 1) return next.P.trace();
+    if (steps == 1) return cost_of(scenario, next.P);
     double least = std::numeric_limits<double>::infinity();
     for (const Control& following : candidates(scenario))
         least = std::min(least, cost_ahead(scenario, next, following, k + 1, steps - 1));
-    return next.P.trace() + least;
+    return cost_of(scenario, next.P) + least;
 }
 
 /// Index of the choice among the costs: going through them in order, one replaces the choice when its cost is
-/// <= best (1 + 1e-12), best being the running minimum [docs/model.md, Controllers, greedy].
-int greedy_choice(const Eigen::VectorXd& cost) {
+/// <= best (1 + 1e-12), or best + 1e-11 where costs are logarithms, best being the running minimum [docs/model.md,
+/// Controllers, greedy].
+int greedy_choice(const DeformableSettings& scenario, const Eigen::VectorXd& cost) {
+    const Criterion criterion = scenario.planner.criterion;
+    const bool logarithm = criterion == Criterion::log_det || criterion == Criterion::pose_log_det;
     int choice = 0;
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < cost.size(); ++i) {
-        if (cost[i] <= best * (1 + 1e-12)) choice = i;
+        if (cost[i] <= (logarithm ? best + 1e-11 : best * (1 + 1e-12))) choice = i;
         best = std::min(best, cost[i]);
     }
     return choice;
+}
+
+
+namespace {
+
+/// Where the robot would be without noise at a length along the way from (0, 0) through the waypoints; at the last of
+/// them beyond the end.
+Eigen::Vector2d along_waypoints(const DeformableSettings& scenario, double length) {
+    Eigen::Vector2d at(0, 0);
+    for (const Point& point : scenario.waypoints) {
+        const Eigen::Vector2d to(point.x, point.y);
+        const double leg = (to - at).norm();
+        if (length < leg) return at + length * (to - at).normalized();
+        length -= leg;
+        at = to;
+    }
+    return at;
+}
+
+/// Control for a move (2, world) of a robot with a heading: it turns into the direction of the move; none for no move.
+Control control_for(const DeformableSettings& scenario, const Eigen::Vector2d& move, double heading) {
+    if (scenario.process == Process::translation || move.norm() == 0) return {0, {move[0], move[1]}};
+    const Eigen::Vector2d v = rotation(heading).transpose() * move;
+    return {std::atan2(v[1], v[0]), {v[0], v[1]}};
+}
+
+/// Moves towards a place, no farther than the longest candidate.
+Control towards(const DeformableSettings& scenario, const Belief& belief, const Eigen::Vector2d& place) {
+    double reach = 0;
+    for (const Control& one : candidates(scenario)) reach = std::max(reach, std::hypot(one.move.x, one.move.y));
+    const double heading = scenario.process == Process::heading ? belief.x[0] : 0;
+    Eigen::Vector2d move = place - belief.x.segment<2>(row_of_position(scenario));
+    if (move.norm() > reach) move *= reach / move.norm();
+    return control_for(scenario, move, heading);
+}
+
+/// Control from pose k-1 to k on the way along the waypoints. The heading without noise is that of the last move.
+Control waypoint_control(const DeformableSettings& scenario, int k) {
+    const double d = scenario.features.step;
+    double heading = 0;
+    for (int before = 1; before < k; ++before) {
+        const Eigen::Vector2d move =
+            along_waypoints(scenario, before * d) - along_waypoints(scenario, (before - 1) * d);
+        if (move.norm() > 0) heading = std::atan2(move[1], move[0]);
+    }
+    return control_for(scenario, along_waypoints(scenario, k * d) - along_waypoints(scenario, (k - 1) * d), heading);
+}
+
+}  // namespace
+
+/// Control from pose k-1 to k of a controller that does not plan [docs/model.md, Controllers].
+Control baseline_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k,
+                         const Noise& noise) {
+    const Eigen::VectorXd x = predicted_mean(scenario, belief.x, {}, k);
+    const int M = feature_count(scenario);
+    int least_known = 0;
+    Eigen::Vector2d centre(0, 0);
+    const auto variance = [&](int j) {
+        return belief.P.diagonal().segment<2>(row_of_feature(scenario, j)).sum();
+    };
+    for (int j = 0; j < M; ++j) {
+        centre += x.segment<2>(row_of_feature(scenario, j)) / M;
+        if (variance(j) > (1 + 1e-12) * variance(least_known)) least_known = j;
+    }
+    switch (controller) {
+        case Controller::random: {
+            const std::vector<Control> list = candidates(scenario);
+            return list[static_cast<std::size_t>(noise.uniform(Source::control, k, 0) * static_cast<double>(list.size()))];
+        }
+        case Controller::nearest:
+            return towards(scenario, belief, x.segment<2>(row_of_feature(scenario, least_known)));
+        case Controller::follow: return towards(scenario, belief, centre);
+        case Controller::waypoints: return waypoint_control(scenario, k);
+        default: return fixed_control(scenario, k - 1);
+    }
 }
 
 }  // namespace credence::oracle

@@ -104,7 +104,7 @@ TEST_CASE("compare: where there is nothing to compare, what there is is named") 
     const DeformableSettings fixed_only = changed(scenario("h"), "arms.controllers", "fixed"),
                    greedy_only = changed(scenario("h"), "arms.controllers", "greedy");
     CHECK_THAT(refused({unrun("one.h5", {fixed_only})}),
-               Contains("nothing to compare in one.h5 (no greedy arm") && Contains("one.h5 has fixed.ekf in h."));
+               Contains("nothing to compare in one.h5 (no arm has that of a simpler controller") && Contains("one.h5 has fixed.ekf in h."));
     CHECK_THAT(
         refused({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}),
         Contains("cannot compare two.h5 with one.h5 (no scenario of the same name has an arm of the same name)"));

@@ -116,7 +116,7 @@ TEST_CASE("controller: the cost of a candidate is the oracle's brute force") {
             for (int i = 0; i < view.control.candidate_count; i += 7) {
                 const Control& control = view.control.candidates[i];
                 const double cost =
-                    candidate_cost(base, command_from<double>(control), view.filter, view.sensor, layout, next);
+                    candidate_cost(base, command_from<double>(control), view.control, view.filter, view.sensor, layout, next);
                 // cond(S) is below 1e4: 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before, at most some times the
                 // cost.
                 CHECK(relative(cost, oracle::candidate_cost(problem.scenario(), {sample.x, sample.P}, control, 2)) < 1e-10);

@@ -38,8 +38,8 @@ template <class Layout, class Belief>
 double plain_cost(const ProblemView& view, const Layout& layout, const Belief& belief, int candidate, int k, int steps) {
     const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
     prepare_candidates(belief, view.filter, layout, k, *base);
-    const double cost = candidate_cost(*base, command_from<double>(view.control.candidates[candidate]), view.filter,
-                                       view.sensor, layout, *next);
+    const double cost = candidate_cost(*base, command_from<double>(view.control.candidates[candidate]), view.control,
+                                       view.filter, view.sensor, layout, *next);
     if (steps == 1) return cost;
     double least = infinity;
     for (int i = 0; i < view.control.candidate_count; ++i)
@@ -175,7 +175,7 @@ TEST_CASE("horizon: the sum counts, not the next step alone") {
         const auto found = std::find(candidates.begin(), candidates.end(), step.control);
         REQUIRE(found != candidates.end());
         const std::size_t chosen = static_cast<std::size_t>(found - candidates.begin()),
-                          greedy = static_cast<std::size_t>(oracle::greedy_choice(next));
+                          greedy = static_cast<std::size_t>(oracle::greedy_choice(scenario, next));
         const double of_chosen = next[static_cast<Eigen::Index>(chosen)], of_greedy = next[static_cast<Eigen::Index>(greedy)];
         CHECK(of_greedy <= of_chosen * (1 + 1e-12));
         CHECK(step.candidate_cost[chosen] <= step.candidate_cost[greedy] * (1 + 1e-12));

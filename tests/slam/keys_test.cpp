@@ -24,9 +24,12 @@ struct Influence {
     std::vector<ColumnIndex> untouched;  ///< the same bits for every trial
 };
 
-constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy, horizon = Controller::horizon;
+constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy, horizon = Controller::horizon,
+                     waypoints = Controller::waypoints;
 const Settings circle{{"features.path", "circle"}}, ranged{{"sensor.noise", "ranged"}}, swaying{{"features.sway_amplitude", "0.8"}},
     turning{{"noise.heading", "0.02"}}, flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}},
+    turned{{"noise.heading", "0.05"}, {"features.path", "circle"}},
+    walked{{"arms.controllers", "waypoints"}, {"control.waypoints", "2 0, 40 0"}},
     ahead{{"model.process", "translation"}, {"features.path", "circle"}, {"arms.controllers", "fixed, greedy, horizon"}};
 const std::vector<ColumnIndex> sight{column_unseen}, beliefs{column_unseen, column_trace_P},
     all{column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio},
@@ -75,6 +78,10 @@ const std::vector<Influence>& influences() {
         {"planner.speeds", "1", {}, fixed, column_count, Way::up, all},
         {"planner.turns", "0", circle, greedy, column_trace_P, Way::up, {}},
         {"planner.turns", "0.1, 0.2", circle, fixed, column_count, Way::up, all},
+        {"control.waypoints", "0 9", walked, waypoints, column_unseen, Way::up, {}},
+        {"planner.criterion", "pose_trace", circle, greedy, column_unseen, Way::up, {}},
+        {"planner.criterion", "pose_log_det", circle, fixed, column_count, Way::up, all},
+        {"planner.heading_weight", "100", turned, greedy, column_pose_error, Way::up, {}},
         {"planner.horizon", "1", ahead, horizon, column_trace_P, Way::up, {}},
         // What the filter believes steers the planner too.
         {"filter.measurement", "0.2", circle, greedy, column_nees_ratio, Way::up, {}},

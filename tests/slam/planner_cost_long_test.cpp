@@ -38,7 +38,7 @@ struct Planner {
         const auto belief = belief_of<Layout>(sample.x, covariance_of<Layout>(sample));
         prepare_candidates(belief, view.filter, layout, 2, base);
         prepare_still(belief, view.filter, layout, 2, work->still);
-        enter_measurement_space(work->still, view.filter, layout, work->space);
+        enter_measurement_space(work->still, view.filter, layout, view.control.weights, work->space);
         if constexpr (Layout::has_heading) heading = rotation(sample.x[0]);
     }
 
@@ -47,14 +47,17 @@ struct Planner {
         return world_move<Layout>(heading, Vector2<double>{v.x, v.y});
     }
     double plain(int i) {
-        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.filter, view.sensor, layout,
-                              next);
+        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.control, view.filter, view.sensor,
+                              layout, next);
     }
     double cost(int i) { return cost_in_measurement_space(work->space, move(i), view.filter, view.sensor, layout, *room); }
 };
 
 const std::vector<Settings> worlds{
     {},
+    {{"planner.heading_weight", "7"}},
+    {{"planner.criterion", "pose_trace"}, {"planner.heading_weight", "0.3"}, {"noise.heading", "0.1"}},
+    {{"planner.criterion", "features_trace"}, {"sensor.noise", "ranged"}},
     {{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"}},
     {{"edges.graph", "chain"}, {"noise.heading", "0.3"}, {"sensor.sigma", "0.2"}},
     {{"edges.graph", "none"}, {"sensor.range_max", "inf"}, {"filter.measurement", "2"}, {"noise.heading", "0.1"}}};
@@ -121,7 +124,7 @@ TEST_CASE("planner: no candidate costs less than its bound") {
                 for (const int reference : {0, count / 3, count - 1}) {  // any reference will do
                     const auto tangent =
                         tangent_at(planner.work->space.position + planner.move(reference), still, planner.heading,
-                                   view.filter, view.sensor, layout, parameters.kappa, screening);
+                                   view.filter, view.sensor, layout, view.control.weights, parameters.kappa, screening);
                     for (int i = 0; i < count; i += 3) {
                         const auto value = [&](int j) { return value_of<ranged()>(screening, parameters, i, j); };
                         CHECK(tangent.bound(view.control.candidates[i].move, layout, value) <=

@@ -61,10 +61,13 @@ const std::vector<KeyCase>& key_cases() {
         {"filter.edges", "1", {"0", "0.5"}, not_a_length},
         {"filter.covariance", "1", {"0", "0.5"}, not_a_length},
         {"control.path", "as-features", {"straight", "circle"}, {"static", "features"}},
+        {"control.waypoints", "none", {"1 2", "-1 -2, 3 4"}, {"1", "1 2, 3", "1 2,", "2e9 0", "some"}},
+        {"planner.criterion", "trace", {"log_det", "max_eigenvalue", "pose_trace", "pose_log_det", "features_trace"}, {"det", "Trace"}},
+        {"planner.heading_weight", "1", {"0", "25"}, not_a_length},
         {"planner.speeds", "default", {"1", "5", "100"}, {"0", "101", "-1", "1.5", "none"}},
         {"planner.turns", "default", {"none", "0", "-0.5, 0, 0.5"}, {"3.3", "0, x", "0,,1", "a"}},
         {"planner.horizon", "default", {"1", "8"}, {"0", "9", "-1", "1.5", "none"}},
-        {"arms.controllers", "fixed, greedy", {"fixed", "greedy", "greedy, fixed", "fixed, greedy, horizon"}, {"fixed, fixed", "best", "fixed,"}},
+        {"arms.controllers", "fixed, greedy", {"fixed", "greedy", "greedy, fixed", "fixed, greedy, horizon", "random, nearest, follow, waypoints"}, {"fixed, fixed", "best", "fixed,"}},
         {"arms.estimators", "default", {"ekf", "kf"}, {"ukf", "ekf, ekf"}},
         {"published.trace_P", "", {"fixed.ekf 0.1061", "fixed.ekf 0.1061, greedy.ekf 0.1034"}, {"fixed.ekf", "fixed.ekf x", "fixed.ekf 1 2"}},
         {"published.unseen", "", {"fixed.ekf 3"}, {"fixed.ekf", "fixed.ekf inf"}},
@@ -177,7 +180,7 @@ TEST_CASE("scenario: a number may be written in many ways and is kept to the bit
     }
 }
 
-TEST_CASE("scenario: up to 64 features and 100 turns are taken") {
+TEST_CASE("scenario: up to 64 features, 1000 waypoints and 100 turns are taken") {
     const auto repeated = [](const char* one, int count) {
         std::string text = one;
         for (int i = 1; i < count; ++i) text += std::string(", ") + one;
@@ -187,6 +190,9 @@ TEST_CASE("scenario: up to 64 features and 100 turns are taken") {
     set_key(scenario, "features.positions", repeated("1 2", 64));
     CHECK(scenario.features.positions.size() == 64);
     check_refused("features.positions", repeated("1 2", 65));
+    set_key(scenario, "control.waypoints", repeated("1 2", 1000));
+    CHECK(scenario.waypoints.size() == 1000);
+    check_refused("control.waypoints", repeated("1 2", 1001));
     set_key(scenario, "planner.turns", repeated("0.1", 100));
     CHECK(scenario.planner.turns->size() == 100);
     check_refused("planner.turns", repeated("0.1", 101));

@@ -42,6 +42,8 @@ TEST_CASE("scenario: keys that contradict each other are refused, naming one of 
         {{{"planner.turns", "none"}}, "planner.turns"},
         {{{"model.process", "translation"}, {"planner.turns", "0"}}, "planner.turns"},
         {{{"planner.horizon", "2"}}, "planner.horizon"},
+        {{{"arms.controllers", "waypoints"}}, "arms.controllers"},
+        {{{"control.waypoints", "1 1"}}, "control.waypoints"},
         {{{"arms.controllers", "horizon"}, {"features.path", "circle"}, {"planner.horizon", "4"}}, "planner.horizon"},
         {{{"arms.estimators", "kf"}}, "arms.estimators"},
         {{{"arms.estimators", "ekf, kf"}}, "arms.estimators"},

@@ -22,6 +22,7 @@ enum class Source : std::uint32_t {
     edge = 5,               ///< by edge in graph order
     detection = 6,          ///< by feature, uniform
     landmark_prior = 7,     ///< by landmark: the error of its prior estimate
+    control = 8,            ///< uniform: which candidate the controller `random` takes
 };
 
 /// The key of a draw, beside the trial. Its index has 16 bits.

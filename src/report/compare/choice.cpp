@@ -62,7 +62,7 @@ public:
         }
         if (pairs_.empty())
             throw InputError("nothing to compare in " + files_[0].path +
-                             " (no greedy arm has a fixed one of the same estimator beside it, and no horizon a greedy one). Give --arms A,B: " +
+                             " (no arm has that of a simpler controller and the same estimator beside it). Give --arms A,B: " +
                              contents(files_[0]) + ".");
     }
 

@@ -1,20 +1,11 @@
 #pragma once
-// The controllers. The fixed path is a table; the greedy planner takes the candidate whose next trace(P) is least
-// [docs/model.md, Controllers]; horizon.hpp plans several steps.
+// The greedy planner: it takes the candidate whose next cost is least [docs/model.md, Controllers]. horizon.hpp plans
+// several steps; baselines.hpp has the controllers that do not plan.
 
+#include "slam/planning/criterion.hpp"
 #include "slam/update.hpp"
 
-#include <limits>
-
 namespace credence {
-
-struct ControlParameters {
-    const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
-    const Control* candidates = nullptr;  ///< in the order that decides ties
-    int candidate_count = 0;
-    double squared_reach = 0;             ///< of the candidate with the largest displacement
-    int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
-};
 
 inline namespace CREDENCE_TARGET {
 
@@ -40,12 +31,11 @@ CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, cons
     });
 }
 
-/// trace(P) after one step under a candidate: predict, gate and compute sigma at the predicted mean, update P. This is
-/// the direct form, and the oracle for the forms of planner.hpp. `next` is workspace.
+/// The belief after one step under a candidate: predict, gate and compute sigma at the predicted mean, update P.
 template <class Layout, class Real, int capacity>
-CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command,
-                                  const FilterParameters& filter, const SensorParameters& sensor,
-                                  const Layout& layout, Belief<Real, capacity>& next) {
+CREDENCE_FLAT void expect(const Belief<Real, capacity>& base, const Command<Real>& command,
+                          const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                          Belief<Real, capacity>& next) {
     const auto n = layout.size();
     each(zero, n, [&](auto i) { next.mean[i] = base.mean[i]; });
     copy(base.covariance, n, next.covariance);
@@ -57,7 +47,15 @@ CREDENCE_FLAT Real candidate_cost(const Belief<Real, capacity>& base, const Comm
             condition(next.covariance, layout, sighting_rows<Layout>(next.mean, j),
                       believed_variance(filter, sigma_at(sensor, squared)), seen);
     });
-    return trace(next.covariance, n);
+}
+
+/// The cost of a candidate, by the direct form: the oracle for the forms of planner.hpp. `next` receives the belief.
+template <class Layout, class Real, int capacity>
+Real candidate_cost(const Belief<Real, capacity>& base, const Command<Real>& command, const ControlParameters& control,
+                    const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                    Belief<Real, capacity>& next) {
+    expect(base, command, filter, sensor, layout, next);
+    return cost_of(next.covariance, control, layout);
 }
 
 /// The smaller one; b where a is NaN.
@@ -68,18 +66,23 @@ Real smaller(Real a, Real b) { return select(a < b, a, b); }
 template <class Real>
 Real without_limit() { return Real(std::numeric_limits<double>::infinity()); }
 
-/// Keeps the minimum so far and the choice: a candidate replaces the choice if its cost <= best (1 + 1e-12), so that
-/// the last of equal candidates wins.
+/// Keeps the minimum so far and the choice: a candidate replaces the choice if its cost <= best (1 + 1e-12), or best +
+/// 1e-11 where costs are logarithms, so that the last of equal candidates wins.
 template <class Real>
 struct Choice {
     Command<Real> command;
     Real best = without_limit<Real>();
+    CostScale scale = CostScale::linear;
+
+    Real equal_cost() const {
+        return scale == CostScale::linear ? best * Real(1 + 1e-12) : best + Real(1e-11);
+    }
 
     void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
 
     /// Offers a candidate in some lanes only.
     void offer(const Command<Real>& candidate, Real cost, Mask<Real> offered) {
-        const Mask<Real> taken = both(offered, cost <= best * Real(1 + 1e-12));
+        const Mask<Real> taken = both(offered, cost <= equal_cost());
         command.turn = select(taken, candidate.turn, command.turn);
         command.move.x = select(taken, candidate.move.x, command.move.x);
         command.move.y = select(taken, candidate.move.y, command.move.y);
@@ -87,12 +90,18 @@ struct Choice {
     }
 };
 
+/// Before the first candidate.
+template <class Real>
+Choice<Real> no_choice(const ControlParameters& control) {
+    return {{}, without_limit<Real>(), scale_of(control.criterion)};
+}
+
 /// The first choice in some lanes, the second in the others.
 template <class Real>
 Choice<Real> chosen(Mask<Real> first, const Choice<Real>& a, const Choice<Real>& b) {
     return {{select(first, a.command.turn, b.command.turn),
              {select(first, a.command.move.x, b.command.move.x), select(first, a.command.move.y, b.command.move.y)}},
-            select(first, a.best, b.best)};
+            select(first, a.best, b.best), a.scale};
 }
 
 /// Greedy control from pose k - 1 to k by the direct form, given the belief at pose k - 1. `costs(i, cost)` receives
@@ -102,10 +111,10 @@ Choice<Real> plan_plainly(const Belief<Real, capacity>& belief, const ControlPar
                            const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
                            int k, Belief<Real, capacity>& base, Belief<Real, capacity>& next, Costs&& costs) {
     prepare_candidates(belief, filter, layout, k, base);
-    Choice<Real> choice;
+    Choice<Real> choice = no_choice<Real>(control);
     for (int i = 0; i < control.candidate_count; ++i) {
         const Command<Real> candidate = command_from<Real>(control.candidates[i]);
-        const Real cost = candidate_cost(base, candidate, filter, sensor, layout, next);
+        const Real cost = candidate_cost(base, candidate, control, filter, sensor, layout, next);
         costs(i, cost);
         choice.offer(candidate, cost);
     }

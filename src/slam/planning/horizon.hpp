@@ -1,6 +1,6 @@
 #pragma once
 // Planning over several steps with a receding horizon [docs/model.md, Controllers: horizon]. It finds the sequence of
-// candidates over the horizon whose sum of trace(P) is least and takes its first control; at the next pose it plans
+// candidates over the horizon whose sum of costs is least and takes its first control; at the next pose it plans
 // again. Planning uses no measurements: each step starts from the mean and the covariance that the greedy planner's
 // model expects after the step before.
 
@@ -30,26 +30,26 @@ template <class Layout, class Real, int capacity>
 Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit);
 
-/// Computes, for each candidate as the first of `steps` > 1 steps, the least sum of trace(P) over these, and calls
-/// visit(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Traces of
-/// covariances are positive: where the first step's trace reaches the limit in all lanes, so does the sum, and visit is
-/// not called.
+/// Computes, for each candidate as the first of `steps` > 1 steps, the least sum of costs over these, and calls
+/// visit(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Where
+/// costs are positive, and the first step's reaches the limit in all lanes, so does the sum, and visit is not called.
 template <class Layout, class Real, int capacity, class Limit, class Visit>
 void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
                 Belief<Real, capacity>* ahead, const Limit& limit, Visit&& visit) {
     const auto& [control, filter, sensor, layout, last_step] = outlook;
+    const bool positive = scale_of(control.criterion) == CostScale::linear;
     prepare_candidates(belief, filter, layout, k, ahead[0]);
     for (int i = 0; i < control.candidate_count; ++i) {
         const Command<Real> command = command_from<Real>(control.candidates[i]);
-        const Real next = candidate_cost(ahead[0], command, filter, sensor, layout, ahead[1]);
+        const Real next = candidate_cost(ahead[0], command, control, filter, sensor, layout, ahead[1]);
         // The margin covers the rounding of sums and the tolerance of the tie rule.
-        const Real rest = limit() * Real(1 + 1e-9) - next;
+        const Real rest = positive ? limit() * Real(1 + 1e-9) - next : without_limit<Real>();
         if (any(negated(rest <= Real(0))))
             visit(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
     }
 }
 
-/// The least sum of trace(P) over `steps` steps from the belief at pose k - 1. Sums up to `limit` are exact; above it,
+/// The least sum of costs over `steps` steps from the belief at pose k - 1. Sums up to `limit` are exact; above it,
 /// only that they are above it is certain.
 template <class Layout, class Real, int capacity>
 Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
@@ -72,13 +72,13 @@ Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const ControlPara
                          int steps, HorizonWorkspace<Layout, Real>& work, PlannerWorkspace<Layout, Real>& last_step) {
     if (steps == 1) return plan(belief, control, filter, sensor, layout, k, last_step);
     const Outlook<Layout, Real> outlook{control, filter, sensor, layout, last_step};
-    Choice<Real> choice;
+    Choice<Real> choice = no_choice<Real>(control);
     look_ahead(outlook, belief, k, steps, work.ahead, [&] { return choice.best; },
                [&](int, const Command<Real>& command, Real sum) { choice.offer(command, sum); });
     return choice.command;
 }
 
-/// Calls visit(i, cost) with the cost of every candidate, where all costs are wanted: the trace(P) after its step or,
+/// Calls visit(i, cost) with the cost of every candidate, where all costs are wanted: that of its step or,
 /// for several steps, the least sum over them. The planners themselves evaluate few candidates.
 template <class Layout, class Real, int capacity, class Visit>
 void price_candidates(const Belief<Real, capacity>& belief, const ControlParameters& control,

@@ -1,13 +1,13 @@
 #pragma once
 // A candidate's cost in the space of the measurements [docs/model.md, Measurement space].
 //
-//   P, u, a, d0, H0 as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: the effect of the
+//   P, u, a, d0, H0, W as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: the effect of the
 //   fresh heading noise on sighting j; sigma^2 its variance
-//   B_j = P H0_j' [n, 2], w_j its row of the heading, A_jl = H0_j B_l, G_jl = B_j' B_l - w_j w_l' [2, 2]: the same for
-//   all candidates of a step
-// trace(P+) = trace(T P T') + sigma^2 - trace(S^-1 C), with
-//   S_jl = A_jl + sigma^2 g_j g_l' + N_j I (j = l),  C_jl = G_jl + v_j v_l' + w_j c_l' + c_j w_l',
-//   v_j = w_j + sigma^2 g_j, c_j = a . (the position's rows of B_j) + |a|^2 w_j / 2.
+//   B_j = P H0_j' [n, 2], w_j its row of the heading, A_jl = H0_j B_l, G_jl the sum over the other rows of W B_j' B_l
+//   [2, 2]: the same for all candidates of a step; W_t, W_r the weights of heading and position
+// trace(W P+) = trace(W T P T') + W_t sigma^2 - trace(S^-1 C), with
+//   S_jl = A_jl + sigma^2 g_j g_l' + N_j I (j = l),  C_jl = G_jl + W_t v_j v_l' + w_j c_l' + c_j w_l',
+//   v_j = w_j + sigma^2 g_j, c_j = W_r (a . (the position's rows of B_j) + |a|^2 w_j / 2).
 // S and C are eliminated together, sighting by sighting.
 
 #include "slam/planning/turned_trace.hpp"
@@ -16,11 +16,6 @@
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
-
-template <class Real>
-Vector2<Real> scaled(Real factor, const Vector2<Real>& v) {
-    return {factor * v.x, factor * v.y};
-}
 
 template <class Real>
 struct Matrix2 {
@@ -101,8 +96,9 @@ struct MeasurementSpace {
     Vector2<Real> position, feature[capacity];  ///< means
     Block2<Layout, Real> A[capacity][capacity];  ///< j <= l
     Block2<Layout, Real> G[capacity][capacity];  ///< j <= l
-    Vector2<Real> w[capacity], x[capacity], y[capacity];  ///< rows of B_j: heading, position
-    TurnedTrace<Real> prior;                    ///< trace(T P T') + sigma^2
+    Vector2<Real> w[capacity], x[capacity], y[capacity];  ///< rows of B_j: heading, W_r position
+    TurnedTrace<Real> prior;                    ///< trace(W T P T') + W_t sigma^2
+    Weights weights;
     Vector2<Real> B[capacity][Layout::capacity];
 };
 
@@ -119,19 +115,22 @@ struct MeasurementElimination {
 /// sightings'.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void enter_measurement_space(const Belief<Real, capacity>& still, const FilterParameters& filter,
-                                           const Layout& layout, MeasurementSpace<Layout, Real>& space) {
+                                           const Layout& layout, const Weights& weights,
+                                           MeasurementSpace<Layout, Real>& space) {
     const auto n = layout.size();
     const auto M = layout.features();
     space.position = point_at(still.mean, Layout::position);
-    space.prior = turned_trace(still.covariance, layout);
-    if constexpr (Layout::has_heading) space.prior.constant = space.prior.constant + Real(filter.variance_heading);
+    space.weights = weights;
+    space.prior = turned_trace(still.covariance, layout, weights);
+    if constexpr (Layout::has_heading)
+        space.prior.constant = space.prior.constant + Real(weights.heading * filter.variance_heading);
     each(zero, M, [&](auto j) {
         const auto rows = sighting_rows<Layout>(still.mean, j);
         space.feature[j] = point_at(still.mean, Layout::feature(j));
         each(zero, n, [&](auto i) { space.B[j][i] = rows([&](auto s) { return still.covariance.at(i, s); }); });
         if constexpr (Layout::has_heading) space.w[j] = space.B[j][Layout::heading];
-        space.x[j] = space.B[j][Layout::position];
-        space.y[j] = space.B[j][Layout::position + one];
+        space.x[j] = scaled(Real(weights.position), space.B[j][Layout::position]);
+        space.y[j] = scaled(Real(weights.position), space.B[j][Layout::position + one]);
     });
     each(zero, M, [&](auto j) {
         const auto rows = sighting_rows<Layout>(still.mean, j);
@@ -140,7 +139,9 @@ CREDENCE_FLAT void enter_measurement_space(const Belief<Real, capacity>& still, 
             const Vector2<Real> y = rows([&](auto s) { return space.B[l][s].y; });
             set_block(space.A[j][l], Matrix2<Real>{x.x, y.x, x.y, y.y});
             Matrix2<Real> sum{Real(0), Real(0), Real(0), Real(0)};
-            each(Layout::position, n, [&](auto i) { sum = add_outer(sum, space.B[j][i], space.B[l][i]); });
+            each(Layout::position, n, [&](auto i) {
+                sum = add_outer(sum, scaled(Real(weight_at<Layout>(weights, i)), space.B[j][i]), space.B[l][i]);
+            });
             set_block(space.G[j][l], sum);
         });
     });
@@ -152,7 +153,8 @@ CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space,
                                     const FilterParameters& filter, const SensorParameters& sensor,
                                     const Layout& layout, MeasurementElimination<Layout, Real>& work) {
     const Vector2<Real> a{-u.y, u.x}, there = space.position + u;
-    const Real half_squared = Real(0.5) * squared_norm(u), variance = Real(filter.variance_heading);
+    const Real half_squared = Real(0.5 * space.weights.position) * squared_norm(u);
+    const Real variance = Real(filter.variance_heading), weight = Real(space.weights.heading);
     Real N[Layout::feature_capacity];
     each(zero, layout.features(), [&](auto j) {
         const Vector2<Real> d = space.feature[j] - there;
@@ -167,14 +169,14 @@ CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space,
         }
     });
     each(zero, layout.features(), [&](auto j) {
-        Vector2<Real> noise;
-        if constexpr (Layout::has_heading) noise = scaled(variance, work.g[j]);
+        Vector2<Real> noise, weighted;
+        if constexpr (Layout::has_heading) noise = scaled(variance, work.g[j]), weighted = scaled(weight, work.v[j]);
         each(j, layout.features(), [&](auto l) {
             work.S[j][l] = space.A[j][l];
             work.C[j][l] = space.G[j][l];
             if constexpr (Layout::has_heading) {
                 work.S[j][l] = add_outer(work.S[j][l], noise, work.g[l]);
-                work.C[j][l] = add_outer(work.C[j][l], work.v[j], work.v[l]);
+                work.C[j][l] = add_outer(work.C[j][l], weighted, work.v[l]);
                 work.C[j][l] = add_outer(work.C[j][l], space.w[j], work.c[l]);
                 work.C[j][l] = add_outer(work.C[j][l], work.c[j], space.w[l]);
             }
@@ -206,7 +208,7 @@ CREDENCE_INLINE Real take_out(const Layout& layout, Index j, MeasurementEliminat
     return part;
 }
 
-/// trace(P+) of a candidate that moves the robot by u.
+/// trace(W P+) of a candidate that moves the robot by u.
 template <class Layout, class Real>
 CREDENCE_FLAT Real cost_in_measurement_space(const MeasurementSpace<Layout, Real>& space, const Vector2<Real>& u,
                                              const FilterParameters& filter, const SensorParameters& sensor,

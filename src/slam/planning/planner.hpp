@@ -52,7 +52,7 @@ FastChoice<Real> choose_by_screening(const ControlParameters& control, const Fil
     const ValueParameters parameters = value_parameters(sensor, filter);
     Rotation<Real> heading{};
     if constexpr (Layout::has_heading) heading = rotation(still.mean[Layout::heading]);
-    enter_measurement_space(still, filter, layout, space);
+    enter_measurement_space(still, filter, layout, control.weights, space);
     const auto cost = [&](const Command<Real>& command) {
         return cost_in_measurement_space(space, world_move<Layout>(heading, command.move), filter, sensor, layout,
                                          work.elimination);
@@ -66,7 +66,7 @@ FastChoice<Real> choose_by_screening(const ControlParameters& control, const Fil
         Command<Real> command = fetch_each(control, reference);
         const Tangent<Layout, Real> tangent =
             tangent_at(space.position + world_move<Layout>(heading, command.move), still, heading, filter, sensor,
-                       layout, parameters.kappa, screening);
+                       layout, control.weights, parameters.kappa, screening);
         fast.met = smaller(cost(command), fast.met);
         const Real threshold = smaller(fast.met, smaller(choice.best, limit)) * Real(1 + 1e-9);
         screen<ranged>(tangent, threshold, control, layout, parameters, first, count, screening);
@@ -81,7 +81,7 @@ template <class Layout, class Real>
 FastChoice<Real> choose_by_visible_sets(const ControlParameters& control, const FilterParameters& filter,
                                     const SensorParameters& sensor, const Layout& layout,
                                     PlannerWorkspace<Layout, Real>& work) {
-    enter_measurement_space(work.still, filter, layout, work.space);
+    enter_measurement_space(work.still, filter, layout, control.weights, work.space);
     gather_sets(work.still, control, sensor, layout, work.sets);
     price_sets(work.space, filter, sensor, layout, work.elimination, work.sets);
     const Real best = least_cost(1 << layout.features(), work.sets);
@@ -110,8 +110,9 @@ CREDENCE_FLAT Real lost_to_rounding(const ControlParameters& control, const Filt
     constexpr auto x = Layout::position;
     const auto& P = work.still.covariance.entry;
     const Real position = P[x][x] + P[x + one][x + one], reach = Real(control.squared_reach);
+    const Real moved = Real(control.weights.position) * reach;
     Real T = work.space.prior.constant, s = Real(0);
-    if constexpr (Layout::has_heading) T = fma(reach, P[Layout::heading][Layout::heading], T);
+    if constexpr (Layout::has_heading) T = fma(moved, P[Layout::heading][Layout::heading], T);
     each(zero, layout.features(), [&](auto j) {
         const auto f = Layout::feature(j);
         s = s + position + P[f][f] + P[f + one][f + one];
@@ -135,12 +136,34 @@ Mask<Real> doubtful(const FastChoice<Real>& fast, Real limit, Real lost, const P
     return both(matters, negated(both(accurate, found)));
 }
 
+/// The candidate whose largest eigenvalue is least. Most candidates are only shown to lie above the least one so far,
+/// by a factorisation each. `limit` is as above.
+template <class Layout, class Real, int capacity>
+Choice<Real> choose_by_eigenvalue(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                                  const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                                  int k, Real limit, PlannerWorkspace<Layout, Real>& work) {
+    prepare_candidates(belief, filter, layout, k, work.still);
+    Choice<Real> choice = no_choice<Real>(control);
+    for (int i = 0; i < control.candidate_count; ++i) {
+        const Command<Real> candidate = command_from<Real>(control.candidates[i]);
+        expect(work.still, candidate, filter, sensor, layout, work.next);
+        const Real threshold = smaller(choice.best, limit) * Real(1 + 1e-9);
+        if (any(all_below(threshold, work.next.covariance, layout, control.weights)))
+            choice.offer(candidate, cost_of(work.next.covariance, control, layout));
+    }
+    return choice;
+}
+
 /// The best control from pose k - 1 to k, given the belief at pose k - 1: by a fast form, and by the direct one in
-/// lanes where the fast one is not reliable.
+/// lanes where the fast one is not reliable. Of the criteria that are no traces only the eigenvalue has one.
 template <class Layout, class Real, int capacity>
 Choice<Real> choose(const Belief<Real, capacity>& belief, const ControlParameters& control,
                     const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
                     Real limit, PlannerWorkspace<Layout, Real>& work) {
+    if (control.criterion == Criterion::max_eigenvalue)
+        return choose_by_eigenvalue(belief, control, filter, sensor, layout, k, limit, work);
+    if (!is_trace(control.criterion))
+        return plan_plainly(belief, control, filter, sensor, layout, k, work.still, work.next, [](int, Real) {});
     prepare_still(belief, filter, layout, k, work.still);
     const FastChoice<Real> fast = choose_fast(control, filter, sensor, layout, limit, work);
     const Mask<Real> unsure = doubtful(fast, limit, lost_to_rounding(control, filter, sensor, layout, work), work);

@@ -3,9 +3,9 @@
 //
 //   P   covariance before the robot moves, all but the fresh heading noise added, edges taken in; heading, position, f
 //   u   a candidate's move in the world, a = J u; d0 = f_j - r before the move; rows H0_j = [-J d0_j, -I, I]
-//   r_j believed variance of sighting j; v_j = 1/(kappa + r_j), 0 where unseen
+//   r_j believed variance of sighting j; v_j = 1/(kappa + r_j), 0 where unseen; W the weights of the trace
 // In the frame of the old heading H0 does not depend on the candidate. Without the fresh heading noise, and with kappa
-// below every eigenvalue of H0 P H0', trace(P+) is convex in v: its tangent at a reference bounds every candidate from
+// below every eigenvalue of H0 P H0', trace(W P+) is convex in v: its tangent at a reference bounds every candidate from
 // below, for some twenty operations each. Candidates whose bound lies above an exact cost that is already known are
 // discarded.
 
@@ -116,22 +116,24 @@ Real value_of(const ScreeningWorkspace<Layout, Real>& work, const ValueParameter
     return select(work.seen[i][j], greatest_value<ranged>(parameters, Real(0)), Real(0));
 }
 
-/// |T W|^2 of W = A H0_j', times `weight`, as a polynomial in a.
+/// trace(W T B B' T') of B = A H0_j', times `factor`, as a polynomial in a.
 template <class Layout, class Real, int capacity, class Rows>
-TurnedTrace<Real> turned_norm(const Symmetric<Real, capacity>& A, const Layout& layout, const Rows& rows, Real weight) {
-    Vector2<Real> W[capacity];
+TurnedTrace<Real> turned_norm(const Symmetric<Real, capacity>& A, const Layout& layout, const Weights& weights,
+                              const Rows& rows, Real factor) {
+    Vector2<Real> B[capacity];
     TurnedTrace<Real> result{};
     each(zero, layout.size(), [&](auto i) {
-        W[i] = rows([&](auto s) { return A.at(i, s); });
-        result.constant = fma(W[i].y, W[i].y, fma(W[i].x, W[i].x, result.constant));
+        B[i] = rows([&](auto s) { return A.at(i, s); });
+        const Real weight = Real(weight_at<Layout>(weights, i));
+        result.constant = fma(weight * B[i].y, B[i].y, fma(weight * B[i].x, B[i].x, result.constant));
     });
-    result.constant = result.constant * weight;
+    result.constant = result.constant * factor;
     if constexpr (Layout::has_heading) {
-        const Vector2<Real>& t = W[Layout::heading];
-        const Vector2<Real>&x = W[Layout::position], &y = W[Layout::position + one];
-        const Real twice = Real(2) * weight;
+        const Vector2<Real>& t = B[Layout::heading];
+        const Vector2<Real>&x = B[Layout::position], &y = B[Layout::position + one];
+        const Real once = Real(weights.position) * factor, twice = Real(2) * once;
         result.linear = {twice * fma(x.y, t.y, x.x * t.x), twice * fma(y.y, t.y, y.x * t.x)};
-        result.quadratic = weight * squared_norm(t);
+        result.quadratic = once * squared_norm(t);
     }
     return result;
 }
@@ -167,7 +169,8 @@ struct Tangent {
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const Belief<Real, capacity>& still,
                                                const Rotation<Real>& heading, const FilterParameters& filter,
-                                               const SensorParameters& sensor, const Layout& layout, double kappa,
+                                               const SensorParameters& sensor, const Layout& layout,
+                                               const Weights& weights, double kappa,
                                                ScreeningWorkspace<Layout, Real>& work) {
     copy(still.covariance, layout.size(), work.covariance);
     Real value[Layout::feature_capacity], weight[Layout::feature_capacity];
@@ -181,10 +184,10 @@ CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const
         if (any(seen)) condition(work.covariance, layout, sighting_rows<Layout>(still.mean, j), N, seen);
     });
     Tangent<Layout, Real> tangent;
-    TurnedTrace<Real> rest = turned_trace(work.covariance, layout);
+    TurnedTrace<Real> rest = turned_trace(work.covariance, layout, weights);
     each(zero, layout.features(), [&](auto j) {
         const TurnedTrace<Real> slope =
-            turned_norm(work.covariance, layout, sighting_rows<Layout>(still.mean, j), weight[j]);
+            turned_norm(work.covariance, layout, weights, sighting_rows<Layout>(still.mean, j), weight[j]);
         rest.constant = fma(slope.constant, value[j], rest.constant);
         rest.linear = add_scaled(rest.linear, value[j], slope.linear);
         rest.quadratic = fma(slope.quadratic, value[j], rest.quadratic);

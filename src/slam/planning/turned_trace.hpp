@@ -8,6 +8,11 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
+template <class Real>
+Vector2<Real> scaled(Real factor, const Vector2<Real>& v) {
+    return {factor * v.x, factor * v.y};
+}
+
 /// constant + a . linear + |a|^2 quadratic. In the translation model there is only the constant.
 template <class Real>
 struct TurnedTrace {
@@ -19,16 +24,17 @@ struct TurnedTrace {
     }
 };
 
-/// trace(T A T'), T = I but T[r, theta] = a, as a polynomial in a.
+/// trace(W T A T'), T = I but T[r, theta] = a, as a polynomial in a.
 template <class Layout, class Real, int capacity>
-TurnedTrace<Real> turned_trace(const Symmetric<Real, capacity>& A, const Layout& layout) {
+TurnedTrace<Real> turned_trace(const Symmetric<Real, capacity>& A, const Layout& layout, const Weights& weights) {
     TurnedTrace<Real> result{};
-    result.constant = trace(A, layout.size());
+    result.constant = weighted_trace(A, layout, weights);
     if constexpr (Layout::has_heading) {
         constexpr auto t = Layout::heading;
         constexpr auto x = Layout::position;
-        result.linear = {Real(2) * A.at(t, x), Real(2) * A.at(t, x + one)};
-        result.quadratic = A.at(t, t);
+        const Real position = Real(weights.position), twice = Real(2) * position;
+        result.linear = {twice * A.at(t, x), twice * A.at(t, x + one)};
+        result.quadratic = position * A.at(t, t);
     }
     return result;
 }

@@ -99,7 +99,7 @@ CREDENCE_FLAT void gather_sets(const Belief<Real, capacity>& still, const Contro
     for (int set = 0; set < set_count; ++set) sets.offered[set] = any_of_word(offered[set]);
 }
 
-/// trace(P+) of every set.
+/// trace(W P+) of every set.
 template <class Layout, class Real>
 CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const FilterParameters& filter,
                               const SensorParameters& sensor, const Layout& layout,

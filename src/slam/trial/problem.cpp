@@ -122,6 +122,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
       sway_increment_(sway_.size()),
       edges_(edge_list(scenario_)),
       fixed_(fixed_controls(scenario_)),
+      waypoints_(waypoint_controls(scenario_)),
       candidates_(planner_candidates(scenario_)) {
     const std::size_t features = scenario_.features.positions.size();
     for (std::size_t i = features; i < sway_.size(); ++i)
@@ -223,12 +224,15 @@ void Problem::fill_filter() {
 
 void Problem::fill_control() {
     view_.control.fixed = fixed_.data();
+    view_.control.waypoints = waypoints_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
     for (const Control& candidate : candidates_)
         view_.control.squared_reach =
             std::max(view_.control.squared_reach, squared(candidate.move.x) + squared(candidate.move.y));
     view_.control.horizon = *scenario_.planner.horizon;
+    view_.control.criterion = scenario_.planner.criterion;
+    view_.control.weights = weights_of(scenario_.planner.criterion, scenario_.planner.heading_weight);
 }
 
 }  // namespace credence

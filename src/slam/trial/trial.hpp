@@ -3,6 +3,7 @@
 //
 // The code is a template on `Real`: with double it runs a single trial, with a pack of doubles as many trials at once.
 
+#include "slam/planning/baselines.hpp"
 #include "slam/trial/workspace.hpp"
 
 namespace credence {
@@ -47,8 +48,10 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
 
     for (int k = 1; k < problem.poses; ++k) {
         // Choose the control, from the belief.
-        Command<Real> command = command_from<Real>(problem.control.fixed[k - 1]);
-        if (controller != Controller::fixed) {
+        Command<Real> command;
+        if (!plans(controller)) {
+            command = steered(controller, belief, problem.control, problem.filter, layout, k, noise);
+        } else {
             command = plan_ahead(belief, problem.control, problem.filter, problem.sensor, layout, k,
                                  problem.steps_ahead(controller, k), work.horizon, work.planner);
             observer.planned(k, layout, belief);

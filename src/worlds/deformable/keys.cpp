@@ -19,7 +19,7 @@ void add_scenario_keys(Keys& keys) {
 
 void add_feature_keys(Keys& keys) {
     keys.push_back({"features.positions", "f_0 as `x y, x y`, 1 to 64 of them (length)",
-                    [](DeformableSettings& s, const std::string& v) { s.features.positions = parse_positions(v); },
+                    [](DeformableSettings& s, const std::string& v) { s.features.positions = parse_points("features.positions", v, largest_feature_count); },
                     [](const DeformableSettings& s) { return positions_text(s.features.positions); }});
     keys.push_back(choice_key<Path>("features.path", {"straight", "circle", "static"},
                                     [](auto& s) -> auto& { return s.features.path; }));
@@ -95,6 +95,11 @@ void add_filter_keys(Keys& keys) {
            [](auto& s) -> auto& { return s.filter.covariance; });
 }
 
+std::vector<Point> parse_waypoints(const std::string& value) {
+    if (value == "none") return {};
+    return parse_points("control.waypoints", value, largest_waypoint_count);
+}
+
 std::vector<std::string> estimators_to_offer() {
     std::vector<std::string> names = estimator_names();
     names.push_back("default");
@@ -104,6 +109,21 @@ std::vector<std::string> estimators_to_offer() {
 void add_control_keys(Keys& keys) {
     keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
                                          [](auto& s) -> auto& { return s.fixed_path; }));
+    keys.push_back({"control.waypoints", "none, or the path of the controller waypoints as `x y, x y`, from 0 0 on (length)",
+                    [](DeformableSettings& s, const std::string& v) { s.waypoints = parse_waypoints(v); },
+                    [](const DeformableSettings& s) {
+                        return s.waypoints.empty() ? "none" : positions_text(s.waypoints);
+                    },
+                    {"none"}});
+}
+
+void add_planner_keys(Keys& keys) {
+    keys.push_back(choice_key<Criterion>(
+        "planner.criterion", {"trace", "log_det", "max_eigenvalue", "pose_trace", "pose_log_det", "features_trace"},
+        [](auto& s) -> auto& { return s.planner.criterion; }));
+    keys.push_back(real_key("planner.heading_weight",
+                            "what 1 rad^2 counts in a trace or eigenvalue that is minimised (length^2)", from(0),
+                            [](auto& s) -> auto& { return s.planner.heading_weight; }));
     keys.push_back(
         {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
          [](DeformableSettings& s, const std::string& v) {
@@ -126,6 +146,9 @@ void add_control_keys(Keys& keys) {
          },
          [](const DeformableSettings& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
          {"default"}});
+}
+
+void add_arm_keys(Keys& keys) {
     keys.push_back({"arms.controllers", "any of " + joined(controller_names()),
                     [](DeformableSettings& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
                     [](const DeformableSettings& s) { return names_text(s.arms.controllers, controller_names()); },
@@ -159,6 +182,8 @@ Keys all_keys() {
     add_rule_keys(keys);
     add_filter_keys(keys);
     add_control_keys(keys);
+    add_planner_keys(keys);
+    add_arm_keys(keys);
     add_published_keys(keys);
     return keys;
 }

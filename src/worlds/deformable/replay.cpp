@@ -11,6 +11,20 @@ namespace credence {
 
 namespace {
 
+/// The costs of the planner's candidates: what they are, and in which unit.
+TrajectoryVariable candidate_costs(const DeformableSettings& settings) {
+    const Criterion criterion = settings.planner.criterion;
+    const bool logarithm = scale_of(criterion) == CostScale::logarithmic;
+    const std::string what = logarithm                                ? "log determinant"
+                             : criterion == Criterion::max_eigenvalue ? "largest eigenvalue"
+                                                                      : "trace",
+                      of = criterion == Criterion::pose_trace || criterion == Criterion::pose_log_det ? "pose's "
+                           : criterion == Criterion::features_trace                                   ? "features' "
+                                                                                                      : "";
+    return {"candidate_cost", what + " of the " + of + "covariance that the candidate promised",
+            logarithm ? "1" : trace_unit(settings), {"pose", "candidate"}};
+}
+
 /// The planner's candidates, which are the same at every pose. Returns the place of their costs.
 std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings) {
     const std::vector<Control> candidates = planner_candidates(settings);
@@ -23,8 +37,7 @@ std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& set
         trajectory.variables[move].values[2 * i] = candidates[i].move.x;
         trajectory.variables[move].values[2 * i + 1] = candidates[i].move.y;
     }
-    return trajectory.add({"candidate_cost", "trace of the covariance that the candidate promised",
-                           trace_unit(settings), {"pose", "candidate"}});
+    return trajectory.add(candidate_costs(settings));
 }
 
 /// The recorder of a trial with a planner.
@@ -57,7 +70,7 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
     Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(arm), trial_columns(settings));
     trajectory.source = source;
     const SlamVariables variables = add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
-    const std::size_t cost = arm.controller == Controller::fixed ? 0 : add_candidates(trajectory, settings);
+    const std::size_t cost = plans(arm.controller) ? add_candidates(trajectory, settings) : 0;
     std::vector<double> all_series(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, arm.controller, variables, cost, trajectory);
     const auto run = [&](auto process, auto estimator) {
@@ -97,6 +110,9 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
                "Record it, in graph order");
     if (scenario.sensor.detection < 1)
         refuse("a record has no detection draws", "Set sensor.detection=1");
+    for (const Controller controller : scenario.arms.controllers)
+        if (controller == Controller::random)
+            refuse("a record has no draws of candidates", "Leave random out of arms.controllers");
 }
 
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {

@@ -22,10 +22,12 @@ std::vector<double> default_turns(const DeformableSettings& scenario) {
     return turns;
 }
 
-bool plans_by_horizon(const DeformableSettings& s) {
+bool has_arm(const DeformableSettings& s, Controller controller) {
     const std::vector<Controller>& controllers = s.arms.controllers;
-    return std::find(controllers.begin(), controllers.end(), Controller::horizon) != controllers.end();
+    return std::find(controllers.begin(), controllers.end(), controller) != controllers.end();
 }
+
+bool plans_by_horizon(const DeformableSettings& s) { return has_arm(s, Controller::horizon); }
 
 void check_sensor(const SensorSettings& sensor) {
     if (!(sensor.range_min < sensor.range_max))
@@ -112,6 +114,17 @@ void check_planner(const DeformableSettings& s) {
     check_horizon(s);
 }
 
+void check_waypoints(const DeformableSettings& s) {
+    const std::string controllers = names_text(s.arms.controllers, controller_names());
+    const bool followed = has_arm(s, Controller::waypoints);
+    if (followed && s.waypoints.empty())
+        throw invalid_value("arms.controllers", controllers, "there are no waypoints", "Give control.waypoints");
+    if (!followed && !s.waypoints.empty())
+        throw invalid_value("control.waypoints", positions_text(s.waypoints),
+                            "no arm moves along them: arms.controllers=" + controllers,
+                            "Add waypoints to arms.controllers, or leave control.waypoints out");
+}
+
 void check_arms(const DeformableSettings& s) {
     const std::string process = s.process == Process::heading ? "heading" : "translation";
     std::vector<std::string> fitting;
@@ -153,6 +166,7 @@ void validate(const DeformableSettings& scenario) {
     check_edges(scenario);
     check_noise(scenario);
     check_planner(scenario);
+    check_waypoints(scenario);
     check_arms(scenario);
 }
 
