@@ -44,7 +44,7 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
     WorldDraws<Layout, Real> drawn(layout);
     const Vector2<Real>* measurement = drawn.template of_features<Source::measurement>();
     drawn.draw(draws, 0);
-    start_truth(work.truth, problem.world, layout, drawn);
+    start_truth(work.truth, problem.world, layout, drawn, draws);
     look_first(work.truth, problem.sensor, layout.features(), measurement, work.sightings);
     start_belief(work.belief, problem.filter, layout, work.sightings);
     drawn.draw(draws, 1);

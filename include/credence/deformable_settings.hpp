@@ -47,6 +47,11 @@ enum class RangeNoise { constant, ranged };
 /// filter assumes.
 enum class Deformation { jitter, walk };
 enum class EdgeNoise { none, independent };
+/// Where the features start: at features.positions, or drawn in each trial about the first of them.
+enum class Placement { given, box, ring };
+/// The distribution of the measurement noise: normal; Student's t of the same standard deviation; normal, but now and
+/// then several times as large.
+enum class Tails { normal, student, contaminated };
 enum class EdgeGraph { all, chain, none, list };
 /// greedy: the control whose next cost is least; horizon: the one whose sum over several steps is least; random: any
 /// candidate; nearest: towards the feature least well known; follow: to the centre of the features; waypoints: along
@@ -63,6 +68,10 @@ enum class Estimator {
 
 struct FeatureSettings {
     std::vector<Point> positions{{0.5, 0.5}, {0.9, 0.8}, {0.3, 0.4}};  ///< f_0, 1 to 64 of them
+    std::optional<int> count;                     ///< M; none: as many as there are positions
+    Placement placement = Placement::given;
+    double extent = 2;                            ///< side of the box
+    double radius_min = 0, radius_max = 2;        ///< of the ring
     Path path = Path::straight;
     double step = 2;                              ///< d, length the features and the robot move a step
     double turn = 0.31415926535897931;            ///< delta, turn per step on the circle (pi/10)
@@ -77,6 +86,7 @@ struct SensorSettings {
     double sigma = 0.05;                          ///< constant noise
     double sigma_near = 0.01, sigma_far = 0.09;   ///< ranged noise at range_min and range_max
     double detection = 1;                         ///< probability that a feature in range is seen
+    int every = 1;                                ///< steps from one measurement to the next
 };
 
 struct NoiseSettings {
@@ -86,6 +96,10 @@ struct NoiseSettings {
     double deformation = 0.2;
     double initial_heading = 0;
     double initial_position = 0;
+    double odometry_bias = 0;                     ///< of a step, body frame, constant in a trial
+    Tails measurement_tails = Tails::normal;
+    double degrees_of_freedom = 5;                ///< of Student's t
+    double outlier_share = 0.1, outlier_scale = 3;
     std::optional<double> truncate;               ///< redraw beyond this multiple of sigma; none: never
 };
 
@@ -99,9 +113,11 @@ struct EdgeSettings {
     std::vector<Edge> list;                       ///< only with graph = list
 };
 
-/// What the filter believes, as factors on the true standard deviations; `covariance` scales the reported P only.
+/// What the filter believes, as factors on the true standard deviations; `covariance` scales the reported P only. A
+/// sighting whose squared normalised innovation exceeds the quantile `gate` of chi-square is rejected.
 struct FilterSettings {
     double heading = 1, odometry = 1, features = 1, measurement = 1, edges = 1, covariance = 1;
+    double gate = 1;
 };
 
 struct PlannerSettings {
@@ -169,6 +185,9 @@ std::vector<Arm> arms_of(const DeformableSettings& scenario);
 
 /// `controller.estimator`, such as `greedy.ekf`.
 std::string arm_name(const Arm& arm);
+
+/// The number of features, M.
+int feature_count(const DeformableSettings& scenario);
 
 /// The edge list of a scenario in graph order: for `all`, a outer and b inner, a < b.
 std::vector<Edge> edge_list(const DeformableSettings& scenario);

@@ -8,6 +8,8 @@
 #include "slam/belief.hpp"
 #include "slam/sensor.hpp"
 
+#include <limits>
+
 namespace credence {
 
 /// One column of the factored Laplacian B'B = C D C' of the edge graph: the combination sum_j coefficient[j] f_j, which
@@ -31,6 +33,7 @@ struct FilterParameters {
     double variance_initial_heading = 0, variance_initial_position = 0;
     double measurement_factor = 1;           ///< on sigma_feat
     double covariance_factor = 1;            ///< on the reported P
+    double gate = std::numeric_limits<double>::infinity();  ///< largest squared normalised innovation of a sighting
 
     const Point& sway_increment_at(int k, int j) const { return sway_increment[k * features + j]; }
 };

@@ -40,6 +40,10 @@ public:
     const Vector2<Real>* of_features() const {
         return draws_ + layout_.features() * Known<place_among<feature_sources...>(source)>{};
     }
+    template <Source source>
+    Vector2<Real>* of_features() {
+        return draws_ + layout_.features() * Known<place_among<feature_sources...>(source)>{};
+    }
     const Vector2<Real>& position() const { return draws_[robot()]; }
     const Real& heading() const { return draws_[robot() + one].x; }  ///< heading model only
 

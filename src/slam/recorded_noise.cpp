@@ -19,7 +19,10 @@ Vector2<double> RecordedDraws::normal(Source source, int pose, int index) const 
         case Source::edge: return pair(record.edge, pose, record.edges, index);
         case Source::detection:
         case Source::landmark_prior:
-        case Source::control: break;  // a noise record does not have these
+        case Source::control:
+        case Source::placement:
+        case Source::odometry_bias:
+        case Source::outlier: break;  // a noise record does not have these
     }
     return {};
 }

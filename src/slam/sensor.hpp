@@ -4,6 +4,7 @@
 //
 //   q  range to a feature, length units; z  measurement, relative position of a feature in the body frame
 
+#include <credence/detail/functions.hpp>
 #include "slam/world.hpp"
 
 namespace credence {
@@ -17,6 +18,9 @@ struct SensorParameters {
     double sigma_near = 0;            ///< ranged: at range_min
     double sigma_slope = 0;           ///< ranged: (sigma_far - sigma_near) / (range_max - range_min)
     double detection = 1;
+    int every = 1;                    ///< steps from one measurement to the next
+    Tails tails = Tails::normal;
+    double degrees_of_freedom = 0, outlier_share = 0, outlier_scale = 1;
     double sigma_edge = 0;            ///< of the edge measurement itself; 0 where the true edges have no noise
 };
 
@@ -47,6 +51,34 @@ Real sigma_at(const SensorParameters& sensor, Real squared) {
     return sensor.noise == RangeNoise::constant ? Real(sensor.sigma) : ranged_sigma(sensor, sqrt(squared));
 }
 
+/// A pair of Student's t, each of variance 1, from a standard-normal pair [Bailey 1994: Polar generation of random
+/// variates with the t-distribution]: of the normal pair's squared length s, which has the uniform e^(-s/2), the t pair in
+/// the same direction has nu (e^(s/nu) - 1); t has the variance nu/(nu - 2).
+template <class Real>
+Vector2<Real> student_pair(const Vector2<Real>& normal, double nu) {
+    const Real power = exp(squared_norm(normal) * Real(1 / nu));
+    // (e^x - 1)/x without cancellation [Higham 2002, 1.14.1].
+    const Real ratio = select(power == Real(1), Real(1), (power - Real(1)) / log(power));
+    const Real factor = sqrt(Real((nu - 2) / nu) * ratio);
+    return {factor * normal.x, factor * normal.y};
+}
+
+/// Gives the measurement noise of pose k its distribution. `measurement` [M]: standard-normal pairs.
+template <class Real, class Count, class Noise>
+void shape_tails(const SensorParameters& sensor, Count features, int k, const Noise& noise,
+                 Vector2<Real>* measurement) {
+    if (sensor.tails == Tails::normal) return;
+    for (int j = 0; j < features; ++j) {
+        if (sensor.tails == Tails::student) {
+            measurement[j] = student_pair(measurement[j], sensor.degrees_of_freedom);
+            continue;
+        }
+        const Mask<Real> outlier = noise.uniform(Source::outlier, k, j) < Real(sensor.outlier_share);
+        const Real scale = select(outlier, Real(sensor.outlier_scale), Real(1));
+        measurement[j] = {scale * measurement[j].x, scale * measurement[j].y};
+    }
+}
+
 /// One sighting of one feature. Where it is not seen, z and sigma are those it would have had.
 template <class Real>
 struct Sighting {
@@ -60,6 +92,7 @@ struct Sighting {
 template <class Layout, class Real, int capacity, class Noise>
 CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParameters& sensor, const Layout& layout, int k,
                         const Vector2<Real>* measurement, const Noise& noise, Sighting<Real>* sightings) {
+    const bool measures = sensor.every == 1 || k % sensor.every == 0;
     each(zero, layout.features(), [&](auto j) {
         const Real squared = squared_range(truth.position, truth.feature[j]);
         Sighting<Real>& sighting = sightings[j];
@@ -67,6 +100,7 @@ CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParamete
         if (sensor.detection < 1)
             sighting.seen =
                 both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
+        if (!measures) sighting.seen = negated(all_lanes<Real>());
         sighting.sigma = sigma_at(sensor, squared);
         sighting.z = truth.feature[j] - truth.position;
         if constexpr (Layout::has_heading) sighting.z = rotate_back(truth.rotation, sighting.z);

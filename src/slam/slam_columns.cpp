@@ -20,7 +20,7 @@ std::string squared_error_unit(const SlamState& state, const ComponentGroup& gro
 
 SlamState::SlamState(const DeformableSettings& settings)
     : process(settings.process),
-      features(static_cast<int>(settings.features.positions.size())),
+      features(feature_count(settings)),
       edges(static_cast<int>(edge_list(settings).size())),
       length_unit(settings.length_unit),
       estimators(*resolved(settings).arms.estimators) {}

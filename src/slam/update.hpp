@@ -6,6 +6,24 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
+/// Rejects the sightings whose nu' S^-1 nu about the predicted belief exceeds the gate, each with its own S [Bar-Shalom
+/// 2001, 3.6.2]: they are not seen.
+template <class Layout, class Real, int capacity, class Linearisation>
+void gate_sightings(const Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
+                    const Linearisation& linearised, Sighting<Real>* sightings) {
+    if (filter.gate == std::numeric_limits<double>::infinity()) return;
+    each(zero, layout.features(), [&](auto j) {
+        const auto expected = linearised(j, sightings[j]);
+        const auto& rows = expected.rows;
+        const auto W = [&](auto s) { return rows([&](auto t) { return belief.covariance.at(s, t); }); };
+        const Vector2<Real> x = rows([&](auto s) { return W(s).x; }), y = rows([&](auto s) { return W(s).y; });
+        const Real N = believed_variance(filter, sightings[j].sigma);
+        const Inverse2<Real> S_inverse = inverse(x.x + N, x.y, y.y + N, all_lanes<Real>());
+        const Real distance = between(expected.innovation, S_inverse, expected.innovation);
+        sightings[j].seen = both(sightings[j].seen, distance <= Real(filter.gate));
+    });
+}
+
 /// Conditions a predicted belief on the sightings and on every edge: P <- P - K S K', the correction K nu in `update`;
 /// the mean is not changed. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world
 /// frame; `linearised(j, sighting)` its rows and innovation.

@@ -16,7 +16,9 @@ struct WorldParameters {
     const Point* translation = nullptr;     ///< [K - 1] t_k
     const Point* sway = nullptr;            ///< [K, M] o_{k,j}
     double sigma_heading = 0, sigma_odometry = 0, sigma_walk = 0, sigma_deformation = 0;
-    double sigma_initial_heading = 0, sigma_initial_position = 0;
+    double sigma_initial_heading = 0, sigma_initial_position = 0, sigma_odometry_bias = 0;
+    Placement placement = Placement::given;
+    double extent = 0, radius_min = 0, radius_max = 0;  ///< of the box, of the ring
     Deformation deformation = Deformation::jitter;
     double truncate = 0;                    ///< infinity: never
 
@@ -34,6 +36,7 @@ struct Truth {
     Real heading{};
     Rotation<Real> rotation;                     ///< R(heading); heading model only
     Vector2<Real> position{};
+    Vector2<Real> odometry_bias{};               ///< of a step, body frame; where the world has one
     Vector2<Real> centre[feature_capacity];
     Vector2<Real> feature[feature_capacity];
 };
@@ -56,15 +59,32 @@ void deform_features(Truth<Real, capacity>& truth, const WorldParameters& world,
     });
 }
 
+/// f_0 of feature j: its own, or uniform in a box or ring about the first one's.
+template <class Real, class Noise>
+Vector2<Real> first_place(const WorldParameters& world, int j, const Noise& noise) {
+    if (world.placement == Placement::given) return broadcast<Real>(world.first_position[j]);
+    const Vector2<Real> middle = broadcast<Real>(world.first_position[0]);
+    const Real u = noise.uniform(Source::placement, 0, 2 * j), v = noise.uniform(Source::placement, 0, 2 * j + 1);
+    if (world.placement == Placement::box)
+        return add_scaled(middle, Real(world.extent), Vector2<Real>{u - Real(0.5), v - Real(0.5)});
+    const double inner = world.radius_min * world.radius_min, outer = world.radius_max * world.radius_max;
+    const Rotation<Real> direction = rotation_of_turns(v);
+    return add_scaled(middle, sqrt(fma(u, Real(outer - inner), Real(inner))),
+                      Vector2<Real>{direction.cosine, direction.sine});
+}
+
 /// The truth at pose 0: features about f_0, the robot at 0 (or drawn about it).
-template <class Layout, class Real, int capacity>
+template <class Layout, class Real, int capacity, class Noise>
 void start_truth(Truth<Real, capacity>& truth, const WorldParameters& world, const Layout& layout,
-                 const WorldDraws<Layout, Real>& draws) {
+                 const WorldDraws<Layout, Real>& draws, const Noise& noise) {
     truth.heading = Real(0);
     if constexpr (Layout::has_heading) truth.heading = Real(world.sigma_initial_heading) * draws.heading();
     truth.rotation = rotation(truth.heading);
     truth.position = add_scaled(Vector2<Real>{}, Real(world.sigma_initial_position), draws.position());
-    each(zero, layout.features(), [&](auto j) { truth.centre[j] = broadcast<Real>(world.first_position[j]); });
+    if (world.sigma_odometry_bias > 0)
+        truth.odometry_bias = add_scaled(Vector2<Real>{}, Real(world.sigma_odometry_bias),
+                                         noise.normal(Source::odometry_bias, 0, 0));
+    each(zero, layout.features(), [&](auto j) { truth.centre[j] = first_place<Real>(world, j, noise); });
     deform_features(truth, world, layout, 0, draws);
 }
 
@@ -91,14 +111,15 @@ struct Command {
     Vector2<Real> move{};
 };
 
-/// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) v +
-/// sigma_odom eps.
+/// Robot from pose k - 1 to k: theta_k = theta_{k-1} + omega + sigma_head eps, r_k = r_{k-1} + R(theta_{k-1}) (v + b) +
+/// sigma_odom eps, b the odometry's bias.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void move_robot(Truth<Real, capacity>& truth, const WorldParameters& world, const Command<Real>& command,
                               const WorldDraws<Layout, Real>& draws) {
     Vector2<Real> move = command.move;
+    if (world.sigma_odometry_bias > 0) move = move + truth.odometry_bias;
     if constexpr (Layout::has_heading) {
-        move = rotate(truth.rotation, command.move);
+        move = rotate(truth.rotation, move);
         truth.heading = fma(Real(world.sigma_heading), draws.heading(), truth.heading + command.turn);
         truth.rotation = rotation(truth.heading);
     }

@@ -48,7 +48,7 @@ Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& wo
     const int edge_count = static_cast<int>(graph(scenario).size());
     Eigen::VectorXd z(step.rows);
     int row = 0;
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         if (!step.seen[static_cast<std::size_t>(j)]) continue;
         z.segment<2>(row) = measured_feature(scenario, world, k, j, noise);
         row += 2;
@@ -60,16 +60,26 @@ Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& wo
     return z;
 }
 
+/// Whether a measurement of feature j, with the sigma that the filter believes, lies within the filter's gate: nu' S^-1 nu
+/// <= -2 log(1 - gate), the quantile of chi-square with two degrees of freedom [docs/model.md, Filter, See].
+bool inside_gate(const DeformableSettings& scenario, const Belief& prior, const Eigen::Vector2d& z, double sigma, int j) {
+    const Eigen::MatrixXd H = measurement_rows(scenario, prior.x, j);
+    const Eigen::Matrix2d S = H * prior.P * H.transpose() + sigma * sigma * Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d nu = z - predicted_measurement(scenario, prior.x, j);
+    return scenario.filter.gate == 1 || nu.dot(S.inverse() * nu) <= -2 * std::log(1 - scenario.filter.gate);
+}
+
 /// Sees at pose k and updates the prior, gating and taking sigma at the true range; without a row the prior stays
 /// [docs/model.md, Filter, See to Update].
 Belief see_and_update(const DeformableSettings& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
                       Step& step) {
-    Eigen::VectorXd sigma(feature_count(scenario));
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    Eigen::VectorXd sigma(number_of_features(scenario));
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         const double q = (world.p.col(j) - world.r).norm();
-        step.seen.push_back(in_range(scenario, q) &&
-                            noise.uniform(Source::detection, k, j) < scenario.sensor.detection);
         sigma[j] = scenario.filter.measurement * measurement_sigma(scenario, q);
+        step.seen.push_back(k % scenario.sensor.every == 0 && in_range(scenario, q) &&
+                            noise.uniform(Source::detection, k, j) < scenario.sensor.detection &&
+                            inside_gate(scenario, prior, measured_feature(scenario, world, k, j, noise), sigma[j], j));
     }
     const Prediction prediction = predicted_measurements(scenario, prior.x, step.seen, sigma);
     step.rows = static_cast<int>(prediction.N.size());

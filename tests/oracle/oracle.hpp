@@ -65,7 +65,7 @@ Trial run(const DeformableSettings& scenario, Controller controller, const Noise
 
 // Sizes and places in the state ---------------------------------------------------------------------------------------
 
-int feature_count(const DeformableSettings& scenario);                       ///< M
+int number_of_features(const DeformableSettings& scenario);                       ///< M
 int pose_dimension(const DeformableSettings& scenario);                      ///< 3 (heading) or 2 (translation)
 int state_dimension(const DeformableSettings& scenario);                     ///< n = pose_dimension + 2 M
 int row_of_position(const DeformableSettings& scenario);                     ///< where r starts in x
@@ -79,6 +79,7 @@ Eigen::Matrix2d quarter_turn();                                    ///< J
 /// True state of the world at one pose; c and p are 2 x M. theta stays 0 in the translation model.
 struct World {
     double theta = 0;
+    Eigen::Vector2d bias = Eigen::Vector2d::Zero();  ///< of the odometry
     Eigen::Vector2d r;
     Eigen::Matrix2Xd c, p;
 };
@@ -90,6 +91,7 @@ World next_world(const DeformableSettings& scenario, const World& world, const C
 Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& world);   ///< n, ordered as the filter's x
 bool in_range(const DeformableSettings& scenario, double q);                 ///< r_min <= q <= r_max
 double measurement_sigma(const DeformableSettings& scenario, double q);      ///< true sigma_feat(q), length
+Eigen::Vector2d measurement_noise(const DeformableSettings& scenario, int k, int j, const Noise& noise);  ///< over sigma
 Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise);
 Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise);
 

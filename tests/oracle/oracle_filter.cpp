@@ -26,11 +26,11 @@ Belief first_belief(const DeformableSettings& scenario, const World& world, cons
     if (scenario.process == Process::heading) belief.P(0, 0) = squared(scenario.noise.initial_heading);
     for (int i = row_of_position(scenario); i < pose_dimension(scenario); ++i)
         belief.P(i, i) = squared(scenario.noise.initial_position);
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         const double q = (world.p.col(j) - world.r).norm();
         const double sigma = measurement_sigma(scenario, q);
         const int row = row_of_feature(scenario, j);
-        belief.x.segment<2>(row) = world.p.col(j) + sigma * noise.normal(Source::measurement, 0, j);
+        belief.x.segment<2>(row) = world.p.col(j) + sigma * measurement_noise(scenario, 0, j, noise);
         for (int i = row; i < row + 2; ++i) belief.P(i, i) = squared(scenario.filter.measurement * sigma);
     }
     return belief;
@@ -43,7 +43,7 @@ Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::
     Eigen::VectorXd x_prior = x;
     if (scenario.process == Process::heading) x_prior[0] += control.turn;
     x_prior.segment<2>(row_of_position(scenario)) += rotation(heading(scenario, x)) * v;
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         const Eigen::Vector2d d = local_deformation(scenario, k, j) - local_deformation(scenario, k - 1, j);
         x_prior.segment<2>(row_of_feature(scenario, j)) += translation(scenario, k - 1) + d;
     }
@@ -125,7 +125,7 @@ Prediction predicted_measurements(const DeformableSettings& scenario, const Eige
     for (const bool feature_seen : seen) m += feature_seen ? 2 : 0;
     Prediction prediction{Eigen::VectorXd(m), Eigen::MatrixXd(m, state_dimension(scenario)), Eigen::VectorXd(m)};
     int row = 0;
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         if (!seen[static_cast<std::size_t>(j)]) continue;
         prediction.z_hat.segment<2>(row) = predicted_measurement(scenario, x, j);
         prediction.H.middleRows<2>(row) = measurement_rows(scenario, x, j);

@@ -92,8 +92,8 @@ std::vector<Control> candidates(const DeformableSettings& scenario) {
 Belief expected(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k) {
     const Belief prior = predict(scenario, belief, control, k);
     std::vector<bool> seen;
-    Eigen::VectorXd sigma(feature_count(scenario));
-    for (int j = 0; j < feature_count(scenario); ++j) {
+    Eigen::VectorXd sigma(number_of_features(scenario));
+    for (int j = 0; j < number_of_features(scenario); ++j) {
         const Eigen::Vector2d r = prior.x.segment<2>(row_of_position(scenario));
         const Eigen::Vector2d f = prior.x.segment<2>(row_of_feature(scenario, j));
         const double q = (f - r).norm();
@@ -207,7 +207,7 @@ Control waypoint_control(const DeformableSettings& scenario, int k) {
 Control baseline_control(const DeformableSettings& scenario, Controller controller, const Belief& belief, int k,
                          const Noise& noise) {
     const Eigen::VectorXd x = predicted_mean(scenario, belief.x, {}, k);
-    const int M = feature_count(scenario);
+    const int M = number_of_features(scenario);
     int least_known = 0;
     Eigen::Vector2d centre(0, 0);
     const auto variance = [&](int j) {

@@ -39,7 +39,7 @@ template <class Layout>
 Truth<double, 3> truth_at(const Problem& problem, int pose, const Command<double>& command, const AnyNoise& noise) {
     Truth<double, 3> truth;
     const WorldParameters& world = problem.view().world;
-    start_truth(truth, world, Layout(3), draws_at<Layout>(noise, 0));
+    start_truth(truth, world, Layout(3), draws_at<Layout>(noise, 0), noise);
     for (int k = 1; k <= pose; ++k) {
         const auto draws = draws_at<Layout>(noise, k);
         move_features(truth, world, Layout(3), k, draws);

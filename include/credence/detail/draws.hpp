@@ -23,6 +23,9 @@ enum class Source : std::uint32_t {
     detection = 6,          ///< by feature, uniform
     landmark_prior = 7,     ///< by landmark: the error of its prior estimate
     control = 8,            ///< uniform: which candidate the controller `random` takes
+    placement = 9,          ///< uniform, two by feature, at pose 0
+    odometry_bias = 10,     ///< at pose 0
+    outlier = 11,           ///< by feature, uniform
 };
 
 /// The key of a draw, beside the trial. Its index has 16 bits.

@@ -1,5 +1,6 @@
 #include "slam/trial/problem.hpp"
 
+#include <credence/detail/functions.hpp>
 #include "numeric/chi_square.hpp"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ double circle_direction(const DeformableSettings& s, int k) { return s.features.
 
 Point sway_offset(const DeformableSettings& s, int k, int j) {
     if (s.features.sway_amplitude == 0) return {};
-    const double M = static_cast<double>(s.features.positions.size());
+    const double M = feature_count(s);
     const double start = 2 * pi * j / M;
     const Point now = polar(s.features.sway_amplitude, 2 * pi * k / s.features.sway_period + start);
     const Point first = polar(s.features.sway_amplitude, start);
@@ -86,7 +87,7 @@ std::vector<Point> feature_translations(const DeformableSettings& s) {
 }
 
 std::vector<Point> sway_offsets(const DeformableSettings& s) {
-    const int features = static_cast<int>(s.features.positions.size());
+    const int features = feature_count(s);
     std::vector<Point> offsets;
     for (int k = 0; k < s.poses; ++k)
         for (int j = 0; j < features; ++j) offsets.push_back(sway_offset(s, k, j));
@@ -124,7 +125,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
       fixed_(fixed_controls(scenario_)),
       waypoints_(waypoint_controls(scenario_)),
       candidates_(planner_candidates(scenario_)) {
-    const std::size_t features = scenario_.features.positions.size();
+    const std::size_t features = static_cast<std::size_t>(feature_count(scenario_));
     for (std::size_t i = features; i < sway_.size(); ++i)
         sway_increment_[i] = {sway_[i].x - sway_[i - features].x, sway_[i].y - sway_[i - features].y};
     factor_edges();
@@ -146,7 +147,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
 /// C D C' = B'B by outer products, B the edges' incidence matrix. Its pivots are 0 at the last feature of each
 /// connected component of the graph; the smallest other pivot is at least 1/largest_feature_count.
 void Problem::factor_edges() {
-    const std::size_t M = scenario_.features.positions.size();
+    const std::size_t M = static_cast<std::size_t>(feature_count(scenario_));
     std::vector<double> laplacian(M * M);
     for (const Edge& edge : edges_) {
         const std::size_t a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
@@ -188,6 +189,12 @@ void Problem::fill_world() {
     world.sigma_deformation = noise.deformation;
     world.sigma_initial_heading = noise.initial_heading;
     world.sigma_initial_position = noise.initial_position;
+    world.sigma_odometry_bias = noise.odometry_bias;
+    const FeatureSettings& features = scenario_.features;
+    world.placement = features.placement;
+    world.extent = features.extent;
+    world.radius_min = features.radius_min;
+    world.radius_max = features.radius_max;
     world.deformation = scenario_.truth.deformation;
     world.truncate = noise.truncate.value_or(std::numeric_limits<double>::infinity());
 
@@ -199,6 +206,11 @@ void Problem::fill_world() {
     sensor.sigma_near = settings.sigma_near;
     sensor.sigma_slope = (settings.sigma_far - settings.sigma_near) / (settings.range_max - settings.range_min);
     sensor.detection = settings.detection;
+    sensor.every = settings.every;
+    sensor.tails = noise.measurement_tails;
+    sensor.degrees_of_freedom = noise.degrees_of_freedom;
+    sensor.outlier_share = noise.outlier_share;
+    sensor.outlier_scale = noise.outlier_scale;
     sensor.sigma_edge = scenario_.truth.edge_noise == EdgeNoise::independent ? noise.deformation : 0;
 }
 
@@ -220,6 +232,7 @@ void Problem::fill_filter() {
     filter.variance_initial_position = squared(noise.initial_position);
     filter.measurement_factor = factors.measurement;
     filter.covariance_factor = factors.covariance;
+    filter.gate = -2 * log(1 - factors.gate);  // the quantile of chi-square with two degrees of freedom
 }
 
 void Problem::fill_control() {

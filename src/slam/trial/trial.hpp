@@ -34,9 +34,13 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
 
     // Pose 0: every feature is initialised, whatever its range.
     WorldDraws<Layout, Real> draws(layout);
-    const Vector2<Real>* measurement = draws.template of_features<Source::measurement>();
-    draws.draw(noise, 0);
-    start_truth(truth, problem.world, layout, draws);
+    Vector2<Real>* measurement = draws.template of_features<Source::measurement>();
+    const auto draw = [&](int k) {
+        draws.draw(noise, k);
+        shape_tails(problem.sensor, features, k, noise, measurement);
+    };
+    draw(0);
+    start_truth(truth, problem.world, layout, draws, noise);
     look_first(truth, problem.sensor, features, measurement, sightings);
     start_belief(belief, problem.filter, layout, sightings);
     Real error[Layout::capacity];
@@ -58,7 +62,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         }
 
         // Move the robot and the features.
-        draws.draw(noise, k);
+        draw(k);
         move_features(truth, problem.world, layout, k, draws);
         move_robot(truth, problem.world, command, draws);
 
@@ -71,6 +75,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
             return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
         };
         const auto linearised = estimator.linearised(belief, layout, truth);
+        gate_sightings(belief, problem.filter, layout, linearised, sightings);
         observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement, linearised);
 
         // Update, and compare with the truth.

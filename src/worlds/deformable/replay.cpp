@@ -97,7 +97,7 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
         throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " +
                          remedy + ".");
     };
-    const int features = static_cast<int>(scenario.features.positions.size());
+    const int features = feature_count(scenario);
     const int edges = static_cast<int>(edge_list(scenario).size());
     if (record.poses < scenario.poses)
         refuse("it has " + std::to_string(record.poses) + " poses, the scenario " + std::to_string(scenario.poses),
@@ -110,6 +110,12 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
                "Record it, in graph order");
     if (scenario.sensor.detection < 1)
         refuse("a record has no detection draws", "Set sensor.detection=1");
+    if (scenario.features.placement != Placement::given)
+        refuse("a record has no draws of places", "Set features.placement=given");
+    if (scenario.noise.odometry_bias > 0)
+        refuse("a record has no bias of the odometry", "Set noise.odometry_bias=0");
+    if (scenario.noise.measurement_tails == Tails::contaminated)
+        refuse("a record has no draws of outliers", "Set noise.measurement_tails=normal");
     for (const Controller controller : scenario.arms.controllers)
         if (controller == Controller::random)
             refuse("a record has no draws of candidates", "Leave random out of arms.controllers");

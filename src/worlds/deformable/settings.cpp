@@ -29,6 +29,17 @@ bool has_arm(const DeformableSettings& s, Controller controller) {
 
 bool plans_by_horizon(const DeformableSettings& s) { return has_arm(s, Controller::horizon); }
 
+void check_placement(const FeatureSettings& features) {
+    const std::size_t positions = features.positions.size();
+    if (features.placement == Placement::given && features.count && *features.count != static_cast<int>(positions))
+        throw invalid_value("features.count", std::to_string(*features.count),
+                            "features.positions gives " + std::to_string(positions),
+                            "Leave it out, or set features.placement=box or ring");
+    if (features.placement == Placement::ring && features.radius_min > features.radius_max)
+        throw invalid_value("features.radius_max", to_text(features.radius_max),
+                            "below features.radius_min=" + to_text(features.radius_min), "Give at least that");
+}
+
 void check_sensor(const SensorSettings& sensor) {
     if (!(sensor.range_min < sensor.range_max))
         throw invalid_value("sensor.range_max", to_text(sensor.range_max),
@@ -80,7 +91,7 @@ void check_noise(const DeformableSettings& s) {
 }
 
 void check_edges(const DeformableSettings& s) {
-    const int features = static_cast<int>(s.features.positions.size());
+    const int features = feature_count(s);
     for (const Edge& edge : s.edges.list)
         if (edge.to >= features)
             throw invalid_value("edges.graph", graph_text(s.edges),
@@ -153,6 +164,7 @@ void check_arms(const DeformableSettings& s) {
 
 DeformableSettings resolved(DeformableSettings scenario) {
     const bool heading = scenario.process == Process::heading;
+    if (scenario.features.placement != Placement::given) scenario.features.count = feature_count(scenario);
     if (!scenario.planner.speeds) scenario.planner.speeds = heading ? 10 : 5;
     if (!scenario.planner.turns) scenario.planner.turns = default_turns(scenario);
     if (!scenario.planner.horizon) scenario.planner.horizon = plans_by_horizon(scenario) ? 2 : 1;
@@ -162,6 +174,7 @@ DeformableSettings resolved(DeformableSettings scenario) {
 }
 
 void validate(const DeformableSettings& scenario) {
+    check_placement(scenario.features);
     check_sensor(scenario.sensor);
     check_edges(scenario);
     check_noise(scenario);
@@ -183,7 +196,7 @@ std::string arm_name(const Arm& arm) {
 }
 
 std::vector<Edge> edge_list(const DeformableSettings& scenario) {
-    const int features = static_cast<int>(scenario.features.positions.size());
+    const int features = feature_count(scenario);
     std::vector<Edge> edges;
     switch (scenario.edges.graph) {
         case EdgeGraph::none: break;
@@ -214,10 +227,14 @@ Path robot_path(const DeformableSettings& scenario) {
     return scenario.features.path;
 }
 
+int feature_count(const DeformableSettings& scenario) {
+    return scenario.features.count.value_or(static_cast<int>(scenario.features.positions.size()));
+}
+
 int pose_size(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 3 : 2; }
 
 int state_size(const DeformableSettings& scenario) {
-    return pose_size(scenario) + 2 * static_cast<int>(scenario.features.positions.size());
+    return pose_size(scenario) + 2 * feature_count(scenario);
 }
 
 }  // namespace credence
