@@ -70,9 +70,12 @@ std::optional<std::vector<PublishedNumber>> published_for(const Scenario& scenar
 /// Whether a key describes the scenario only, so that no number of a study depends on it: its title, published numbers.
 bool is_description(const std::string& key);
 
-/// Whether scenarios that differ in the key have the same truth and the same draws: descriptions and names, and the
-/// sections filter, control, planner and arms.
+/// Whether the trials of scenarios that differ in the key share their draws, so that they can be compared as pairs:
+/// descriptions and names, and the sections filter, control, planner, arms and sensor.
 bool keeps_the_draws(const std::string& key);
+
+/// Whether scenarios that differ in the key are of different worlds: where keeps_the_draws, those of the section sensor.
+bool is_of_the_sensor(const std::string& key);
 
 /// A key in which two scenarios differ, with both values; empty where one of them has no such key.
 struct KeyDifference {

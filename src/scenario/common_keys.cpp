@@ -52,7 +52,9 @@ bool keeps_the_draws(const std::string& key) {
     if (is_description(key) || key == "scenario.name") return true;
     for (const char* section : {"filter.", "control.", "planner.", "arms."})
         if (key.starts_with(section)) return true;
-    return false;
+    return is_of_the_sensor(key);
 }
+
+bool is_of_the_sensor(const std::string& key) { return key.starts_with("sensor."); }
 
 }  // namespace credence

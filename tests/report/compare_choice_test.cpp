@@ -128,9 +128,6 @@ TEST_CASE("compare: files of other seeds or other worlds do not share their draw
                                                                   {"features.path", "circle"},
                                                                   {"features.step", "1"},
                                                                   {"features.sway_amplitude", "0.1"},
-                                                                  {"sensor.range_max", "3"},
-                                                                  {"sensor.sigma", "0.1"},
-                                                                  {"sensor.detection", "0.9"},
                                                                   {"noise.walk", "0.31"},
                                                                   {"noise.truncate", "2"},
                                                                   {"noise.initial_heading", "0.1"},
@@ -154,9 +151,23 @@ TEST_CASE("compare: files of other seeds or other worlds do not share their draw
         {"scenario.title", "another"}, {"filter.measurement", "0.8"},
         {"filter.covariance", "1.1"},  {"control.path", "circle"},
         {"planner.speeds", "3"},       {"planner.turns", "0"},
+        {"sensor.range_max", "3"},     {"sensor.sigma", "0.1"},
+        {"sensor.detection", "0.9"},   {"sensor.every", "2"},
         {"arms.controllers", "fixed"}, {"published.trace_P", "fixed.ekf 1"}};
     for (const auto& [key, value] : same)
         CHECK(refused({one, unrun("two.h5", {changed(h, key, value)})}, "fixed,fixed").empty());
+}
+
+TEST_CASE("compare: scenarios whose sensors differ are said to be different worlds") {
+    const DeformableSettings h = scenario("h");
+    const auto report = [&](const char* key, const char* value) {
+        return compare_studies({unrun("one.h5", {h}), unrun("two.h5", {changed(h, key, value)})}, std::nullopt);
+    };
+    const CompareReport other = report("sensor.sigma", "0.1"), same = report("filter.measurement", "0.8");
+    CHECK_THAT(compare_text(other), Contains("note: A and B are different worlds, as their sensors differ: h"));
+    CHECK_THAT(compare_text(same), !Contains("different worlds"));
+    CHECK(Json::parse(compare_json(other))[0]["same_world"] == false);
+    CHECK(Json::parse(compare_json(same))[0]["same_world"] == true);
 }
 
 TEST_CASE("compare: scenarios that are left out are named") {

@@ -28,6 +28,9 @@ void check_same_draws(const std::vector<StudyFile>& files);
 /// Throws InputError naming the first key by which the scenarios of two files have different truths or draws.
 void check_same_world(const ChosenPair& pair);
 
+/// Whether the scenarios of a pair differ in a sensor: they are different worlds, which share their draws.
+bool of_different_worlds(const ComparedPair& pair);
+
 /// The keys in which two resolved scenarios differ, except for titles and published values.
 std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b);
 

@@ -4,6 +4,7 @@
 #include <credence/compare.hpp>
 #include <credence/text.hpp>
 
+#include "report/compare/choice.hpp"
 #include "report/data/json.hpp"
 #include "report/table.hpp"
 
@@ -33,6 +34,7 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
         column["mean_a"] = pair.a.mean[f];
         column["mean_b"] = pair.b.mean[f];
     }
+    json["same_world"] = !of_different_worlds(pair);
     json["differences"] = Json::object();
     for (const KeyDifference& key : pair.differences) json["differences"][key.key] = Json::array({key.a, key.b});
     json["of_a"] = side_json(pair.a);

@@ -5,6 +5,7 @@
 #include <credence/compare.hpp>
 #include <credence/text.hpp>
 
+#include "report/compare/choice.hpp"
 #include "report/compare/words.hpp"
 #include "report/format.hpp"
 #include "report/table.hpp"
@@ -151,6 +152,13 @@ std::string compare_notes(const CompareReport& report) {
         complete = complete && pair.complete;
         not_run += pair.not_run();
     }
+    std::vector<std::string> other_worlds;
+    for (const ComparedPair& pair : report.pairs)
+        if (of_different_worlds(pair)) other_worlds.push_back(pair.comparison.scenario);
+    if (!other_worlds.empty())
+        text += wrapped("note: A and B are different worlds, as their sensors differ: " + joined(other_worlds) +
+                            ". Their trials still share the truth of the features, the noise of the motion and the draws of "
+                            "the measurements, so differences are of pairs. They show what the sensor does, too.") + "\n";
     if (!complete)
         text += "note: a study is not complete" +
                 (not_run == 0 ? "" : ": " + std::to_string(not_run) + " of " + std::to_string(report.pairs.size()) +

@@ -4,6 +4,8 @@
 
 #include "report/compare/choice.hpp"
 
+#include <algorithm>
+
 namespace credence {
 
 void check_same_draws(const std::vector<StudyFile>& files) {
@@ -27,7 +29,12 @@ void check_same_world(const ChosenPair& pair) {
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " (scenario " +
                              a.name + " is another world: " + difference.key + " is " + printable(difference.a) +
                              " in " + pair.file_a.path + " and " + printable(difference.b) + " in " + pair.file_b.path +
-                             "). Compare runs that differ in filter, control, planner or arms only.");
+                             "). Compare runs that differ in filter, control, planner, arms or sensor only.");
+}
+
+bool of_different_worlds(const ComparedPair& pair) {
+    return std::any_of(pair.differences.begin(), pair.differences.end(),
+                       [](const KeyDifference& difference) { return is_of_the_sensor(difference.key); });
 }
 
 std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b) {
