@@ -80,7 +80,7 @@ std::vector<Target> asked_units(const std::vector<std::string>& names) {
 
 std::vector<World> all_worlds() {
     std::vector<World> worlds = seed_worlds();
-    for (const auto& more : {graph_worlds(), noise_worlds(), arm_worlds(), fragile_worlds()})
+    for (const auto& more : {graph_worlds(), noise_worlds(), arm_worlds(), disturbed_worlds(), fragile_worlds()})
         worlds.insert(worlds.end(), more.begin(), more.end());
     return worlds;
 }

@@ -83,7 +83,7 @@ inline std::vector<World> noise_worlds() {
     };
 }
 
-/// Arms beyond those of every world: the other estimators, and the controller with a horizon.
+/// Arms beyond those of every world: the other estimators, the other controllers and criteria.
 inline std::vector<World> arm_worlds() {
     const std::string few = "-0.4, 0.25";
     return {
@@ -106,6 +106,36 @@ inline std::vector<World> arm_worlds() {
           {"features.path", "circle"},
           {"planner.speeds", "1"},
           {"scenario.poses", "5"}}},
+        {"baselines",
+         {{"arms.controllers", "random, nearest, follow, waypoints"},
+          {"control.waypoints", "3 0, 3 3"},
+          {"features.path", "circle"}}},
+        {"pose-trace",
+         {{"arms.controllers", "greedy"},
+          {"planner.criterion", "pose_trace"},
+          {"planner.heading_weight", "4"},
+          {"features.path", "circle"},
+          {"sensor.noise", "ranged"}}},
+        {"log-det", {{"arms.controllers", "greedy"}, {"planner.criterion", "log_det"}, {"planner.turns", few}}},
+        {"max-eigenvalue",
+         {{"arms.controllers", "greedy"}, {"planner.criterion", "max_eigenvalue"}, {"planner.turns", few}}},
+    };
+}
+
+/// Features that are placed, noise with tails, and what else disturbs a filter.
+inline std::vector<World> disturbed_worlds() {
+    return {
+        {"ring-student-gate",
+         {{"features.placement", "ring"},
+          {"features.count", "4"},
+          {"noise.measurement_tails", "student"},
+          {"filter.gate", "0.9"},
+          {"sensor.every", "2"}}},
+        {"box-contaminated-bias",
+         {{"features.placement", "box"},
+          {"model.process", "translation"},
+          {"noise.measurement_tails", "contaminated"},
+          {"noise.odometry_bias", "0.1"}}},
     };
 }
 
