@@ -103,10 +103,11 @@ TEST_CASE("criteria: two steps ahead, controls and their costs are the oracle's"
 }
 
 TEST_CASE("criteria: by each of them, no control costs more than the least, in random hard scenarios") {
-    for (const Settings& criterion : criteria()) {
+    for (Settings criterion : criteria()) {
+        criterion.emplace_back("scenario.poses", "5");
         const Tally one = run_random<double>(8, criterion), lanes = run_random<Lane<4>>(2, criterion);
         CAPTURE(described(criterion));
-        CHECK(one.steps + lanes.steps > 100);
+        CHECK(one.steps + lanes.steps > 40);
         CHECK(one.dearer + lanes.dearer == 0);
     }
 }

@@ -155,7 +155,8 @@ TEST_CASE("planner: the bound touches the cost at its reference, and its slope i
         for (int i = 0; i < planner.view.control.candidate_count; i += 7) {
             const auto tangent =
                 tangent_at(planner.work->space.position + planner.move(i), planner.work->still, planner.heading,
-                           planner.view.filter, planner.view.sensor, layout, kappa, screening);
+                           planner.view.filter, planner.view.sensor, layout, planner.view.control.weights, kappa,
+                           screening);
             const auto bound = [&](auto& of) {
                 const auto v = values(of, i);
                 return tangent.bound(planner.view.control.candidates[i].move, layout, [&](int j) { return v[j]; });
