@@ -3,12 +3,14 @@
 
 #include "catch.hpp"
 #include "program.hpp"
+#include "store_damage.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace credence;
+using namespace credence::test;
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -230,9 +232,13 @@ TEST_CASE("cli: a replay that differs from what is stored fails with exit code 1
     REQUIRE(at != std::string::npos);
     bytes[at + 42 * sizeof(double)] ^= 1;
     here.write("credence.h5", bytes);
-    const std::string which = "replay credence.h5 --scenario ekf-straight-constant --arm fixed.ekf --trial ";
-    CHECK(here.credence(which + "41").exit_code == 0);
-    const Outcome replay = here.credence(which + "42");
+    const std::string arm = " --scenario ekf-straight-constant --arm fixed.ekf --trial ";
+    check_refused(here.credence("replay credence.h5" + arm + "41"), "checksum");
+    damaged_copy(here.path("credence.h5"), here.path("other.h5"), [](const Handle& root) {
+        forget_checksum(open(root, "/ekf-straight-constant/fixed.ekf/trace_P"));
+    });
+    CHECK(here.credence("replay other.h5" + arm + "41").exit_code == 0);
+    const Outcome replay = here.credence("replay other.h5" + arm + "42");
     CHECK(replay.exit_code == 1);
     CHECK_THAT(replay.err, Contains("differs") && Contains("trace_P"));
 }
