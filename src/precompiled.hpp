@@ -1,7 +1,7 @@
 #pragma once
 // What most sources of the library include, parsed once; and the decompositions of Eigen that several of them call, whose
-// code precompiled.cpp has once (a quarter of a minute of compiling in each of them otherwise). No source includes this
-// file: the build does, where it precompiles headers.
+// code precompiled.cpp has once: each of them would compile it again. No source includes this file: the build does, where
+// it precompiles headers.
 
 #include <Eigen/Dense>
 #include <algorithm>

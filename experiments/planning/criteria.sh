@@ -38,9 +38,9 @@ row() {
   printf '| %s |\n' "$(verdict "$3" "$4")"
 }
 
-# difference WORLD CONTROLLER STEM FILE.h5 ARM: the arm less the planner by trace, by trial with 95 % intervals. Differences that are
-# certain are bold: beyond 3.7 standard errors, which is Bonferroni's bound for the 5 worlds, 9 controllers and 4 columns of
-# these tables together (0.05/180, two-sided).
+# difference WORLD CONTROLLER STEM FILE.h5 ARM: the arm less the planner by trace, by trial with 95 % intervals.
+# Differences that are certain are bold: beyond 3.7 standard errors, which is Bonferroni's bound for the 5 worlds,
+# 9 controllers and 4 columns of these tables together (0.05/180, two-sided).
 difference() {
   printf '| %s | %s ' "$1" "$2"
   "$credence" compare "$4" "$3-trace.h5" --arms "$5,greedy" --format csv | awk -F, -v columns="$columns" '

@@ -8,7 +8,7 @@ import random
 import struct
 import zlib
 
-from harness import Bench, Failed, arguments, finish
+from harness import Bench, Failed, arguments, finish, finish_mutant
 
 TRIALS = 300  # a block and a partial one
 
@@ -128,11 +128,10 @@ def main():
             damage.journal(f"journal of {keep}", left_journal(bench, *more), whole, more)
             if not given.mutants:
                 damage.results(f"results of {keep}", whole, prints)
-    failures = damage.failures
     if given.mutants:
-        damage.counts["noticed"] = len(failures)
-        failures = [] if failures else ["no journal with right checksums and wrong bytes gave other results"]
-    finish("a flipped byte" + (", checksums made right" if given.mutants else ""), damage.counts, failures)
+        return finish_mutant("a flipped byte, checksums made right", damage.counts, damage.failures,
+                             "no journal with right checksums and wrong bytes gave other results")
+    finish("a flipped byte", damage.counts, damage.failures)
 
 
 if __name__ == "__main__":

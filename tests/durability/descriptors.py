@@ -10,7 +10,7 @@ import os
 import shutil
 import subprocess
 
-from harness import Bench, Failed, arguments, finish
+from harness import Bench, Failed, arguments, finish, finish_mutant
 
 TALK = {
     "libgomp, settings": {"OMP_DISPLAY_ENV": "verbose"},
@@ -107,9 +107,9 @@ def main():
                 except (Failed, subprocess.TimeoutExpired) as error:
                     failures.append(f"{command[0]}, {name}, closed {closed}: {error}")
     if given.mutants:
-        failures, found = [] if failures else ["no library's message was found in a file"], len(failures)
-        counts["found"] = found
-    finish("standard streams" + (", not held" if given.mutants else ""), counts, failures)
+        return finish_mutant("standard streams, not held", counts, failures, "no library's message was found in a file",
+                             noticed="found")
+    finish("standard streams", counts, failures)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ succeeded, as if the program did not look: then this must fail."""
 
 import random
 
-from harness import LESS, Bench, Failed, arguments, finish
+from harness import LESS, Bench, Failed, arguments, finish, finish_all
 
 KINDS = {"open": "too many open files", "read": "input/output error", "thread": "resource temporarily unavailable",
          "sync": "input/output error", "rename": "input/output error", "remove": "input/output error",
@@ -162,19 +162,12 @@ def mutants(bench):
 
 def main():
     given = arguments(__doc__, most=0, only="", mutants=0)
-    total, failures = {}, []
     with Bench(given.credence) as bench:
         if given.mutants:
             return mutants(bench)
-        for command in commands(bench):
-            if given.only and command.name != given.only:
-                continue
-            done = Failing(bench, command, given.most).all()
-            print(f"  {command.name}: " + ", ".join(f"{n:,} {what}" for what, n in done.counts.items()), flush=True)
-            failures += done.failures
-            for what, n in done.counts.items():
-                total[what] = total.get(what, 0) + n
-    finish("every resource fails once", total, failures)
+        finish_all("every resource fails once",
+                   ((command.name, Failing(bench, command, given.most).all()) for command in commands(bench)
+                    if given.only in ("", command.name)))
 
 
 if __name__ == "__main__":

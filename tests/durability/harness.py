@@ -93,6 +93,22 @@ class Bench:
             raise Failed(f"{what}: other results than those of an undisturbed run")
 
 
+def finish_all(name, done):
+    """Prints the counts of each of `done`, pairs of a name and what has counts and failures; and ends with their sums."""
+    total, failures = {}, []
+    for part, one in done:
+        print(f"  {part}: " + ", ".join(f"{number:,} {what}" for what, number in one.counts.items()), flush=True)
+        failures += one.failures
+        for what, number in one.counts.items():
+            total[what] = total.get(what, 0) + number
+    finish(name, total, failures)
+
+
+def finish_mutant(name, counts, failures, unnoticed, noticed="noticed"):
+    """Ends a run with a planted bug, which must have failed: where it did not, that is the failure."""
+    finish(name, {**counts, noticed: len(failures)}, [] if failures else [unnoticed])
+
+
 def finish(name, counts, failures):
     """Prints what was done; ends with 1 where something failed."""
     print(f"{name}: " + ", ".join(f"{number:,} {what}" for what, number in counts.items()), flush=True)

@@ -11,7 +11,7 @@ import selectors
 import socket
 import subprocess
 
-from harness import LESS, Bench, Failed, arguments, finish
+from harness import LESS, Bench, Failed, arguments, finish, finish_mutant
 
 NAMES = ("same", "symbolic link", "hard link", "bind mount")
 
@@ -200,9 +200,9 @@ def main():
             if harness.mounts:
                 subprocess.run(["umount", str(bench.root / "mounted")], check=False)
     if given.mutants:
-        harness.counts["noticed"] = len(failures)
-        failures = [] if failures else ["nothing was lost without locks"]
-    finish("two programs in turns" + (", without locks" if given.mutants else ""), harness.counts, failures)
+        return finish_mutant("two programs in turns, without locks", harness.counts, failures,
+                             "nothing was lost without locks")
+    finish("two programs in turns", harness.counts, failures)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ that of the header, which the first commit's covers, and that of the journal's r
 import os
 import struct
 
-from harness import LESS, Bench, Failed, arguments, finish
+from harness import LESS, Bench, Failed, arguments, finish, finish_all
 from replay import Disk, read_trace
 
 BLOCKS, PRESENT = 6, 2  # of the study; of less.h5 that it keeps
@@ -195,19 +195,11 @@ def mutants(bench):
 
 def main():
     given = arguments(__doc__, some=40, every=1, case="", mutants=0)
-    total, failures = {}, []
     with Bench(given.credence) as bench:
         if given.mutants:
             return mutants(bench)
-        for case in cases(bench):
-            if given.case and case.name != given.case:
-                continue
-            done = PowerLoss(bench, case, given.some, given.every).all()
-            print(f"  {case.name}: " + ", ".join(f"{n:,} {what}" for what, n in done.counts.items()), flush=True)
-            failures += done.failures
-            for what, n in done.counts.items():
-                total[what] = total.get(what, 0) + n
-    finish("power loss", total, failures)
+        finish_all("power loss", ((case.name, PowerLoss(bench, case, given.some, given.every).all())
+                                  for case in cases(bench) if given.case in ("", case.name)))
 
 
 if __name__ == "__main__":
