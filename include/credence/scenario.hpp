@@ -15,6 +15,7 @@ namespace credence {
 /// `section.key` and its value, as they stand in a scenario file.
 struct Setting {
     std::string key, value;
+    bool later_default = false;  ///< the default of a key that a study's hash leaves out there [detail/keys.hpp]
     friend bool operator==(const Setting&, const Setting&) = default;
 };
 

@@ -47,8 +47,6 @@ Keep keep_of(const Study& study);
 
 /// The identifier of the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, draws_version and Keep.
 std::string study_hash(const StudyDefinition& definition);
-/// The same, of the scenarios' texts.
-std::string study_hash(std::uint64_t root_seed, Keep keep, const std::vector<std::string>& scenarios);
 std::string study_hash(const Study& study);
 
 /// Describes the first difference between two studies, such as `its root seed is 2, not 1`; empty where they are the

@@ -19,7 +19,7 @@ std::string value_of(const Scenario& scenario, const std::string& key) {
 
 std::string scenario_text(const Scenario& scenario) {
     std::string text, section;
-    for (const auto& [key, value] : scenario.settings) {
+    for (const auto& [key, value, later_default] : scenario.settings) {
         const std::size_t dot = key.find('.');
         if (key.substr(0, dot) != section) {
             section = key.substr(0, dot);

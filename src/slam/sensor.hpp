@@ -59,8 +59,7 @@ Vector2<Real> student_pair(const Vector2<Real>& normal, double nu) {
     const Real power = exp(squared_norm(normal) * Real(1 / nu));
     // (e^x - 1)/x without cancellation [Higham 2002, 1.14.1].
     const Real ratio = select(power == Real(1), Real(1), (power - Real(1)) / log(power));
-    const Real factor = sqrt(Real((nu - 2) / nu) * ratio);
-    return {factor * normal.x, factor * normal.y};
+    return scaled(sqrt(Real((nu - 2) / nu) * ratio), normal);
 }
 
 /// Gives the measurement noise of pose k its distribution. `measurement` [M]: standard-normal pairs.
@@ -74,8 +73,7 @@ void shape_tails(const SensorParameters& sensor, Count features, int k, const No
             continue;
         }
         const Mask<Real> outlier = noise.uniform(Source::outlier, k, j) < Real(sensor.outlier_share);
-        const Real scale = select(outlier, Real(sensor.outlier_scale), Real(1));
-        measurement[j] = {scale * measurement[j].x, scale * measurement[j].y};
+        measurement[j] = scaled(select(outlier, Real(sensor.outlier_scale), Real(1)), measurement[j]);
     }
 }
 

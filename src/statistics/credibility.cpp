@@ -1,8 +1,8 @@
-#include <Eigen/Dense>
 #include <cmath>
 #include <credence/credibility.hpp>
 
 #include "base/nan.hpp"
+#include "numeric/decompositions.hpp"
 
 namespace credence {
 
@@ -30,10 +30,10 @@ Credibility credibility(const std::vector<double>& nees, const std::vector<doubl
     if (result.count <= n) return result;
     const double count = static_cast<double>(result.count);
     const Eigen::MatrixXd e = scaled_errors(nees, errors, n, result.count);
-    const Eigen::LLT<Eigen::MatrixXd> mean_square(e * e.transpose() / count);
+    const CholeskyFactor mean_square(e * e.transpose() / count);
     // M has a unit diagonal: where only rounding keeps it positive definite, its inverse is meaningless.
-    if (mean_square.info() != Eigen::Success || !(mean_square.rcond() > 1e-13)) return result;
-    const Eigen::RowVectorXd actual = mean_square.matrixL().solve(e).colwise().squaredNorm();
+    if (!mean_square.succeeded() || !(mean_square.rcond() > least_rcond)) return result;
+    const Eigen::RowVectorXd actual = mean_square.solve_lower(e).colwise().squaredNorm();
     double sizes = 0, sum = 0;
     Eigen::Index column = 0;
     for (const double claimed : nees) {

@@ -13,18 +13,15 @@ StudyDefinition definition_of(const Study& study) {
     return definition;
 }
 
-std::string study_hash(std::uint64_t root_seed, Keep keep, const std::vector<std::string>& scenarios) {
-    std::string text = "schema " + std::to_string(draws_version) + "\nroot_seed " + std::to_string(root_seed) +
-                       "\nkeep " + keep_name(keep) + "\n";
-    for (const std::string& scenario : scenarios) text += "\n" + scenario;
+std::string study_hash(const StudyDefinition& definition) {
+    std::string text = "schema " + std::to_string(draws_version) + "\nroot_seed " +
+                       std::to_string(definition.root_seed) + "\nkeep " + keep_name(definition.keep) + "\n";
+    for (Scenario scenario : definition.scenarios) {
+        std::erase_if(scenario.settings, [](const Setting& setting) { return setting.later_default; });
+        text += "\n" + scenario_text(scenario);
+    }
     const boost::uuids::name_generator_sha1 generate(boost::uuids::ns::oid());
     return boost::uuids::to_string(generate(text));
-}
-
-std::string study_hash(const StudyDefinition& definition) {
-    std::vector<std::string> texts;
-    for (const Scenario& scenario : definition.scenarios) texts.push_back(scenario_text(scenario));
-    return study_hash(definition.root_seed, definition.keep, texts);
 }
 
 std::string study_hash(const Study& study) { return study_hash(definition_of(study)); }

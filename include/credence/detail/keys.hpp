@@ -19,6 +19,8 @@ struct KeyOf {
     std::function<void(Settings&, const std::string&)> set;  ///< throws InputError where the value is not in range
     std::function<std::string(const Settings&)> get;         ///< text that `set` reads back to the same value
     std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
+    /// The key came after studies whose files stay usable: a study's hash leaves it out where it has its default.
+    bool later = false;
 };
 
 /// Throws InputError for a key that is not among `known`, with the closest one that is.

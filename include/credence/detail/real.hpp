@@ -89,6 +89,11 @@ Vector2<Real> operator-(const Vector2<Real>& a, const Vector2<Real>& b) {
     return {a.x - b.x, a.y - b.y};
 }
 
+template <class Real>
+Vector2<Real> scaled(Real s, const Vector2<Real>& a) {
+    return {s * a.x, s * a.y};
+}
+
 /// a + s b, each component rounded once.
 template <class Real>
 Vector2<Real> add_scaled(const Vector2<Real>& a, Real s, const Vector2<Real>& b) {

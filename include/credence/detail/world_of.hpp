@@ -51,7 +51,11 @@ public:
         const Settings resolved = world_.resolved(settings);
         Scenario scenario{name(), resolved.name, resolved.title, resolved.length_unit, resolved.poses, {}, {}, {}, {}, {}};
         if (name() != first_world) scenario.settings.push_back({world_key, name()});
-        for (const KeyOf<Settings>& key : world_.keys()) scenario.settings.push_back({key.name, key.get(resolved)});
+        const Settings defaults = world_.defaults();
+        for (const KeyOf<Settings>& key : world_.keys()) {
+            const std::string value = key.get(resolved);
+            scenario.settings.push_back({key.name, value, key.later && value == key.get(defaults)});
+        }
         world_.describe(resolved, scenario);
         scenario.baselines = baselines_among(scenario.arms);
         scenario.own_settings = std::make_shared<const Settings>(resolved);
@@ -63,8 +67,8 @@ public:
         if (scenario.own_settings && scenario.world == name())
             return *static_cast<const Settings*>(scenario.own_settings.get());
         Settings settings;
-        for (const auto& [key, value] : scenario.settings)
-            if (key != world_key) set_key(world_.keys(), settings, key, value);
+        for (const Setting& setting : scenario.settings)
+            if (setting.key != world_key) set_key(world_.keys(), settings, setting.key, setting.value);
         return world_.resolved(std::move(settings));
     }
 

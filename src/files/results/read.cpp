@@ -230,14 +230,6 @@ Provenance computed_by(const Study& study, const RunFacts& run) {
                : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
 }
 
-/// The hash of the scenarios as they are written in the file: an earlier release had fewer keys.
-std::string hash_of_texts(const Handle& root, const Study& study) {
-    std::vector<std::string> texts;
-    for (const ScenarioResults& results : study.scenarios)
-        texts.push_back(hdf5::read_text(hdf5::open_group(root, results.scenario.name), "scenario"));
-    return study_hash(study.root_seed, keep_of(study), texts);
-}
-
 StoredStudy read_study(const Opened& source) {
     const Handle& root = *source.file;
     StoredStudy stored;
@@ -253,7 +245,7 @@ StoredStudy read_study(const Opened& source) {
             study.scenarios.push_back(read_scenario_results(name, source));
             in_memory.limit(study.scenarios.back());
         }
-    if (hdf5::read_text(root, "study_hash") != hash_of_texts(root, study))
+    if (hdf5::read_text(root, "study_hash") != study_hash(study))
         throw Error("/@study_hash", "does not belong to these scenarios and this root seed");
     study.complete = read_complete(root, study);
     const Handle run = hdf5::open_group(root, run_group);

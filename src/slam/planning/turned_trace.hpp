@@ -8,11 +8,6 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-template <class Real>
-Vector2<Real> scaled(Real factor, const Vector2<Real>& v) {
-    return {factor * v.x, factor * v.y};
-}
-
 /// constant + a . linear + |a|^2 quadratic. In the translation model there is only the constant.
 template <class Real>
 struct TurnedTrace {

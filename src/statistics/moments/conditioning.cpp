@@ -1,8 +1,9 @@
 #include "statistics/moments/conditioning.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <limits>
 #include <vector>
+
+#include "numeric/decompositions.hpp"
 
 namespace credence {
 
@@ -14,8 +15,7 @@ double rounding_bound(const Eigen::MatrixXd& P, double epsilon) {
     const Eigen::MatrixXd part = P(there, there);
     const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd correlation = scale.asDiagonal() * part * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
-    const double smallest = solver.eigenvalues()[0], d = static_cast<double>(there.size());
+    const double smallest = eigenvalues(correlation)[0], d = static_cast<double>(there.size());
     return smallest > 0 ? d * epsilon / smallest : std::numeric_limits<double>::infinity();
 }
 

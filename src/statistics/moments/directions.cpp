@@ -1,10 +1,9 @@
 #include "statistics/moments/directions.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
+#include "numeric/decompositions.hpp"
 #include "statistics/moments/conditioning.hpp"
 
 namespace credence {
@@ -25,14 +24,13 @@ struct Extremes {
 
 /// Of S v = lambda C v in the span of `basis`.
 Extremes extremes_of(const MatrixXd& S, const MatrixXd& C, const MatrixXd& basis) {
-    const Eigen::LLT<MatrixXd> factor(basis.transpose() * C * basis);
-    if (basis.cols() == 0 || factor.info() != Eigen::Success) return {};
-    const MatrixXd half = factor.matrixL().solve(basis.transpose() * S * basis);
-    const MatrixXd whole = factor.matrixL().solve(half.transpose());
-    const MatrixXd symmetric = (whole + whole.transpose()) / 2;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
-    if (solver.info() != Eigen::Success) return {};
-    return {solver.eigenvalues(), basis * factor.matrixU().solve(solver.eigenvectors())};
+    const CholeskyFactor factor(basis.transpose() * C * basis);
+    if (basis.cols() == 0 || !factor.succeeded()) return {};
+    const MatrixXd half = factor.solve_lower(basis.transpose() * S * basis);
+    const MatrixXd whole = factor.solve_lower(half.transpose());
+    const Eigenpairs pairs = eigenpairs((whole + whole.transpose()) / 2);
+    if (!pairs.found) return {};
+    return {pairs.values, basis * factor.solve_upper(pairs.vectors)};
 }
 
 double form(const VectorXd& v, const MatrixXd& matrix) { return v.dot(matrix * v); }
@@ -104,11 +102,11 @@ bool enough_trials(const GroupMoments& group, const FoldSums& sums) {
 MatrixXd resolved_basis(const MatrixXd& sum_of_C, const DirectionLimits& limits) {
     const auto d = static_cast<double>(sum_of_C.rows());
     const MatrixXd mean = sum_of_C * (d / sum_of_C.trace());  // its diagonal is 1
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(mean);
+    const Eigenpairs pairs = eigenpairs(mean);
     const double least = d * limits.epsilon / (rounding_share * limits.margin);
-    const Eigen::Index left_out = (solver.eigenvalues().array() < least).count();
+    const Eigen::Index left_out = (pairs.values.array() < least).count();
     if (left_out == 0) return MatrixXd::Identity(mean.rows(), mean.cols());
-    return solver.eigenvectors().rightCols(mean.cols() - left_out);
+    return pairs.vectors.rightCols(mean.cols() - left_out);
 }
 
 GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums, double level,

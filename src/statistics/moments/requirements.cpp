@@ -1,9 +1,9 @@
 #include "statistics/moments/requirements.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <credence/detail/draws.hpp>
 #include <limits>
+
+#include "numeric/decompositions.hpp"
 
 namespace credence {
 
@@ -72,11 +72,10 @@ void require_bias(const VectorXd& z, int component, const MatrixXd& drawn, doubl
 /// an exactly consistent filter, in coordinates where mean P is I. Empty where one of them is singular.
 MatrixXd residuals(const GroupMoments& group) {
     const int d = group.dimension();
-    const Eigen::LLT<MatrixXd> S(symmetric(group.S.colwise().mean(), d)), C(symmetric(group.C.colwise().mean(), d));
-    constexpr double least_rcond = 1e-13;  // below it only rounding keeps a matrix positive definite
-    if (S.info() != Eigen::Success || C.info() != Eigen::Success) return {};
+    const CholeskyFactor S(symmetric(group.S.colwise().mean(), d)), C(symmetric(group.C.colwise().mean(), d));
+    if (!S.succeeded() || !C.succeeded()) return {};
     if (!(S.rcond() > least_rcond && C.rcond() > least_rcond)) return {};
-    const MatrixXd I = MatrixXd::Identity(d, d), A = S.matrixL().solve(I), D = C.matrixL().solve(I);
+    const MatrixXd I = MatrixXd::Identity(d, d), A = S.solve_lower(I), D = C.solve_lower(I);
     MatrixXd triangles(group.S.rows(), group.S.cols());
     for (Eigen::Index i = 0; i < triangles.rows(); ++i) {
         const MatrixXd R =
@@ -94,11 +93,11 @@ void require_directions(const MatrixXd& R, int dimension, const MatrixXd& drawn,
     VectorXd above(advice_draws), below(advice_draws), largest(advice_draws), up, down;
     for (int b = advice_draws - 1; b >= 0; --b) {  // the values of the first draw stay
         const VectorXd triangle = R.transpose() * drawn.col(b);
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric(triangle, dimension));
-        up = R * form_coefficients(solver.eigenvectors().col(dimension - 1));
-        down = R * form_coefficients(solver.eigenvectors().col(0));
-        above[b] = solver.eigenvalues()[dimension - 1] + z * deviation(up) * (1 + margin);
-        below[b] = z * deviation(down) - solver.eigenvalues()[0];
+        const Eigenpairs pairs = eigenpairs(symmetric(triangle, dimension));
+        up = R * form_coefficients(pairs.vectors.col(dimension - 1));
+        down = R * form_coefficients(pairs.vectors.col(0));
+        above[b] = pairs.values[dimension - 1] + z * deviation(up) * (1 + margin);
+        below[b] = z * deviation(down) - pairs.values[0];
         largest[b] = up.maxCoeff();
     }
     all.push_back({Need::direction_above, 0, margin, up, above, quantile_of(largest, 0.5), tail_growth(up)});

@@ -11,6 +11,12 @@ namespace {
 
 using Keys = std::vector<DeformableKey>;
 
+/// Adds a key that came after the hash of studies was fixed [KeyOf].
+void add_later(Keys& keys, DeformableKey key) {
+    key.later = true;
+    keys.push_back(std::move(key));
+}
+
 void add_scenario_keys(Keys& keys) {
     add_common_keys(keys);
     keys.push_back(choice_key<Process>("model.process", {"heading", "translation"},
@@ -19,26 +25,29 @@ void add_scenario_keys(Keys& keys) {
 
 void add_feature_keys(Keys& keys) {
     keys.push_back({"features.positions", "f_0 as `x y, x y`, 1 to 64 of them (length)",
-                    [](DeformableSettings& s, const std::string& v) { s.features.positions = parse_points("features.positions", v, largest_feature_count); },
-                    [](const DeformableSettings& s) { return positions_text(s.features.positions); }});
-    keys.push_back({"features.count", "M, 1 to 64, where they are placed in a box or ring; default as many as positions",
                     [](DeformableSettings& s, const std::string& v) {
-                        s.features.count.reset();
-                        if (v != "default")
-                            s.features.count = static_cast<int>(parse_integer("features.count", v, 1, largest_feature_count));
+                        s.features.positions = parse_points("features.positions", v, largest_feature_count);
                     },
-                    [](const DeformableSettings& s) {
-                        return s.features.count ? std::to_string(*s.features.count) : "default";
-                    },
-                    {"default"}});
-    keys.push_back(choice_key<Placement>("features.placement", {"given", "box", "ring"},
-                                         [](auto& s) -> auto& { return s.features.placement; }));
-    keys.push_back(real_key("features.extent", "side of the box about the first position (length)", above(0),
-                            [](auto& s) -> auto& { return s.features.extent; }));
-    keys.push_back(real_key("features.radius_min", "inner radius of the ring about the first position (length)", from(0),
-                            [](auto& s) -> auto& { return s.features.radius_min; }));
-    keys.push_back(real_key("features.radius_max", "outer radius of the ring (length)", above(0),
-                            [](auto& s) -> auto& { return s.features.radius_max; }));
+                    [](const DeformableSettings& s) { return positions_text(s.features.positions); }});
+    add_later(keys, {"features.count",
+                     "M, 1 to 64, where they are placed in a box or ring; default as many as positions",
+                     [](DeformableSettings& s, const std::string& v) {
+                         s.features.count.reset();
+                         if (v == "default") return;
+                         s.features.count = static_cast<int>(parse_integer("features.count", v, 1, largest_feature_count));
+                     },
+                     [](const DeformableSettings& s) {
+                         return s.features.count ? std::to_string(*s.features.count) : "default";
+                     },
+                     {"default"}});
+    add_later(keys, choice_key<Placement>("features.placement", {"given", "box", "ring"},
+                                          [](auto& s) -> auto& { return s.features.placement; }));
+    add_later(keys, real_key("features.extent", "side of the box about the first position (length)", above(0),
+                             [](auto& s) -> auto& { return s.features.extent; }));
+    add_later(keys, real_key("features.radius_min", "inner radius of the ring about the first position (length)",
+                             from(0), [](auto& s) -> auto& { return s.features.radius_min; }));
+    add_later(keys, real_key("features.radius_max", "outer radius of the ring (length)", above(0),
+                             [](auto& s) -> auto& { return s.features.radius_max; }));
     keys.push_back(choice_key<Path>("features.path", {"straight", "circle", "static"},
                                     [](auto& s) -> auto& { return s.features.path; }));
     keys.push_back(real_key("features.step", "d, what features and robot move a step (length)", above(0),
@@ -66,8 +75,8 @@ void add_sensor_keys(Keys& keys) {
                             [](auto& s) -> auto& { return s.sensor.sigma_far; }));
     keys.push_back(real_key("sensor.detection", "probability that a feature in range is seen", between(0, 1),
                             [](auto& s) -> auto& { return s.sensor.detection; }));
-    keys.push_back(integer_key("sensor.every", "steps from one measurement of the features to the next", 1,
-                               largest_pose_count, [](auto& s) -> auto& { return s.sensor.every; }));
+    add_later(keys, integer_key("sensor.every", "steps from one measurement of the features to the next", 1,
+                                largest_pose_count, [](auto& s) -> auto& { return s.sensor.every; }));
 }
 
 void add_noise_keys(Keys& keys) {
@@ -83,17 +92,17 @@ void add_noise_keys(Keys& keys) {
                             [](auto& s) -> auto& { return s.noise.initial_heading; }));
     keys.push_back(real_key("noise.initial_position", "sigma of the first position, known to the filter (length)",
                             from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
-    keys.push_back(real_key("noise.odometry_bias",
-                            "sigma of a bias of the odometry, each axis of the body, constant in a trial (length a step)",
-                            from(0), [](auto& s) -> auto& { return s.noise.odometry_bias; }));
-    keys.push_back(choice_key<Tails>("noise.measurement_tails", {"normal", "student", "contaminated"},
-                                     [](auto& s) -> auto& { return s.noise.measurement_tails; }));
-    keys.push_back(real_key("noise.degrees_of_freedom", "of Student's t, which keeps the sensor's sigma", above(2),
-                            [](auto& s) -> auto& { return s.noise.degrees_of_freedom; }));
-    keys.push_back(real_key("noise.outlier_share", "of the measurements, where they are contaminated", between(0, 1),
-                            [](auto& s) -> auto& { return s.noise.outlier_share; }));
-    keys.push_back(real_key("noise.outlier_scale", "factor on the sensor's sigma of an outlier", from(0),
-                            [](auto& s) -> auto& { return s.noise.outlier_scale; }));
+    add_later(keys, real_key("noise.odometry_bias",
+                             "sigma of a bias of the odometry, each axis of the body, constant in a trial (length a step)",
+                             from(0), [](auto& s) -> auto& { return s.noise.odometry_bias; }));
+    add_later(keys, choice_key<Tails>("noise.measurement_tails", {"normal", "student", "contaminated"},
+                                      [](auto& s) -> auto& { return s.noise.measurement_tails; }));
+    add_later(keys, real_key("noise.degrees_of_freedom", "of Student's t, which keeps the sensor's sigma", above(2),
+                             [](auto& s) -> auto& { return s.noise.degrees_of_freedom; }));
+    add_later(keys, real_key("noise.outlier_share", "of the measurements, where they are contaminated", between(0, 1),
+                             [](auto& s) -> auto& { return s.noise.outlier_share; }));
+    add_later(keys, real_key("noise.outlier_scale", "factor on the sensor's sigma of an outlier", from(0),
+                             [](auto& s) -> auto& { return s.noise.outlier_scale; }));
     keys.push_back({"noise.truncate", "none, or the multiple of sigma beyond which a draw is redrawn (0.1 to 8)",
                     [](DeformableSettings& s, const std::string& v) { s.noise.truncate = parse_truncate(v); },
                     [](const DeformableSettings& s) { return s.noise.truncate ? to_text(*s.noise.truncate) : "none"; },
@@ -124,8 +133,8 @@ void add_filter_keys(Keys& keys) {
     factor("filter.edges", "factor on the believed edge noise", [](auto& s) -> auto& { return s.filter.edges; });
     factor("filter.covariance", "factor on the reported P, for testing the judge",
            [](auto& s) -> auto& { return s.filter.covariance; });
-    keys.push_back(real_key("filter.gate", "probability of chi-square beyond which a sighting is rejected; 1 for none",
-                            ValueRange{0, 1, false, false}, [](auto& s) -> auto& { return s.filter.gate; }));
+    add_later(keys, real_key("filter.gate", "probability of chi-square beyond which a sighting is rejected; 1 for none",
+                             ValueRange{0, 1, false, false}, [](auto& s) -> auto& { return s.filter.gate; }));
 }
 
 std::vector<Point> parse_waypoints(const std::string& value) {
@@ -142,21 +151,22 @@ std::vector<std::string> estimators_to_offer() {
 void add_control_keys(Keys& keys) {
     keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
                                          [](auto& s) -> auto& { return s.fixed_path; }));
-    keys.push_back({"control.waypoints", "none, or the path of the controller waypoints as `x y, x y`, from 0 0 on (length)",
-                    [](DeformableSettings& s, const std::string& v) { s.waypoints = parse_waypoints(v); },
-                    [](const DeformableSettings& s) {
-                        return s.waypoints.empty() ? "none" : positions_text(s.waypoints);
-                    },
-                    {"none"}});
+    add_later(keys, {"control.waypoints",
+                     "none, or the path of the controller waypoints as `x y, x y`, from 0 0 on (length)",
+                     [](DeformableSettings& s, const std::string& v) { s.waypoints = parse_waypoints(v); },
+                     [](const DeformableSettings& s) {
+                         return s.waypoints.empty() ? "none" : positions_text(s.waypoints);
+                     },
+                     {"none"}});
 }
 
 void add_planner_keys(Keys& keys) {
-    keys.push_back(choice_key<Criterion>(
+    add_later(keys, choice_key<Criterion>(
         "planner.criterion", {"trace", "log_det", "max_eigenvalue", "pose_trace", "pose_log_det", "features_trace"},
         [](auto& s) -> auto& { return s.planner.criterion; }));
-    keys.push_back(real_key("planner.heading_weight",
-                            "what 1 rad^2 counts in a trace or eigenvalue that is minimised (length^2)", from(0),
-                            [](auto& s) -> auto& { return s.planner.heading_weight; }));
+    add_later(keys, real_key("planner.heading_weight",
+                             "what 1 rad^2 counts in a trace or eigenvalue that is minimised (length^2)", from(0),
+                             [](auto& s) -> auto& { return s.planner.heading_weight; }));
     keys.push_back(
         {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
          [](DeformableSettings& s, const std::string& v) {

@@ -16,7 +16,7 @@ double smallest_eigenvalue(const Eigen::MatrixXd& S) {
     const Eigen::VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
     const Eigen::VectorXd scale = (size.array() > 0).select(size.cwiseInverse(), 1.0);
     const Eigen::MatrixXd correlation = scale.asDiagonal() * S * scale.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+    return eigenvalues(correlation).minCoeff();
 }
 
 /// Rounding alone, of values with the relative spacing `epsilon`, makes up to 2 n epsilon of an eigenvalue of 0.
@@ -28,15 +28,10 @@ Definiteness definiteness(double smallest, Eigen::Index n, double epsilon) {
 
 /// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
 /// `rounding` becomes the bound on the relative error of nu'S^-1nu; 0 for such pivots.
-std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, Eigen::LLT<Eigen::MatrixXd>& factor,
-                   double& rounding) {
+std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor, double& rounding) {
     rounding = 0;
-    factor.compute(S);
-    const bool factored = factor.info() == Eigen::Success;
-    if (factored) {
-        const auto pivots = factor.matrixLLT().diagonal().array().square();
-        if ((pivots > 10 * std::sqrt(epsilon) * S.diagonal().array()).all()) return {};
-    }
+    const bool factored = factor.compute(S);
+    if (factored && factor.pivots_exceed(10 * std::sqrt(epsilon), S)) return {};
     const double smallest = smallest_eigenvalue(S);
     const Definiteness found = definiteness(smallest, S.rows(), epsilon);
     rounding = static_cast<double>(S.rows()) * epsilon / smallest;
@@ -57,7 +52,7 @@ std::string component_name(const RecordShape& shape, int j) {
 }
 
 bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
-    Eigen::LLT<Eigen::MatrixXd> any;
+    CholeskyFactor any;
     double rounding = 0;
     return factor(matrix, epsilon, any, rounding).empty();
 }
@@ -117,7 +112,7 @@ std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const V
     const std::string wrong = factor(P, epsilon, factors_[b], rounding);
     if (!wrong.empty()) return "covariance " + wrong;
     solved_[b] = e;
-    factors_[b].matrixL().solveInPlace(solved_[b]);
+    factors_[b].whiten(solved_[b]);
     all_series[b] = solved_[b].squaredNorm();
     all_series[places_.squared_error + b] = e.squaredNorm();
     all_series[places_.variance + b] = P.trace();
@@ -217,7 +212,7 @@ std::string StepEvaluator::evaluate_innovation(const CheckedStep& step, double* 
     const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     white_ = step.nu;
-    innovation_factor_.matrixL().solveInPlace(white_);
+    innovation_factor_.whiten(white_);
     all_series[places_.nis] = white_.squaredNorm();
     for (std::size_t i = 0; i < step.rows.size(); ++i)
         whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
@@ -245,7 +240,7 @@ std::string StepEvaluator::evaluate_row_group(std::size_t g, const CheckedStep& 
     double rounding = 0;  // no more than that of all rows
     const std::string wrong = factor(part_P_, shape_.innovation_epsilon, innovation_factor_, rounding);
     if (!wrong.empty()) return "innovation covariance " + wrong;
-    innovation_factor_.matrixL().solveInPlace(part_e_);
+    innovation_factor_.whiten(part_e_);
     all_series[places_.nis + 2 * (g + 1)] = part_e_.squaredNorm();
     return {};
 }

@@ -3,6 +3,7 @@
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]; NaN in rows not observed
 
+#include "numeric/decompositions.hpp"
 #include "scenario/state_series.hpp"
 
 #include <Eigen/Dense>
@@ -136,8 +137,6 @@ public:
     void leave_out_innovation(double* all_series, double* whitened) const;
 
 private:
-    using Factor = Eigen::LLT<Eigen::MatrixXd>;
-
     std::string evaluate_group(std::size_t b, const CheckedStep& step, double* all_series);
     template <class Matrix, class Vector>
     std::string evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon, double* all_series);
@@ -156,14 +155,14 @@ private:
 
     const RecordShape& shape_;
     const StateSeries& places_;
-    std::vector<Factor> factors_;  ///< by group
+    std::vector<CholeskyFactor> factors_;  ///< by group
     std::vector<Eigen::VectorXd> solved_;
     std::vector<VariancePlace> variance_places_;  ///< by component, of a record with covariances of groups; else empty
     std::vector<std::size_t> unknown_;            ///< series without a value at the last step
     Eigen::MatrixXd part_P_;
     Eigen::VectorXd part_e_;
     std::vector<int> members_;
-    Factor innovation_factor_;
+    CholeskyFactor innovation_factor_;
     double innovation_rounding_ = 0;
     Eigen::VectorXd white_;
 };

@@ -1,0 +1,47 @@
+#pragma once
+// Decompositions of symmetric matrices by Eigen, whose templates are compiled once here: every source that called them
+// would compile them again.
+
+#include <Eigen/Cholesky>
+
+namespace credence {
+
+/// P = L L', L lower triangular, of P [n, n].
+class CholeskyFactor {
+public:
+    CholeskyFactor() = default;
+    explicit CholeskyFactor(const Eigen::MatrixXd& P) { compute(P); }
+
+    /// Whether P is positive definite.
+    bool compute(const Eigen::Ref<const Eigen::MatrixXd>& P);
+    bool succeeded() const { return factor_.info() == Eigen::Success; }
+    /// Whether every squared diagonal entry of L exceeds `share` of P's.
+    bool pivots_exceed(double share, const Eigen::Ref<const Eigen::MatrixXd>& P) const;
+    /// An estimate of 1 / (|P| |P^-1|), in the norm of column sums.
+    double rcond() const;
+
+    /// L^-1 B
+    Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
+    /// L'^-1 B
+    Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& B) const;
+    /// Replaces b [n] by L^-1 b.
+    void whiten(Eigen::VectorXd& b) const;
+
+private:
+    Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+/// Below this `rcond` only rounding keeps a matrix whose diagonal is about 1 positive definite.
+inline constexpr double least_rcond = 1e-13;
+
+struct Eigenpairs {
+    Eigen::VectorXd values;   ///< [n], ascending
+    Eigen::MatrixXd vectors;  ///< [n, n], a column each, of length 1
+    bool found;               ///< false where the iteration does not converge, as for a NaN
+};
+
+/// Those of a symmetric matrix.
+Eigenpairs eigenpairs(const Eigen::MatrixXd& symmetric);
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
+
+}  // namespace credence
