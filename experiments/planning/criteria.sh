@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Which criterion buys what? The planner by each of its criteria, and the controllers that do not plan, in the document's
-# world, in the matched one, and with more heading noise: 20,000 trials each, or as many as the first argument says; all
-# share their draws. Writes results/planning/criteria-*.h5 and prints the tables of docs/planning.md.
+# world, in the matched one, with more heading noise and among landmarks: 20,000 trials each, or as many as the first
+# argument says; those of a world share their draws. Writes results/planning/criteria-*.h5 and prints the tables of
+# docs/planning.md. Needs numpy and h5py (PYTHON, python3) for the columns of 100 replayed trials; with PICTURE=FILE.png,
+# and matplotlib, it draws the page's picture as well.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh
@@ -29,18 +31,20 @@ world "matched truth" matched experiments/planning/matched-circle.ini
 for sigma in 0.01 0.05 0.1; do
   world "σ_head $sigma" "$sigma" experiments/seed/ekf-circle-ranged.ini "noise.heading=$sigma"
 done
+world "landmark loop" landmarks experiments/planning/landmark-loop.ini
 
-# row WORLD CONTROLLER FILE.csv ARM: the means of an arm, and its verdict.
+# row WORLD CONTROLLER STEM ARM: the means of an arm, those of its replayed trials, and its verdict.
 row() {
   local column
   printf '| %s | %s ' "$1" "$2"
-  for column in $columns; do printf '| %s ' "$(interval "$3" "$4" "$column")"; done
-  printf '| %s |\n' "$(verdict "$3" "$4")"
+  for column in $columns; do printf '| %s ' "$(interval "$3.csv" "$4" "$column")"; done
+  printf '| %s ' "$("${PYTHON:-python3}" experiments/planning/paths.py "$credence" 100 "$3.h5" "$4")"
+  printf '| %s |\n' "$(verdict "$3.csv" "$4")"
 }
 
 # difference WORLD CONTROLLER STEM FILE.h5 ARM: the arm less the planner by trace, by trial with 95 % intervals.
-# Differences that are certain are bold: beyond 3.7 standard errors, which is Bonferroni's bound for the 5 worlds,
-# 9 controllers and 4 columns of these tables together (0.05/180, two-sided).
+# Differences that are certain are bold: beyond 3.7 standard errors, which is Bonferroni's bound for the 6 worlds,
+# 9 controllers and 4 columns of this table together (0.05/216, two-sided).
 difference() {
   printf '| %s | %s ' "$1" "$2"
   "$credence" compare "$4" "$3-trace.h5" --arms "$5,greedy" --format csv | awk -F, -v columns="$columns" '
@@ -58,10 +62,11 @@ difference() {
 }
 
 head="world | controller | trace(P) | unseen | pose error | NEES/n"
-printf '\nEach controller by itself (%s trials each)\n\n| %s | verdict |\n|---|---|---|---|---|---|---|\n' "$trials" "$head"
+printf '\nEach controller by itself (%s trials each)\n\n| %s | log det P | path (dm) | verdict |\n' "$trials" "$head"
+echo '|---|---|---|---|---|---|---|---|---|'
 for i in "${!stems[@]}"; do
-  for controller in $baselines; do row "${labels[i]}" "$controller" "${stems[i]}-baselines.csv" "$controller.ekf"; done
-  for criterion in $criteria; do row "${labels[i]}" "greedy, $criterion" "${stems[i]}-$criterion.csv" greedy.ekf; done
+  for controller in $baselines; do row "${labels[i]}" "$controller" "${stems[i]}-baselines" "$controller.ekf"; done
+  for criterion in $criteria; do row "${labels[i]}" "greedy, $criterion" "${stems[i]}-$criterion" greedy.ekf; done
 done
 printf '\nLess the planner by trace, trial by trial\n\n| %s |\n|---|---|---|---|---|---|\n' "$head"
 for i in "${!stems[@]}"; do
@@ -71,3 +76,6 @@ for i in "${!stems[@]}"; do
     difference "${labels[i]}" "greedy, $criterion" "$stem" "$stem-$criterion.h5" greedy
   done
 done
+if [ -n "${PICTURE:-}" ]; then
+  PYTHONPATH=python "${PYTHON:-python3}" experiments/planning/picture.py "$out" "$PICTURE"
+fi

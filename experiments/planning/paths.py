@@ -1,25 +1,28 @@
-"""What the trials of a study came to that its file does not hold: log det P after the last update, and the length of the
-robot's true path.
+"""What the trials of a study came to that its file does not hold: log det P after the last update, and the length of
+the robot's true path.
 
     python3 paths.py CREDENCE TRIALS STUDY.h5 ARM...
 
-Replays the first trials of the file's only scenario, and prints for each arm both means with 95 % intervals, parted by |.
-Needs numpy and h5py.
+Replays the first trials of the file's only scenario, and prints for each arm both means with 95 % intervals, parted
+by |. Needs numpy and h5py.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 
-def replayed(credence: str, study: str, scenario: str, arm: str, trial: int, path: Path) -> tuple[float, float]:
+def replayed(command: list[str], scenario: str, arm: str, trial: int, folder: str) -> tuple[float, float]:
     """log det P after the last update, and the length of the path, of one trial."""
-    command = [credence, "replay", study, "--scenario", scenario, "--arm", arm, "--trial", str(trial), "-o", str(path)]
-    subprocess.run([*command, "--overwrite"], check=True, stdout=subprocess.DEVNULL)
+    path = Path(folder) / f"{arm}-{trial}.h5"
+    subprocess.run([*command, "--scenario", scenario, "--arm", arm, "--trial", str(trial), "-o", path], check=True,
+                   stdout=subprocess.DEVNULL)
     with h5py.File(path) as file:
         group = file[f"{scenario}/{arm}"]
         names = group["component"].attrs["component_names"].split()
@@ -37,10 +40,11 @@ def interval(values: np.ndarray) -> str:
 def main(credence: str, trials: int, study: str, *arms: str) -> None:
     with h5py.File(study) as file:
         scenario = next(name for name in file if name != "run")
-    with tempfile.TemporaryDirectory() as folder:
+    command = [credence, "replay", study]
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
         for arm in arms:
-            values = [replayed(credence, study, scenario, arm, i, Path(folder) / "trial.h5") for i in range(trials)]
-            print(" | ".join(interval(column) for column in np.array(values).T))
+            values = pool.map(lambda trial, arm=arm: replayed(command, scenario, arm, trial, folder), range(trials))
+            print(" | ".join(interval(column) for column in np.array(list(values)).T))
 
 
 if __name__ == "__main__":
