@@ -23,6 +23,7 @@ harnesses() {
   python3 "$here/corruption.py" "$credence" --every 997 --mutants 1
   python3 "$here/fail_once.py" "$credence" --mutants 1
   python3 "$here/descriptors.py" "$credence" --mutants 1
+  python3 "$here/versions.py" "$credence" --mutants 1
   [ "$depth" = sample ] || python3 "$here/power_loss.py" "$credence" --mutants 1
   python3 "$here/power_loss.py" "$credence" $folders
   python3 "$here/fail_once.py" "$credence" $calls

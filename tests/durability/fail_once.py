@@ -8,7 +8,7 @@ succeeded, as if the program did not look: then this must fail."""
 
 import random
 
-from harness import LESS, Bench, Failed, arguments, finish, finish_all
+from harness import HERE, LESS, Bench, Failed, arguments, finish, finish_all
 
 KINDS = {"open": "too many open files", "read": "input/output error", "thread": "resource temporarily unavailable",
          "sync": "input/output error", "rename": "input/output error", "remove": "input/output error",
@@ -47,10 +47,15 @@ def commands(bench):
     yield Command("replay", ["replay", "../whole.h5", *trial])
     yield Command("replay, file", ["replay", "../whole.h5", *trial, "-o", "t.h5"],
                   ["replay", "../whole.h5", *trial, "-o", "t.h5", "--overwrite"])
+    record = str(HERE.parent / "reference" / "record_gaussian.h5")
+    yield Command("judge", ["judge", record])
+    yield Command("judge, page", ["judge", record, "--format", "html", "-o", "r"],
+                  ["judge", record, "--format", "html", "-o", "r", "--overwrite"], output="r")
     yield Command("watch", ["watch", "../whole.h5", "--once"])
     yield Command("show", ["show", "../tiny.ini"])
     yield Command("help", ["run", "--help"])
     yield Command("manual", ["manual"])
+    yield Command("completion", ["completion", "bash"])
     yield Command("version", ["--version"], printed="the processor, where it can be read")
 
 
@@ -153,7 +158,8 @@ class Failing:
 def mutants(bench):
     """Calls that fail silently, one kind after the other."""
     by_name = {command.name: command for command in commands(bench)}
-    planted = [("run", "write"), ("run", "rename"), ("run", "remove"), ("report", "read"), ("merge", "read")]
+    planted = [("run", "write"), ("run", "rename"), ("run", "remove"), ("report", "read"), ("merge", "read"),
+               ("judge", "read"), ("completion", "write")]
     survived = [f"{kind} of {name}" for name, kind in planted
                 if not Failing(bench, by_name[name], 20, (kind,), silent=True).all().failures]
     finish("every resource fails once, silently", {"kinds": len(planted), "noticed": len(planted) - len(survived)},
