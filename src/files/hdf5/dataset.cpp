@@ -44,8 +44,9 @@ H5D_layout_t Dataset::own_layout(const Handle& creation) const {
 /// Throws where the file is too small to hold as much as the extents say.
 void Dataset::check_storage(H5D_layout_t layout) const {
     if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
-    const hsize_t stored = H5Dget_storage_size(dataset_.id()), file = file_size(dataset_);
-    if (stored == 0) throw Error(place_, "has no values");
+    const hsize_t stored = H5Dget_storage_size(dataset_.id());
+    if (stored == 0) throw failure(place_, "has no values");  // 0 is also what HDF5 returns after an error of the system
+    const hsize_t file = file_size(dataset_);
     // Chunks that were never written take no space in the file, so their extents cannot be checked against its size.
     hsize_t room = (layout == H5D_CHUNKED ? std::min(stored, file) * largest_compression : file) /
                    std::max<hsize_t>(H5Tget_size(type_.id()), 1);
