@@ -87,6 +87,8 @@ struct ArmResults {
     // Of a record only, whose runs may differ in length.
     std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all counted ones have
     std::vector<double> distribution_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
+    /// [groups] at the worst step, the mean over the trials of what rounding may have done to NEES; empty: unknown.
+    std::vector<double> rounding;
 
     std::int64_t counted_at(std::size_t step) const { return present.empty() ? counted : present[step]; }
     /// Trials with a value of the series at a step, and at some step.

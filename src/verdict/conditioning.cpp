@@ -1,4 +1,5 @@
-// Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials.
+// Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials, and of a record from
+// the covariances of its steps.
 
 #include "statistics/moments/conditioning.hpp"
 
@@ -62,11 +63,13 @@ void leave_out_whole_state(Evidence& evidence) {
 
 }  // namespace
 
-void add_rounding(Evidence& evidence) {
+void add_rounding(const ArmResults& arm, Evidence& evidence) {
+    for (std::size_t g = 0; g < arm.rounding.size(); ++g) evidence.groups[g].rounding = arm.rounding[g];
     if (!evidence.moments || !evidence.joint || evidence.moments->components > largest_moment_state) return;
     const Eigen::MatrixXd C = sum_of_covariances(*evidence.moments);
     for (GroupEvidence& group : evidence.groups)
-        group.rounding = rounding_bound(C(group.components, group.components), evidence.epsilon);
+        group.rounding = std::max(group.rounding,
+                                  rounding_bound(C(group.components, group.components), evidence.epsilon));
 }
 
 bool is_rounded(const GroupEvidence& group, const Limits& limits) {

@@ -226,7 +226,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     add_largest_errors(results, arm, evidence.bias);
     evidence.moments = trial_moments(results, arm, evidence.groups);
     evidence.epsilon = results.epsilon;
-    add_rounding(evidence);
+    add_rounding(arm, evidence);
     return evidence;
 }
 

@@ -21,6 +21,6 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
 /// Sets what rounding may have done to each group's NEES.
-void add_rounding(Evidence& evidence);
+void add_rounding(const ArmResults& arm, Evidence& evidence);
 
 }  // namespace credence

@@ -37,6 +37,7 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     for (const ComponentGroup& group : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
+    roundings_.resize(size(shape.steps) * (1 + shape.groups.size()));
     if (shape.version == 1) return;
     for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
     if (!shape.has_joint()) return;
@@ -100,6 +101,7 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
         judge_.leave_out_innovation(values, products_.now.data());
         ++innovations_left_out_;
     }
+    add_rounding(k);
     judge_.forget_unknown(values);
     set_dimension(k);
     present_.push_back(k);
@@ -112,6 +114,24 @@ void RecordTotals::set_dimension(std::size_t k) {
     if (dimensions_.empty()) return;
     dimensions_[k] = static_cast<int>(std::ranges::count(checked_.here, 1));
     if (dimensions_[k] < shape_.n) series(0, k) *= static_cast<double>(shape_.n) / dimensions_[k];
+}
+
+/// What rounding may have done to each group's NEES at this step: the mean of many covariances may hide it.
+void RecordTotals::add_rounding(std::size_t k) {
+    const std::vector<double>& bounds = judge_.rounding();
+    double* sums = &roundings_[k * (1 + bounds.size())];
+    ++sums[0];
+    for (std::size_t b = 0; b < bounds.size(); ++b) sums[1 + b] += bounds[b];
+}
+
+void RecordTotals::finish_rounding() {
+    const std::size_t groups = shape_.groups.size();
+    arm().rounding.assign(groups, 0);
+    for (std::size_t k = 0; k < size(shape_.steps); ++k) {
+        const double* sums = &roundings_[k * (1 + groups)];
+        for (std::size_t b = 0; sums[0] > 0 && b < groups; ++b)
+            arm().rounding[b] = std::max(arm().rounding[b], sums[1 + b] / sums[0]);
+    }
 }
 
 /// The NEES of the state as it is at this step.
@@ -245,6 +265,7 @@ void RecordTotals::add_distribution() {
 }
 
 Record RecordTotals::finish() {
+    finish_rounding();
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");

@@ -48,6 +48,8 @@ private:
     void add_distribution();
     Presence check(const RecordStep& step);
     void set_dimension(std::size_t k);
+    void add_rounding(std::size_t k);
+    void finish_rounding();
     double nees_at(std::size_t k);
     const double* bounds(std::size_t f, std::size_t k);
 
@@ -58,6 +60,7 @@ private:
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
+    std::vector<double> roundings_;              ///< [steps, 1 + groups] trials with the step, sums over them of the bounds
     std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
     std::vector<double> bounds_by_dimension_;    ///< [n + 1, levels] the same of a state of that dimension; 0: not known yet

@@ -27,7 +27,7 @@ Definiteness definiteness(double smallest, Eigen::Index n, double epsilon) {
 }
 
 /// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
-/// `rounding` becomes the bound on the relative error of nu'S^-1nu; 0 for such pivots.
+/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such pivots.
 std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor, double& rounding) {
     rounding = 0;
     const bool factored = factor.compute(S);
@@ -73,7 +73,8 @@ bool figures_add_up(const double* all_series, std::size_t count) {
 }
 
 StepEvaluator::StepEvaluator(const RecordShape& shape, const StateSeries& all_series)
-    : shape_(shape), places_(all_series), factors_(shape.groups.size()), solved_(shape.groups.size()) {
+    : shape_(shape), places_(all_series), factors_(shape.groups.size()), solved_(shape.groups.size()),
+      rounding_(shape.groups.size()) {
     if (shape.has_joint() || shape.has_variances || !shape.has_errors) return;
     variance_places_.resize(static_cast<std::size_t>(shape.n));
     for (std::size_t b = shape.groups.size(); b-- > 0;)  // of several groups the first one counts
@@ -83,6 +84,7 @@ StepEvaluator::StepEvaluator(const RecordShape& shape, const StateSeries& all_se
 
 std::string StepEvaluator::evaluate(const CheckedStep& step, double* all_series, double* whitened) {
     unknown_.clear();
+    std::ranges::fill(rounding_, 0.0);
     for (std::size_t b = 0; b < shape_.groups.size(); ++b)
         if (const std::string wrong = evaluate_group(b, step, all_series); !wrong.empty()) return wrong;
     if (shape_.has_errors) standardise(step, all_series);
@@ -108,8 +110,7 @@ void StepEvaluator::set_size_unknown(std::size_t b, double* all_series) {
 template <class Matrix, class Vector>
 std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon,
                                       double* all_series) {
-    double rounding = 0;
-    const std::string wrong = factor(P, epsilon, factors_[b], rounding);
+    const std::string wrong = factor(P, epsilon, factors_[b], rounding_[b]);
     if (!wrong.empty()) return "covariance " + wrong;
     solved_[b] = e;
     factors_[b].whiten(solved_[b]);

@@ -131,8 +131,9 @@ public:
     /// After `evaluate`: replaces the series that have no value at this step by NaN.
     void forget_unknown(double* all_series) const;
 
-    /// After `judge`: what rounding may have done to its NIS, as a share of it; and that the step counts as one in which
-    /// no row was observed.
+    /// After `evaluate`: what rounding may have done to NEES, by group, as a share of it; 0 where that is too little to matter.
+    const std::vector<double>& rounding() const { return rounding_; }
+    /// The same of its NIS; and that the step counts as one in which no row was observed.
     double innovation_rounding() const { return innovation_rounding_; }
     void leave_out_innovation(double* all_series, double* whitened) const;
 
@@ -157,6 +158,7 @@ private:
     const StateSeries& places_;
     std::vector<CholeskyFactor> factors_;  ///< by group
     std::vector<Eigen::VectorXd> solved_;
+    std::vector<double> rounding_;         ///< by group
     std::vector<VariancePlace> variance_places_;  ///< by component, of a record with covariances of groups; else empty
     std::vector<std::size_t> unknown_;            ///< series without a value at the last step
     Eigen::MatrixXd part_P_;

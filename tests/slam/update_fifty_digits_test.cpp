@@ -1,0 +1,139 @@
+// What rounding leaves of one step of the filter, prediction and update, as the conditions of P and S grow to 10^20, beside
+// the joint equations in 50 digits [docs/model.md, Filter].
+
+#include "catch.hpp"
+#include "fifty_digits.hpp"
+#include "filter_samples.hpp"
+
+#include "slam/update.hpp"
+#include "statistics/moments/conditioning.hpp"
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+using Linear = Layout<Process::translation, 3>;
+constexpr int n = 8, rows = 12;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// The translation model, three features, all edges; H has entries -1, 0 and 1, and no digit is lost in it.
+FiftyMatrix joint_rows() {
+    FiftyMatrix H = FiftyMatrix::Zero(rows, n);
+    const auto pair = [&](int row, int minus, int plus) {
+        for (int axis = 0; axis < 2; ++axis) H(row + axis, minus + axis) = -1, H(row + axis, plus + axis) = 1;
+    };
+    for (int j = 0; j < 3; ++j) pair(2 * j, 0, 2 + 2 * j);
+    pair(6, 2, 4), pair(8, 2, 6), pair(10, 4, 6);
+    return H;
+}
+
+/// Covariance after a step from P [n, n].
+struct Step {
+    MatrixXd left;
+    FiftyMatrix prior, exact;
+
+    Step(const Problem& problem, const MatrixXd& P) {
+        const ProblemView& view = problem.view();
+        auto belief = belief_of<Linear>(VectorXd::Zero(n), P);
+        predict_robot(belief, view.filter, Linear(3), {});
+        predict_features(belief, view.filter, Linear(3), 1);
+        const double sigma = view.sensor.sigma;
+        const Sighting<double> sightings[]{{true, {1, 0}, sigma}, {true, {0, 1}, sigma}, {true, {1, 1}, sigma}};
+        Update<double, Linear::capacity> update;
+        update_belief(belief, view.filter, Linear(3), sightings, [](int) { return Vector2<double>{}; },
+                      AtMean<Linear, double>(belief.mean), update);
+        left = dense(belief, n);
+        prior = P.cast<Fifty>();
+        for (int i = 0; i < n; ++i) prior(i, i) += i < 2 ? view.filter.variance_odometry : view.filter.variance_feature;
+        FiftyVector N = FiftyVector::Constant(rows, view.filter.variance_edge);
+        N.head(6).setConstant(believed_variance(view.filter, sigma));
+        const FiftyMatrix H = joint_rows(), W = prior * H.transpose();
+        FiftyMatrix S = H * W;
+        S.diagonal() += N;
+        exact = prior - W * S.llt().solve(FiftyMatrix(W.transpose()));
+    }
+
+    /// The greatest relative error that P^-1 with these errors can make of a NEES: |L^-1 (P^ - P) L'^-1|, P = L L'.
+    double error() const {
+        const FiftyMatrix L = lower_factor(exact);
+        const FiftyMatrix half = L.triangularView<Eigen::Lower>().solve(left.cast<Fifty>() - exact);
+        const FiftyMatrix whole = L.triangularView<Eigen::Lower>().solve(FiftyMatrix(half.transpose()));
+        return eigenvalues(whole.cast<double>()).cwiseAbs().maxCoeff();
+    }
+    double bound() const { return rounding_bound(left, epsilon); }
+    /// |P^-| |P^-1|: P is a difference of numbers as large as the largest of P^-.
+    double condition() const {
+        const FiftyMatrix inverse = exact.llt().solve(FiftyMatrix::Identity(n, n));
+        return eigenvalues(prior.cast<double>()).maxCoeff() * eigenvalues(inverse.cast<double>()).maxCoeff();
+    }
+
+private:
+    static VectorXd eigenvalues(const MatrixXd& symmetric) {
+        return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+    }
+};
+
+/// Every noise is `sigma`, so that S is conditioned as P is.
+DeformableSettings settings_with(double sigma) {
+    Settings settings{{"model.process", "translation"}};
+    for (const char* key : {"noise.odometry", "noise.walk", "noise.deformation", "sensor.sigma"})
+        settings.emplace_back(key, to_text(sigma));
+    return scenario_with(settings);
+}
+
+/// Robot and features that know of each other 1/condition of the variance with which they know where they are.
+FiftyMatrix known_together(std::mt19937_64& random, double condition) {
+    FiftyMatrix P = conditioned(random, n, 10) / Fifty(condition);
+    for (int i = 0; i < n; ++i)
+        for (int j = i % 2; j < n; j += 2) P(i, j) += 1;
+    return P;
+}
+
+MatrixXd rounded(const FiftyMatrix& P) { return MatrixXd(P.cast<double>().selfadjointView<Eigen::Lower>()); }
+
+/// Runs `check(step)` on five beliefs of each condition from 1 to 10^20; noises of the size of the smallest eigenvalue
+/// keep them as they are.
+template <class Draw, class Check>
+void each_condition(const Draw& draw, const Check& check) {
+    std::mt19937_64 random(2);
+    for (int exponent = 0; exponent <= 20; ++exponent) {
+        const double condition = std::pow(10, exponent);
+        const Problem problem(settings_with(std::sqrt(1 / condition)));
+        for (int i = 0; i < 5; ++i) {
+            CAPTURE(exponent, i);
+            check(Step(problem, rounded(draw(random, condition))));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("fifty digits: a step of the filter loses what the condition takes, and no more") {
+    double closest = 0;
+    const auto any = [](std::mt19937_64& random, double condition) { return conditioned(random, n, condition); };
+    each_condition(any, [&](const Step& step) {
+        // Each row changes P by n products that are rounded. The bound is one of small errors.
+        const double error = step.error(), bound = rows * n * epsilon * step.condition();
+        CAPTURE(error, bound);
+        if (bound > 1) return;
+        CHECK(error <= bound);
+        closest = std::max(closest, error / bound);
+    });
+    CHECK(closest > 0.05);
+}
+
+TEST_CASE("fifty digits: what a step spoils of an ill-conditioned P is within the bound on the rounding of NEES") {
+    int spoilt = 0, exact = 0;
+    each_condition(known_together, [&](const Step& step) {
+        const double error = step.error(), bound = step.bound();
+        CAPTURE(error, bound);
+        if (bound < 0.1) CHECK(error <= bound);
+        // A tenth of the usual margin: where fewer digits are left, the report leaves NEES out and says why.
+        const double enough = rounding_share * 0.05;
+        if (error > enough) CHECK(bound > enough);
+        ++(error > enough ? spoilt : exact);
+    });
+    CHECK(spoilt > 30);
+    CHECK(exact > 60);
+}
