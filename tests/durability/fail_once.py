@@ -159,7 +159,7 @@ def mutants(bench):
     """Calls that fail silently, one kind after the other."""
     by_name = {command.name: command for command in commands(bench)}
     planted = [("run", "write"), ("run", "rename"), ("run", "remove"), ("report", "read"), ("merge", "read"),
-               ("judge", "read"), ("completion", "write")]
+               ("judge", "read")]
     survived = [f"{kind} of {name}" for name, kind in planted
                 if not Failing(bench, by_name[name], 20, (kind,), silent=True).all().failures]
     finish("every resource fails once, silently", {"kinds": len(planted), "noticed": len(planted) - len(survived)},
