@@ -2,13 +2,13 @@
 
 #include "files/hdf5/read.hpp"
 #include "base/readable_file.hpp"
+#include "base/text_stream.hpp"
 #include "files/results/format.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>
-#include <sstream>
 
 namespace credence::cli {
 
@@ -31,7 +31,7 @@ FileKind kind_of_contents(const std::string& path) {
 
 /// Whether the first line that is neither empty nor a comment is `[section]`.
 bool is_scenario(const std::string& text) {
-    std::istringstream lines(text);
+    std::istringstream lines = stream_of(text);
     for (std::string line; std::getline(lines, line);)
         if (const std::string bare = trimmed(line.substr(0, line.find('#'))); !bare.empty())
             return bare.front() == '[' && bare.back() == ']' && is_utf8(bare);

@@ -5,13 +5,13 @@
 #include <credence/text.hpp>
 
 #include "base/readable_file.hpp"
+#include "base/text_stream.hpp"
 
 #include <boost/program_options.hpp>
 
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <sstream>
 
 namespace credence {
 
@@ -40,7 +40,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
         return {};
     }
     const po::options_description nothing_declared;
-    std::istringstream stream((section.empty() ? "" : "[" + section + "]\n") + bare + "\n");
+    std::istringstream stream = stream_of((section.empty() ? "" : "[" + section + "]\n") + bare + "\n");
     std::vector<Assignment> read;
     try {
         for (const auto& option : po::parse_config_file(stream, nothing_declared, true).options)
@@ -55,7 +55,7 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
     std::vector<Assignment> all;
     std::map<std::string, int> lines;
     const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors begin every text with it
-    std::istringstream stream(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    std::istringstream stream = stream_of(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
     std::string line, section;
     for (int number = 1; std::getline(stream, line); ++number)
         for (Assignment& one : read_line(line, origin, number, section)) {

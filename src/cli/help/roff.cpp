@@ -2,8 +2,9 @@
 
 #include <credence/text.hpp>
 
+#include "base/text_stream.hpp"
+
 #include <algorithm>
-#include <sstream>
 
 namespace credence::cli::roff {
 
@@ -31,7 +32,7 @@ std::string section(const std::string& title) { return ".SH " + plain(title) + "
 std::string subsection(const std::string& title) { return ".SS " + plain(title) + "\n"; }
 
 std::string filled(const std::string& text) {
-    std::istringstream lines(text.substr(std::min(text.size(), text.find_first_not_of('\n'))));
+    std::istringstream lines = stream_of(text.substr(std::min(text.size(), text.find_first_not_of('\n'))));
     std::string roff;
     bool as_it_is = false;
     for (std::string line; std::getline(lines, line);) {

@@ -88,8 +88,10 @@ Handle open_file(const std::string& path) {
     check(H5Pset_evict_on_close(access.id(), true), "/", "HDF5 refuses its access properties");
     if (const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()); file >= 0)
         return {file, H5Fclose, whole, ""};
+    const Error refused = failure(whole, "is truncated or damaged");
     // Where another user of the library in this process has it open, such as h5py, the properties must be the same.
-    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, whole, "is truncated or damaged"};
+    if (const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT); file >= 0) return {file, H5Fclose, whole, ""};
+    throw refused;
 }
 
 std::vector<std::string> link_names(const Handle& group) {

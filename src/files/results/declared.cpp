@@ -1,4 +1,5 @@
 #include "base/nan.hpp"
+#include "base/text_stream.hpp"
 #include "files/results/declared.hpp"
 
 #include <credence/ini.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 
 namespace credence {
 
@@ -22,7 +22,7 @@ constexpr int largest_state = 1000;
 constexpr std::size_t most_columns = 1000;
 
 std::vector<std::string> words(const std::string& text) {
-    std::istringstream stream(text);
+    std::istringstream stream = stream_of(text);
     std::vector<std::string> all;
     for (std::string word; stream >> word;) all.push_back(word);
     return all;

@@ -1,0 +1,16 @@
+#pragma once
+// Streams that read a text.
+
+#include <sstream>
+#include <string>
+
+namespace credence {
+
+/// A stream of a text, which throws where it gets no memory: by default std::getline then ends as at the end of the text.
+inline std::istringstream stream_of(const std::string& text) {
+    std::istringstream stream(text);
+    stream.exceptions(std::ios::badbit);
+    return stream;
+}
+
+}  // namespace credence
