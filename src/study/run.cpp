@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace credence {
 
@@ -79,7 +80,10 @@ private:
             { const std::lock_guard until_committed(committing_); }
             lock.lock();
         }
-        if (!work_[s].begun) begin_scenario(s);
+        if (work_[s].begun) return;
+        const bool before = std::exchange(at_odds_, true);
+        begin_scenario(s);
+        at_odds_ = before;
     }
 
     /// Loads totals into memory, and removes a partial last block from them.
@@ -148,12 +152,26 @@ private:
 
     /// Adds the block's totals; returns whether a commit was prepared.
     bool finish_task(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates) {
+        return change([&] {
+            add_totals(study_.scenarios[task.scenario], block, aggregates);
+            if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
+            finished(task);
+        });
+    }
+
+    /// Makes a change of the totals and of what the keeper has of them; returns whether a commit was prepared. Where
+    /// that throws, such as for want of memory, the two are at odds: what other threads still finish is left out, or
+    /// they would commit it.
+    template <class Change>
+    bool change(const Change& make) {
         const std::lock_guard lock(mutex_);
-        add_totals(study_.scenarios[task.scenario], block, aggregates);
-        if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
-        finished(task);
+        if (at_odds_) return false;
+        at_odds_ = true;
+        make();
         report();
-        return prepare_commit();
+        const bool prepared = prepare_commit();
+        at_odds_ = false;
+        return prepared;
     }
 
     void finished(const Task& task) {
@@ -215,12 +233,11 @@ private:
     }
 
     bool add(ScenarioResults& results, const ComputedBlocks& computed) {
-        const std::lock_guard lock(mutex_);
-        for (std::size_t a = 0; a < results.arms.size(); ++a) add_totals(results.arms[a], computed.results.arms[a]);
-        options_.keeper->take(computed.scenario, computed.blocks, computed.values);
-        for (const std::int64_t block : computed.blocks) finished({computed.scenario, block});
-        report();
-        return prepare_commit();
+        return change([&] {
+            for (std::size_t a = 0; a < results.arms.size(); ++a) add_totals(results.arms[a], computed.results.arms[a]);
+            options_.keeper->take(computed.scenario, computed.blocks, computed.values);
+            for (const std::int64_t block : computed.blocks) finished({computed.scenario, block});
+        });
     }
 
     /// After an early stop: keeps only the rows of blocks that are done.
@@ -240,6 +257,7 @@ private:
     std::size_t task_count_ = 0;
     std::atomic<std::size_t> next_ = 0;  ///< the first task that has not been handed out
     std::atomic<bool> stopped_ = false;
+    bool at_odds_ = false;          ///< a change of totals and keeper has begun and not ended
     std::exception_ptr trouble_;
     std::mutex mutex_;              ///< of totals, work_, progress and the keeper
     std::mutex committing_;         ///< locked while a commit is made
