@@ -66,7 +66,7 @@ def measurement(mean):
         H[..., at, 0] = -(J @ z[..., at, None])[..., 0]
         H[..., at, 1:3], H[..., at, f] = -R_inverse, R_inverse
     for e, (a, b) in enumerate(EDGES):
-        at, fa, fb = (slice(2 * (i) + o, 2 * (i) + o + 2) for i, o in ((M + e, 0), (a, 3), (b, 3)))
+        at, fa, fb = (slice(first, first + 2) for first in (2 * (M + e), 3 + 2 * a, 3 + 2 * b))
         z[..., at] = mean[..., fb] - mean[..., fa]
         H[..., at, fa], H[..., at, fb] = -np.eye(2), np.eye(2)
     return z, H
