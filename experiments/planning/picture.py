@@ -32,9 +32,10 @@ def main(folder: Path, output: Path) -> None:
         points += [(name, folder / f"criteria-{stem}-{name}.csv", "greedy.ekf") for name in CRITERIA]
         for i, (name, report, arm) in enumerate(points):
             planned = i >= len(BASELINES)
-            colour = ARM_COLOURS[i - len(BASELINES)] if planned else GREY
+            place = i - len(BASELINES) if planned else i
+            colour = ARM_COLOURS[place] if planned else GREY
             (x, x_half), (y, y_half) = interval(report, arm, "trace_P"), interval(report, arm, "pose_error")
-            panel.errorbar(x, y, y_half, x_half, color=colour, marker=ARM_MARKERS[i - 4 if planned else i],
+            panel.errorbar(x, y, y_half, x_half, color=colour, marker=ARM_MARKERS[place],
                            markersize=5, linestyle="", elinewidth=0.8, markerfacecolor=colour if planned else "none",
                            label=f"greedy, {name}" if planned else name)
         panel.set(xscale="log", yscale="log", title=title, xlabel="trace(P)")
