@@ -39,6 +39,5 @@ without(src/engine/simulate_batch.hpp
   "        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch)" "            (void)b")
 
 credence_target(bare 8 3 credence_bench -march=x86-64-v4 -mprefer-vector-width=512)
-set_target_properties(credence_target_bare PROPERTIES INCLUDE_DIRECTORIES "${bare_folder}/include;${bare_folder}/src" SOURCES
-  "${PROJECT_SOURCE_DIR}/src/worlds/deformable/target.cpp;${PROJECT_SOURCE_DIR}/src/worlds/landmarks/target.cpp")
+set_target_properties(credence_target_bare PROPERTIES INCLUDE_DIRECTORIES "${bare_folder}/include;${bare_folder}/src")
 target_compile_options(credence_target_bare PRIVATE -Wno-unused-but-set-variable)
