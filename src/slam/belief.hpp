@@ -89,33 +89,48 @@ CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
 }
 
 /// Returns e' A^-1 e over the rows [i, i + 2) and eliminates these from the rows [first, i). The remaining A and e are
-/// written to `left`, which may be the same object as the input.
-template <class Real, int capacity, class First, class Index>
+/// written to `left`, which may be the same object as the input. `by_axis`: A = A_1 (x) I_2, of which the entries of the
+/// x axis are read and written.
+template <bool by_axis, class Real, int capacity, class First, class Index>
 CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
                                                   First first, Index i, Elimination<Real, capacity>& left) {
     const auto& A = matrix.entry;
-    const Inverse2<Real> pivot = inverse(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
+    const Real xy = by_axis ? Real(0) : A[i][i + one], yy = by_axis ? A[i][i] : A[i + one][i + one];
+    const Inverse2<Real> pivot = inverse(A[i][i], xy, yy, all_lanes<Real>());
     const Vector2<Real> e{vector[i], vector[i + one]};
-    each(first, i, [&](auto k) {
-        const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
-        left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
-        each(first, k + one, [&](auto m) {
-            left.A.entry[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+    if constexpr (by_axis) {
+        each(zero, half(i - first), [&](auto point) {
+            const auto k = first + two * point;
+            const Real scaled = pivot.xx * A[k][i];
+            left.e[k] = fnma(scaled, e.x, vector[k]);
+            left.e[k + one] = fnma(scaled, e.y, vector[k + one]);
+            each(zero, point + one, [&](auto other) {
+                const auto m = first + two * other;
+                left.A.entry[m][k] = fnma(scaled, A[m][i], A[m][k]);
+            });
         });
-    });
+    } else {
+        each(first, i, [&](auto k) {
+            const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
+            left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
+            each(first, k + one, [&](auto m) {
+                left.A.entry[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+            });
+        });
+    }
     return {between(e, pivot, e), pivot.positive_definite};
 }
 
-template <class Real, int capacity, class First, class Index>
+template <bool by_axis, class Real, int capacity, class First, class Index>
 CREDENCE_INLINE SquaredError<Real> eliminate_pair(Elimination<Real, capacity>& left, First first, Index i) {
-    return eliminate_pair(left.A, left.e, first, i, left);
+    return eliminate_pair<by_axis>(left.A, left.e, first, i, left);
 }
 
 /// Computes e' P^-1 e over the component ranges [i, last) of the state, for i = last - 2, last - 4 ... down to first,
 /// each with its own part of P [Bar-Shalom 2001, 5.4.2]. Calls visit(i, error) with the squared error of the range [i,
 /// last) and whether its P is positive definite. P is eliminated two rows at a time from its end, so that one
 /// elimination serves every range that ends at `last`. Of an odd number of rows, the first is eliminated by itself.
-template <class Real, int capacity, class First, class Last, class Visit>
+template <bool by_axis, class Real, int capacity, class First, class Last, class Visit>
 CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, const Real* error, First first,
                                            Last last, Elimination<Real, capacity>& left, Visit&& visit) {
     SquaredError<Real> sum{Real(0), all_lanes<Real>()};
@@ -125,7 +140,7 @@ CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, c
     };
     each(zero, half(last - first), [&](auto pair) {
         const auto i = last - two * (pair + one);
-        add(i, pair == 0 ? eliminate_pair(P, error, first, i, left) : eliminate_pair(left, first, i));
+        add(i, pair == 0 ? eliminate_pair<by_axis>(P, error, first, i, left) : eliminate_pair<by_axis>(left, first, i));
     });
     if ((last - first) % 2 != 0) {
         const bool alone = last - first == 1;

@@ -103,8 +103,8 @@ struct Update {
 /// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(i, K_i)`
 /// receives the gain, row by row. Returns S^-1, zero where masked.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
-Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
-                         Gained&& gained) {
+Inverse2<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
+                                   Mask<Real> used, Gained&& gained) {
     const auto n = layout.size();
     const auto entries = rows.entries();
     Vector2<Real> W[capacity];
@@ -129,10 +129,47 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
     return S_inverse;
 }
 
+/// The same where P = P_1 (x) I_2, computed on the x axis: `gained(i, k)` receives the gain k of each x component i, which
+/// is that of component i + 1 as well.
+template <class Layout, class Rows, class Real, int capacity, class Gained>
+Inverse2<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
+                                 Mask<Real> used, Gained&& gained) {
+    const auto points = half(layout.size());
+    const auto entries = rows.entries();
+    Real W[capacity];
+    const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
+        if (i % 2 == 0) W[i] = W[i + one] = rows([&](auto s) { return P.at(i, s); }).x;
+    };
+    each_entry(layout, entries, make_row);
+    const Real S = rows([&](auto s) { return W[s]; }).x + N;
+    const Inverse2<Real> S_inverse = inverse(S, Real(0), S, used);
+    each_other(layout, entries, make_row);
+    auto& entry = read_anew(P).entry;
+    each(zero, points, [&](auto c) CREDENCE_INLINE_LAMBDA {
+        const auto i = two * c;
+        const Real K = S_inverse.xx * W[i];
+        gained(i, K);
+        each(c, points, [&](auto d) {
+            const auto j = two * d;
+            entry[i][j] = entry[i + one][j + one] = fnma(K, W[j], entry[i][j]);
+        });
+    });
+    return S_inverse;
+}
+
+template <class Layout, class Rows, class Real, int capacity, class Gained>
+Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
+                         Gained&& gained) {
+    if constexpr (Layout::by_axis)
+        return condition_by_axis(P, layout, rows, N, used, gained);
+    else
+        return condition_both_axes(P, layout, rows, N, used, gained);
+}
+
 /// The same for a covariance alone, as planners need it.
 template <class Layout, class Rows, class Real, int capacity>
 void condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used) {
-    condition(P, layout, rows, N, used, [](auto, const Vector2<Real>&) {});
+    condition(P, layout, rows, N, used, [](auto, const auto&) {});
 }
 
 /// Conditions P on two rows whose innovation about the predicted mean is nu: adds K (nu - H correction) to the running
@@ -141,8 +178,13 @@ template <class Layout, class Rows, class Real, int capacity>
 void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
              const Vector2<Real>& nu, Update<Real, capacity>& update) {
     const Vector2<Real> fresh = nu - rows([&](auto s) { return update.correction[s]; });
-    const auto correct = [&](auto i, const Vector2<Real>& K) {
-        update.correction[i] = fma(K.y, fresh.y, fma(K.x, fresh.x, update.correction[i]));
+    const auto correct = [&](auto i, const auto& K) {
+        if constexpr (Layout::by_axis) {
+            update.correction[i] = fma(K, fresh.x, update.correction[i]);
+            update.correction[i + one] = fma(K, fresh.y, update.correction[i + one]);
+        } else {
+            update.correction[i] = fma(K.y, fresh.y, fma(K.x, fresh.x, update.correction[i]));
+        }
     };
     const Inverse2<Real> S_inverse = condition(P, layout, rows, N, used, correct);
     update.nis = update.nis + between(fresh, S_inverse, fresh);

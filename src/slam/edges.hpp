@@ -77,7 +77,7 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
     });
     Real nis = innovations.unexplained;
     each(zero, contrasts, [&](auto c) {
-        nis = nis + eliminate_pair(work, zero, two * (contrasts - one - c)).value;
+        nis = nis + eliminate_pair<Layout::by_axis>(work, zero, two * (contrasts - one - c)).value;
     });
     return nis;
 }

@@ -14,6 +14,9 @@ inline constexpr int any_count = 0;
 template <Process process, int compiled_features>
 struct Layout {
     static constexpr bool has_heading = process == Process::heading;
+    /// In the translation model P = P_1 (x) I_2: both axes have the same covariances, and none with each other, so one
+    /// is computed. That gives the same bits as computing both.
+    static constexpr bool by_axis = !has_heading;
     static constexpr bool written_out = compiled_features != any_count;  ///< whether loops over features are unrolled
     static constexpr Known<0> heading{};
     static constexpr Known<has_heading ? 1 : 0> position{};

@@ -91,7 +91,7 @@ template <int n>
 SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd& e, int first, int count) {
     Elimination<double, n> work;
     SquaredError<double> result;
-    nested_squared_errors(P, e.data(), first, first + count, work, [&](int i, const SquaredError<double>& so_far) {
+    nested_squared_errors<false>(P, e.data(), first, first + count, work, [&](int i, const SquaredError<double>& so_far) {
         if (i == first) result = so_far;
     });
     return result;
@@ -110,6 +110,41 @@ TEST_CASE("filter: squared errors of the whole state and of its groups are e' P^
             // cond(P) is below 1e3: 9 * 1e3 * 2^-53.
             CHECK(relative(nees.value, part.dot(P.block(first, first, count, count).inverse() * part)) < 1e-12);
         }
+    }
+}
+
+TEST_CASE("filter: in the translation model one axis gives the same bits as both") {
+    using Flat = Layout<Process::translation, 3>;
+    constexpr int n = Flat::capacity;
+    const std::array<double, 3> coefficient{1, -0.4, -0.6};
+    const auto ignored = [](int, const auto&) {};
+    for (unsigned seed = 1; seed < 500; ++seed) {
+        const MatrixXd axis = random_covariance(n / 2, seed);
+        MatrixXd P = MatrixXd::Zero(n, n);
+        for (int i = 0; i < n; ++i)
+            for (int j = i % 2; j < n; j += 2) P(i, j) = axis(i / 2, j / 2);
+        const VectorXd e = random_covariance(n, seed + 1000).col(0);
+        const bool used = seed % 8 != 0;
+        const auto compare = [&](const auto& rows) {
+            Symmetric<double, n> both = upper_triangle<n>(P), one_axis = both;
+            const auto S = condition_both_axes(both, Flat(3), rows, 0.1, used, ignored);
+            const auto S_axis = condition_by_axis(one_axis, Flat(3), rows, 0.1, used, ignored);
+            CHECK(S.positive_definite == S_axis.positive_definite);
+            CHECK(S.xx == S_axis.xx);
+            CHECK(S.yy == S_axis.yy);
+            CHECK(S.xy == S_axis.xy);
+            for (int i = 0; i < n; ++i)
+                for (int j = i; j < n; ++j) CHECK(both.entry[i][j] == one_axis.entry[i][j]);
+            Elimination<double, n> work, work_axis;
+            std::vector<double> whole, by_axis;
+            nested_squared_errors<false>(both, e.data(), 0, n, work,
+                                         [&](int, const auto& error) { whole.push_back(error.value); });
+            nested_squared_errors<true>(both, e.data(), 0, n, work_axis,
+                                        [&](int, const auto& error) { by_axis.push_back(error.value); });
+            CHECK(whole == by_axis);
+        };
+        compare(ContrastRows<Flat, double, int>{Flat(3), 0, coefficient.data()});
+        compare(SightingRows<Flat, double, int>{static_cast<int>(seed % 3), {0.3, -0.7}});
     }
 }
 
@@ -134,7 +169,7 @@ TEST_CASE("filter: an innovation covariance that is not positive definite is not
     const ContrastRows<Flat, double, int> rows{Flat(3), 0, coefficient.data()};
     for (const bool used : {true, false}) {
         Symmetric<double, 8> P = negative;
-        const auto ignored = [](int, const Vector2<double>&) {};
+        const auto ignored = [](int, const auto&) {};
         CHECK(condition(P, Flat(3), rows, 0.1, used, ignored).positive_definite == !used);
         if (!used) CHECK(trace(P, 8) == trace(negative, 8));
     }

@@ -41,7 +41,7 @@ template <class Layout, class Real, int capacity>
     InvariantNees<Real> nees;
     const auto whole = [&](int last) {  // rolled loops: few scenarios ask for this chart
         Real value{};
-        nested_squared_errors(belief.covariance, invariant, 0, last, work,
+        nested_squared_errors<Layout::by_axis>(belief.covariance, invariant, 0, last, work,
                               [&](int, const SquaredError<Real>& sum) { value = sum.value; });
         return value;
     };

@@ -100,13 +100,17 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
     Real* nees = evaluation.nees;
     evaluation.positive_definite = all_lanes<Real>();
     const auto evaluate = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
-        nested_squared_errors(P, error, first, last, work, [&](auto i, const SquaredError<Real>& result) {
+        const auto visit = [&](auto i, const SquaredError<Real>& result) {
             keep(i, result.value);
             if (i == first)
                 evaluation.positive_definite = both(evaluation.positive_definite, result.positive_definite);
-        });
+        };
+        nested_squared_errors<Layout::by_axis>(P, error, first, last, work, visit);
     };
-    const auto standardise = [&](auto i) { evaluation.standardised_error[i] = error[i] / sqrt(P.entry[i][i]); };
+    const auto standardise = [&](auto i) {
+        const auto of_axis = i - (Layout::by_axis ? i % 2 : 0);  // one root serves both axes
+        evaluation.standardised_error[i] = error[i] / sqrt(P.entry[of_axis][of_axis]);
+    };
     evaluate(zero, n, [&](auto i, Real value) {
         if (i == 0) nees[Layout::group_all] = value;
         if (i == Layout::pose_size) nees[Layout::group_features] = value;
