@@ -200,8 +200,9 @@ template <int count, class Real>
     noise.template normals<count>(keys, draws);
 }
 
-/// Draws of all keys, six at a time: fewer do not fill the processor's pipelines, more do not fit its reorder buffer.
-/// `keys` [count], `draws` [count].
+/// Draws of all keys, six at a time: fewer do not fill the processor's pipelines, more do not fit its reorder buffer. Of
+/// a last group that lacks one, the first is drawn twice: code of its own for five would take the room of other code in
+/// the processor's cache of decoded operations. `keys` [count], `draws` [count].
 template <class Noise, class Count, class Real>
 void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real>* draws) {
     constexpr int most = 6;
@@ -213,6 +214,12 @@ void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real
     if constexpr (std::is_same_v<Count, int>) {
         in_groups(Known<most / 2>{});
         in_groups(one);
+    } else if constexpr (count > most && count % most == most - 1) {
+        DrawKey filled[most];
+        Vector2<Real> drawn[most];
+        for (int j = 0; j < most; ++j) filled[j] = keys[i + j % (most - 1)];
+        draw_several<most>(noise, filled, drawn);
+        for (int j = 0; j < most - 1; ++j) draws[i + j] = drawn[j];
     } else if constexpr (count % most != 0) {
         in_groups(Known<count % most>{});
     }
