@@ -5,6 +5,7 @@
 #include <credence/detail/draws.hpp>
 #include <credence/detail/each.hpp>
 
+#include "base/idle_threads.hpp"
 #include "base/nan.hpp"
 
 namespace credence {
@@ -90,10 +91,12 @@ template <class Part>
 std::vector<double> resampled_means(const std::vector<Part>& parts, std::uint64_t root_seed,
                                     const std::string& column) {
     std::vector<double> means(bootstrap_resamples);
-    [[maybe_unused]] const bool worth_threads = parts.size() > 100;
+    // Threads are worth starting for some milliseconds of work.
+    const bool worth_threads = parts.size() > 4000;
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (int b = 0; b < bootstrap_resamples; ++b)
         means[static_cast<std::size_t>(b)] = resampled_mean(parts, Words(root_seed, column, b));
+    if (worth_threads) end_idle_threads();
     return means;
 }
 

@@ -1,5 +1,6 @@
 // Running a study's blocks on threads, and on workers in other processes.
 
+#include "base/idle_threads.hpp"
 #include "study/workers.hpp"
 
 #include <credence/error.hpp>
@@ -112,6 +113,7 @@ private:
             guarded([&] { options_.workers->serve(*this); });
         else
             while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
+        end_idle_threads();
         if (trouble_) std::rethrow_exception(trouble_);
         for (const Work& work : work_)  // blocks that were present are kept when a run is stopped
             if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);

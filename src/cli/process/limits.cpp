@@ -1,5 +1,7 @@
 #include "cli/process/limits.hpp"
 
+#include "base/idle_threads.hpp"
+
 #include <credence/error.hpp>
 
 #include <omp.h>
@@ -36,6 +38,7 @@ std::size_t smallest_stack() {
     std::size_t smallest = getrlimit(RLIMIT_STACK, &limit) == 0 ? limit.rlim_cur : least_stack;
 #pragma omp parallel num_threads(2) reduction(min : smallest)
     if (omp_get_thread_num() != 0) smallest = own_stack();
+    end_idle_threads();
     return smallest;
 }
 
