@@ -49,6 +49,9 @@ Json context(const Effort& effort) {
             {"A", "plain dynamic Eigen, the formulas as they stand, S.inverse(); mt19937_64, normal_distribution"},
             {"B", "fixed-size Eigen, Cholesky, nothing on the heap; the same noise"},
             {"agreement", "columns of A, B and credence on credence's draws, trial by trial, within 1e-9: checked"},
+            {"bar",
+             "what x A / x B should reach on a core that executes AVX-512 in full width; half of it on one that does "
+             "so in two halves (v4's peak is v3's) or not at all"},
             {"operations",
              "+ - * / sqrt 1, fma 2, counted by running the engine on a counting number; not the "
              "generator's whole numbers"},

@@ -11,7 +11,20 @@ namespace {
 
 struct Cell {
     const char *process, *path, *noise, *controller, *sigma_heading;
+
+    bool is(const char* field, const char* value) const { return std::string(field) == value; }
 };
+
+/// The bar of a whole trial with draws and all statistics, on one core.
+Bar bar_of(const Cell& cell) {
+    const bool circle = cell.is(cell.path, "circle"), constant = cell.is(cell.noise, "constant");
+    const bool fixed = cell.is(cell.controller, "fixed");
+    if (cell.is(cell.process, "translation")) return fixed || !circle ? Bar{} : Bar{constant ? 1500.0 : 700.0, 0};
+    if (fixed) return {60, 30};
+    if (!cell.is(cell.sigma_heading, "0.001")) return circle ? Bar{400, 150} : Bar{200, 75};
+    if (circle) return constant ? Bar{700, 260} : Bar{600, 220};
+    return constant ? Bar{280, 105} : Bar{230, 90};
+}
 
 std::string cell_name(const Cell& cell) {
     std::string name = std::string(cell.process) + "-" + cell.path + "-" + cell.noise + "-" + cell.controller;
@@ -54,11 +67,12 @@ DeformableSettings scenario_with(const std::string& name, const std::vector<std:
     return scenario;
 }
 
-Row::Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once)
+Row::Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once, const Bar& expected)
     : name(std::move(row_name)),
       controller(scenario.arms.controllers.front()),
       trials(trials_at_once),
-      problem(scenario) {}
+      problem(scenario),
+      bar(expected) {}
 
 const std::deque<Row>& seed_rows() {
     static const std::deque<Row> rows = [] {
@@ -68,7 +82,7 @@ const std::deque<Row>& seed_rows() {
                               scenario_with("cell", {"model.process", cell.process, "features.path", cell.path,
                                                      "sensor.noise", cell.noise, "noise.heading", cell.sigma_heading,
                                                      "arms.controllers", cell.controller}),
-                              block_size);
+                              block_size, bar_of(cell));
         return made;
     }();
     return rows;

@@ -8,14 +8,21 @@
 
 namespace credence::bench {
 
+/// What a row is expected to reach on a core that executes AVX-512 in full width, as a multiple of the baselines; 0 for
+/// nothing.
+struct Bar {
+    double A = 0, B = 0;
+};
+
 /// One arm of one scenario, prepared. `trials` of a block are run at once.
 struct Row {
     std::string name;
     Controller controller = Controller::fixed;
     int trials = 0;
     Problem problem;
+    Bar bar;
 
-    Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once);
+    Row(std::string row_name, const DeformableSettings& scenario, int trials_at_once, const Bar& expected = {});
     Row(const Row&) = delete;
     int features() const { return problem.view().features; }
     /// Steps of all the trials that are run at once.
