@@ -27,7 +27,8 @@ struct Case {
 };
 
 constexpr Case cases[] = {{"fixed path only", "fixed", "fixed", 1'000'000, 50'000},
-                          {"the seed's arms, fixed and greedy", "both", "fixed, greedy", 100'000, 5'000}};
+                          {"the seed's arms, fixed and greedy", "both", "fixed, greedy", 100'000, 5'000},
+                          {"the same, a small study", "small", "fixed, greedy", 1'000, 1'000}};
 
 double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
