@@ -22,4 +22,4 @@ CREDENCE=$tree/build/credence pytest -q -p no:cacheprovider "$tree/python/tests"
 cd "$tree"
 CREDENCE_PYTHON=$work/venv/bin/python bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
 mypy --cache-dir "$work/mypy" python/credence
-ruff check --no-cache python experiments/in_the_wild experiments/worlds
+ruff check --no-cache python experiments/in_the_wild experiments/worlds bench/peers

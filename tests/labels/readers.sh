@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # Label readers: credence's files as read by other programs, and the scripts of analysis/, in the languages that run
-# them; and the claims of docs/planning.md as a second program finds them.
+# them; the claims of docs/planning.md as a second program finds them; and the columns of the filter in numpy, and in JAX
+# where it is installed, beside credence's.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }
 bash tests/readers/run.sh build/credence
 bash tests/record_example.sh build/credence /usr/bin/python3 analysis/record/write_record.py
 /usr/bin/python3 tests/planning_claims.py docs/planning.md
+/usr/bin/python3 bench/peers/peers.py --credence build/credence --check
 records=$(mktemp -d)
 trap 'rm -rf "$records"' EXIT
 /usr/bin/python3 tests/reference/make_records.py --big "$records"
