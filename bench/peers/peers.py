@@ -158,13 +158,13 @@ def measured(credence, row, repeats, output):
 
 def on_all(processors, repeats):
     """JAX's wall time on all processors, of a process of its own, since XLA makes its threads when it starts."""
-    run = subprocess.run([sys.executable, __file__, "--as-it-comes", "--repeats", str(repeats)], check=True,
-                         stdout=subprocess.PIPE, env={**os.environ, "XLA_FLAGS": WIDE},
-                         preexec_fn=lambda: os.sched_setaffinity(0, processors))
+    command = [sys.executable, __file__, "--repeats", str(repeats), "--as-it-comes", *map(str, processors)]
+    run = subprocess.run(command, check=True, stdout=subprocess.PIPE, env={**os.environ, "XLA_FLAGS": WIDE})
     return json.loads(run.stdout)
 
 
-def as_it_comes(repeats):
+def as_it_comes(processors, repeats):
+    os.sched_setaffinity(0, processors)
     from backends import Jax
 
     times = []
@@ -195,10 +195,10 @@ def main():
     parser.add_argument("--credence", default=TREE / "build" / "credence")
     parser.add_argument("--check", type=int, nargs="?", const=64)
     parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--as-it-comes", action="store_true")
+    parser.add_argument("--as-it-comes", type=int, nargs="+", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.as_it_comes:
-        return as_it_comes(given.repeats)
+        return as_it_comes(given.as_it_comes, given.repeats)
     processors = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {max(processors)})
     os.environ.update(XLA_FLAGS=ONE_THREAD + WIDE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
