@@ -138,7 +138,7 @@ Inverse2<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout& lay
     const auto entries = rows.entries();
     Real W[capacity];
     const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
-        if (i % 2 == 0) W[i] = W[i + one] = rows([&](auto s) { return P.at(i, s); }).x;
+        W[i] = rows([&](auto s) { return P.at(i - i % 2, s); }).x;
     };
     each_entry(layout, entries, make_row);
     const Real S = rows([&](auto s) { return W[s]; }).x + N;
