@@ -44,8 +44,16 @@ Sighting<double> look_at(const Truth& truth, const SensorParameters& sensor, int
     return sightings[j];
 }
 
+/// P_1 (x) I_2: the covariance of an even number of components, both axes alike.
+inline MatrixXd on_both_axes(const MatrixXd& axis) {
+    MatrixXd P = MatrixXd::Zero(2 * axis.rows(), 2 * axis.rows());
+    for (Eigen::Index i = 0; i < P.rows(); ++i)
+        for (Eigen::Index j = i % 2; j < P.rows(); j += 2) P(i, j) = axis(i / 2, j / 2);
+    return P;
+}
+
 /// A random state near the reference study's and a random covariance with everything correlated, eigenvalues from 0.1
-/// to about 10.
+/// to about 10; without a heading (n even), as the translation model has it.
 struct Sample {
     VectorXd x;
     MatrixXd P;
@@ -58,6 +66,7 @@ struct Sample {
             for (int j = 0; j < n; ++j) A(i, j) = 0.7 * normal(random);
         }
         P = A * A.transpose() + 0.1 * MatrixXd::Identity(n, n);
+        if (n % 2 == 0) P = on_both_axes(MatrixXd(P.topLeftCorner(n / 2, n / 2)));
     }
 };
 

@@ -1,7 +1,7 @@
 // The invariants of a belief, and the quantities that are computed from it.
 
 #include "catch.hpp"
-#include "support.hpp"
+#include "filter_samples.hpp"
 
 #include "slam/update.hpp"
 
@@ -119,10 +119,7 @@ TEST_CASE("filter: in the translation model one axis gives the same bits as both
     const std::array<double, 3> coefficient{1, -0.4, -0.6};
     const auto ignored = [](int, const auto&) {};
     for (unsigned seed = 1; seed < 500; ++seed) {
-        const MatrixXd axis = random_covariance(n / 2, seed);
-        MatrixXd P = MatrixXd::Zero(n, n);
-        for (int i = 0; i < n; ++i)
-            for (int j = i % 2; j < n; j += 2) P(i, j) = axis(i / 2, j / 2);
+        const MatrixXd P = on_both_axes(random_covariance(n / 2, seed));
         const VectorXd e = random_covariance(n, seed + 1000).col(0);
         const bool used = seed % 8 != 0;
         const auto compare = [&](const auto& rows) {

@@ -12,17 +12,6 @@ using namespace credence::test;
 
 namespace {
 
-/// The translation model's covariance is always P1 (x) I2 [docs/model.md, How the code plans]: of a sample, P1 is every
-/// second row.
-template <class Layout>
-MatrixXd covariance_of(const Sample& sample) {
-    if (Layout::has_heading) return sample.P;
-    MatrixXd P = MatrixXd::Zero(sample.P.rows(), sample.P.cols());
-    for (Eigen::Index i = 0; i < P.rows(); ++i)
-        for (Eigen::Index j = i % 2; j < P.cols(); j += 2) P(i, j) = sample.P(i / 2 * 2, j / 2 * 2);
-    return P;
-}
-
 /// A planner before its step, on one sample.
 template <class Layout>
 struct Planner {
@@ -35,7 +24,7 @@ struct Planner {
     Rotation<double> heading{1, 0};
 
     Planner(const Problem& problem, const Sample& sample, Layout at) : view(problem.view()), layout(at) {
-        const auto belief = belief_of<Layout>(sample.x, covariance_of<Layout>(sample));
+        const auto belief = belief_of<Layout>(sample.x, sample.P);
         prepare_candidates(belief, view.filter, layout, 2, base);
         prepare_still(belief, view.filter, layout, 2, work->still);
         enter_measurement_space(work->still, view.filter, layout, view.control.weights, work->space);
