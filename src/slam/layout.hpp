@@ -14,10 +14,10 @@ inline constexpr int any_count = 0;
 template <Process process, int compiled_features>
 struct Layout {
     static constexpr bool has_heading = process == Process::heading;
-    /// In the translation model P = P_1 (x) I_2: both axes have the same covariances, and none with each other, so one
-    /// is computed. That gives the same bits as computing both.
-    static constexpr bool by_axis = !has_heading;
     static constexpr bool written_out = compiled_features != any_count;  ///< whether loops over features are unrolled
+    /// In the translation model P = P_1 (x) I_2: both axes have the same covariances, and none with each other. Where the
+    /// loops are written out one axis is computed; the bits are those of computing both.
+    static constexpr bool by_axis = !has_heading && written_out;
     static constexpr Known<0> heading{};
     static constexpr Known<has_heading ? 1 : 0> position{};
     static constexpr Known<position + 2> pose_size{};
