@@ -11,16 +11,21 @@ flags="-fprofile-instr-generate -fcoverage-mapping"
 cmake --preset fuzz -B $folder -DCREDENCE_SANITIZE= -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 nice -n 15 cmake --build $folder --target "fuzz_$target" -j "${FUZZ_JOBS:-1}" | tail -n 1
 
+# Sources without their ending, or folders.
 declare -A readers=(
-  [scenario]="worlds/ini worlds/deformable/scenario worlds/deformable/keys worlds/values scenario/sweep base/text"
+  [scenario]="worlds/ini worlds/values worlds/deformable/keys worlds/deformable/settings worlds/landmarks/keys
+    scenario/scenario scenario/common_keys scenario/sweep base/text"
   [noise]="files/trajectory/noise files/hdf5/read files/hdf5/handle"
-  [judge]="files/record/record files/record/file files/record/blocks files/record/check worlds/own/step files/record/totals
-    files/record/results files/hdf5/slab files/hdf5/read files/hdf5/handle"
-  [results]="files/results/read files/results/columns files/results/evidence files/results/sweep files/results/sums study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
-  [journal]="files/journal/load files/journal/commit files/journal/totals files/journal/file base/bytes"
+  [judge]="files/record worlds/own/step files/hdf5/slab files/hdf5/read files/hdf5/handle"
+  [results]="files/results study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
+  [journal]="files/journal report/watch/follower base/bytes"
 )
 sources=()
-for name in ${readers[$target]}; do sources+=(src/"$name".[ch]pp); done
+for name in ${readers[$target]}; do
+  mapfile -t found < <(find "src/$name" src/"$name".[ch]pp -name '*.[ch]pp' 2>/dev/null)
+  [ ${#found[@]} -gt 0 ] || { echo "no source src/$name"; exit 1; }
+  sources+=("${found[@]}")
+done
 
 program=$folder/tests/fuzz/fuzz_$target
 { find tests/fuzz/{seeds,found}/"$target" build-fuzz/corpus/"$target" -type f 2>/dev/null || true; } |

@@ -159,6 +159,20 @@ def write_second(folder):
     plane = {name: np.full((1, 2, 4), 0.25) for name in ("truth", "estimate")}
     plane["covariance"] = record(1, 2, 4)["covariance"]
     write(folder / "second-plane.h5", plane, attributes=[version, ("manifold", "SE2 x SO2"), ("chart", "global")])
+    turns = {name: np.full((3, 11), 0.5) for name in ("truth", "estimate")}
+    turns["estimate"][:, :4] = [0.1, 0.1, 0.7, 0.7]
+    turns["covariance"] = record(1, 3, 9)["covariance"][0].astype("f4")
+    write(folder / "second-turns.h5", turns, attributes=[
+        version, ("manifold", "SO3 x SE3"), ("chart", "global"), ("quaternion", "xyzw"), ("groups", "turn 0:3")])
+    alone = {f"group/{name}/nees": np.ones((2, 3)) for name in ("pose", "rest")}
+    alone["time"] = np.arange(6).reshape(2, 3) / 4
+    write(folder / "second-alone.h5", alone, attributes=[
+        version, ("group/pose/nees/dimension", 3.0), ("group/rest/nees/dimension", np.int8(2))])
+    beside = {**record(3, 2, 2, 2), "nees": np.ones((3, 2)), "steps": np.array([2, 2, 1], dtype=np.uint8)}
+    beside["group/one/covariance"] = beside.pop("covariance")[..., :1, :1]
+    beside["error"][0, 1, 1] = beside["nees"][0, 1] = beside["innovation"][1, 1, 0] = np.nan
+    write(folder / "second-beside.h5", beside, attributes=[
+        version, ("blocks", "one 0"), ("row_groups", "gps 1, baro 0"), ("nees/dimension", np.int32(2))])
 
 
 def main(results, seeds):
