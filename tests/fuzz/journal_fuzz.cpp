@@ -22,7 +22,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-/// The study of the seeds [journal.ini]; the journal's version determines what it keeps.
+/// The study of the seeds [journal.ini]; the journal says what it keeps.
 Study asked(Keep keep) { return new_study({read_deformable(CREDENCE_FUZZ_SCENARIO, {})}, 1, keep); }
 
 template <class T>
@@ -93,8 +93,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const Study trials = asked(Keep::trials), aggregates = asked(Keep::aggregates);
-    constexpr std::size_t version_at = 16;
-    const Study& study = size > version_at && data[version_at] == 5 ? aggregates : trials;
     const ScratchFile file(data, size);
     const std::string results = file.path() + ".results";
     std::filesystem::rename(file.path(), results + ".journal");
@@ -105,7 +103,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require_one_line(error.what());
     }
     try {
-        StoredRun run(results, study, Start::resume);
+        const Keep keep = stored_definition(results).keep;
+        StoredRun run(results, keep == Keep::aggregates ? aggregates : trials, Start::resume);
         use(run.study());
     } catch (const InputError& error) {
         require_one_line(error.what());

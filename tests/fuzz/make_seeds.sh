@@ -7,6 +7,8 @@ program=${1:-build-fuzz/credence}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 seeds=tests/fuzz/seeds
+mkdir -p "$work/earlier"
+mv "$seeds"/results/schema-* "$work/earlier/"  # of an earlier release: this one reports them, and cannot write them
 rm -rf "$seeds"
 mkdir -p "$seeds"/{scenario,noise,judge,results}
 
@@ -36,11 +38,12 @@ printf '[scenario]\nname = two\n[model]\nprocess = translation\n' >"$work/two.in
 printf '[scenario]\nname = three\nworld = landmarks\n[landmarks]\ncount = 1\n' >"$work/three.ini"
 "$program" run "$work/three.ini" --set scenario.poses=2 --set arms.estimators=ekf --trials 1 --quiet -o "$work/landmarks.h5"
 /usr/bin/python3 tests/fuzz/make_seeds.py "$work" "$seeds"
-# Journals of runs that could not write their results: a limit on file sizes between the two.
+mv "$work"/earlier/* "$seeds/results/"
+# Journals of runs that could not write their results: a limit on file sizes between the two. Of one block, and of two.
 mkdir -p "$seeds/journal"
 for keep in trials aggregates; do
-  for trials in 3 300; do
-    (ulimit -f 40
+  for trials in 3 257; do
+    (ulimit -f 180
       "$program" run tests/fuzz/journal.ini --trials $trials --keep $keep --quiet -o "$work/run.h5") 2>/dev/null || true
     mv "$work/run.h5.journal" "$seeds/journal/$trials-$keep"
   done
