@@ -1,4 +1,5 @@
-/* Preloaded: reading the file that READING_FAILS names gives EIO from its byte READING_FAILS_FROM on, as a bad disk does. */
+/* Preloaded: reading the file that READING_FAILS names gives EIO from its byte READING_FAILS_FROM on, as a bad disk does,
+   and removing the one that REMOVING_FAILS names gives EPERM, as in a folder of which others own the files. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>
@@ -6,6 +7,11 @@
 #include <string.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+
+static int is_last(const char *name, const char *path) {
+    const char *last = strrchr(path, '/');
+    return name != NULL && strcmp(last == NULL ? path : last + 1, name) == 0;
+}
 
 /* Whether bytes up to `end` of this file fail. */
 static int fails(int descriptor, off_t end) {
@@ -16,8 +22,12 @@ static int fails(int descriptor, off_t end) {
     const ssize_t length = readlink(link, path, sizeof path - 1);
     if (length < 0) return 0;
     path[length] = '\0';
-    const char *last = strrchr(path, '/');
-    return last != NULL && strcmp(last + 1, name) == 0;
+    return is_last(name, path);
+}
+
+int unlink(const char *path) {
+    if (is_last(getenv("REMOVING_FAILS"), path)) return errno = EPERM, -1;
+    return (int)syscall(SYS_unlink, path);
 }
 
 ssize_t pread(int descriptor, void *bytes, size_t size, off_t offset) {

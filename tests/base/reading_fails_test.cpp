@@ -33,3 +33,16 @@ TEST_CASE("cli: a journal that the system cannot read back is said to be that, n
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.err, Contains("x.h5.journal: cannot be read (input/output error). Check the disk."));
 }
+
+TEST_CASE("cli: what a crash left behind and cannot be removed ends the run with a message, and the journal goes on") {
+    const Workplace here;
+    here.write("x.h5.credence-partial", "left");
+    const std::string run = "run " + seed_scenario("ekf-straight-constant") + " --trials 300 --quiet -o x.h5";
+    const Outcome outcome = here.shell("LD_PRELOAD=" CREDENCE_READING_FAILS " REMOVING_FAILS=x.h5.credence-partial "
+                                       "timeout 20 " CREDENCE_PROGRAM " " + run);
+    CAPTURE(outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Contains("cannot write x.h5 (operation not permitted). Write to a folder that you may write to."));
+    CHECK(here.credence(run + " --resume").exit_code == 0);
+    CHECK(here.names() == std::vector<std::string>{"x.h5"});
+}

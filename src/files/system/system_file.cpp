@@ -73,7 +73,7 @@ Descriptor open_new_locked(const std::string& path, const std::string& target) {
             if (same_file(file, path)) return file;
         } else if (errno == EEXIST) {
             const Descriptor left = open_locked(path, target);
-            unlink(path.c_str());
+            if (unlink(path.c_str()) != 0 && errno != ENOENT) fail_to_write(target, errno);
         } else {
             fail_to_write(target, errno);
         }
