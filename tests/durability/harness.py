@@ -26,6 +26,18 @@ def arguments(description, **numbers):
     return parser.parse_args()
 
 
+def threads(pid):
+    """What each thread of a process does: its state, its system call's number, and where the kernel keeps it waiting."""
+    def read(task, name):
+        try:
+            return (task / name).read_text()
+        except OSError:
+            return "? "
+
+    return ", ".join(" ".join([read(task, "stat").rpartition(")")[2].split()[0], read(task, "syscall").split()[0],
+                               read(task, "wchan")]) for task in sorted(Path(f"/proc/{pid}/task").glob("*")))
+
+
 class Bench:
     """A folder with the library, the scenario and studies of it, undisturbed; `at` is the folder to work in."""
 
@@ -62,11 +74,16 @@ class Bench:
         if environment is not None:
             variables.update({k: str(v) for k, v in environment.items()}, LD_PRELOAD=self.shim)
         more.setdefault("stdin", subprocess.DEVNULL)
+        process = subprocess.Popen([self.credence, *command], cwd=self.at, env=variables, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, errors="replace", **more)
         try:
-            return subprocess.run([self.credence, *command], cwd=self.at, env=variables, timeout=timeout,
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", **more)
+            out, said = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
-            raise Failed(f"{' '.join(command)} did not end in {timeout} s") from None
+            waiting = threads(process.pid)
+            process.kill()
+            process.communicate()
+            raise Failed(f"{' '.join(command)} did not end in {timeout} s; its threads: {waiting}") from None
+        return subprocess.CompletedProcess(process.args, process.returncode, out, said)
 
     def expect(self, code, *command, **more):
         done = self.run(*command, **more)
