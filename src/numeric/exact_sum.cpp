@@ -6,8 +6,14 @@
 
 namespace credence {
 
+namespace {
+
+bool is_taken(double value) { return std::abs(value) < 1e300; }
+
+}  // namespace
+
 void ExactSum::add(double value) {
-    if (!(std::abs(value) < 1e300)) finite_ = false;
+    if (!is_taken(value)) finite_ = false;
     if (!finite_) return;
     std::size_t kept = 0;
     for (const double part : expansion_) {
@@ -52,17 +58,16 @@ double ExactSum::rounded() const {
         const double doubled = error * 2, other = sum + doubled;
         if (doubled == other - sum) sum = other;
     }
-    return sum;
+    return is_taken(sum) ? sum : nan;
 }
 
 std::vector<double> ExactSum::parts() const {
-    if (!finite_) return {nan};
     std::vector<double> parts;
     ExactSum rest = *this;
     do {
         parts.push_back(rest.rounded());
         rest.add(-parts.back());
-    } while (!rest.expansion_.empty());
+    } while (rest.finite_ && !rest.expansion_.empty());
     return parts;
 }
 

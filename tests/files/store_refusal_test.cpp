@@ -102,6 +102,8 @@ const std::vector<Damage> arm_damages{
      [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {0, 1}); }},
     {arm + "/nees_total: its parts do not follow",
      [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {1, 1}); }},
+    {arm + "/nees_total: its parts do not follow",
+     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {9e299, 9e299}); }},
     {arm + "/nis_rows_total: holds 64-bit floats",
      [](auto& r) { replace<double>(r, arm + "/nis_rows_total", {3}, {}); }},
     {arm + "/level: does not hold the levels", [](auto& r) { replace<double>(r, arm + "/level", {4}, {0.5, 0.9, 0.96}); }},

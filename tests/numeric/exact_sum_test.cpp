@@ -196,3 +196,14 @@ TEST_CASE("exact sum: what is not finite or too large makes it NaN for good") {
     }
     CHECK(sum_of({9e299, -9e299, 1}).rounded() == 1);
 }
+
+TEST_CASE("exact sum: a total beyond the limit of its values is NaN, and has one part") {
+    for (const int count : {2, 1000}) {
+        ExactSum sum = sum_of(std::vector<double>(static_cast<std::size_t>(count), 9e299));
+        CHECK(std::isnan(sum.rounded()));
+        CHECK(sum.parts().size() == 1);
+        CHECK(std::isnan(sum.parts().front()));
+        for (int i = 1; i < count; ++i) sum.add(-9e299);
+        CHECK(sum.parts() == std::vector<double>{9e299});
+    }
+}
