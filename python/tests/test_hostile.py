@@ -129,6 +129,12 @@ def test_as_many_trials_as_no_memory_holds_are_an_exception():
             credence.judge(np.broadcast_to(error, (trials, 2, 2)), np.broadcast_to(covariance, (trials, 2, 2, 2)))
 
 
+def test_a_manifold_of_more_dimensions_than_an_integer_counts_is_refused():
+    states = np.zeros((1, 1, 4))  # 4 is what 32 bits keep of 4294967 * 1000 + 300
+    with pytest.raises(credence.InputError, match="more than 1000 dimensions"):
+        credence.judge(truth=states, estimate=states, manifold="R1000 x " * 4_294_967 + "R300", chart="local")
+
+
 def test_assert_consistent_refuses_what_judge_refuses():
     rng = np.random.default_rng(27)
     for _ in range(ROUNDS):

@@ -183,6 +183,7 @@ TEST_CASE("record 2: a manifold, chart or quaternion that cannot be is refused b
     };
     check_refused(with("SE4", "wxyz"), "/@manifold: `SE4` is no manifold. Write a product of SO2, SE2");
     check_refused(with("SE3 x", "wxyz"), "/@manifold: `` is no manifold");
+    check_refused(with("R1000 x R1", "wxyz"), "/@manifold: has more than 1000 dimensions. Write a part of the state");
     check_refused(with("SE3 x R2", "wxyz"), "/estimate: does not fit: it is [10, 3, 7], and the manifold has 9 coordinates");
     check_refused(with("SE3", ""), "/@quaternion: is missing. Write wxyz or xyzw");
     check_refused(with("SE3", "zyxw"), "/@quaternion: is `zyxw`. Write wxyz or xyzw");

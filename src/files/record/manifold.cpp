@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using hdf5::Error;
 
-constexpr int largest_factor = 1000;
+constexpr int largest_dimension = 1000;  // of a factor, and of the product
 const std::string manifold_example = "Write a product of SO2, SE2, SO3, SE3 and R1, R2 ..., such as `SE3 x R6`";
 
 /// In [-pi, pi].
@@ -73,7 +73,7 @@ Manifold::Factor Manifold::parse_factor(const std::string& text, const std::stri
     if (text == "SO3") return {Kind::SO3, 4, 3};
     if (text == "SE3") return {Kind::SE3, 7, 6};
     const auto size = text.starts_with("R") ? to_integer(text.substr(1)) : std::nullopt;
-    if (!size || *size < 1 || *size > largest_factor)
+    if (!size || *size < 1 || *size > largest_dimension)
         throw Error(place, "`" + printable(text) + "` is no manifold", manifold_example);
     return {Kind::R, static_cast<int>(*size), static_cast<int>(*size)};
 }
@@ -88,6 +88,9 @@ Manifold Manifold::read(const RecordSource& source) {
         manifold.factors_.push_back(factor);
         manifold.coordinates_ += factor.coordinates;
         manifold.dimension_ += factor.dimension;
+        if (manifold.dimension_ > largest_dimension)
+            throw Error(place, "has more than " + std::to_string(largest_dimension) + " dimensions",
+                        "Write a part of the state");
         quaternions = quaternions || has_quaternion(factor.coordinates, factor.dimension);
     }
     if (manifold.factors_.empty()) throw Error(place, "names no manifold", manifold_example);

@@ -58,9 +58,9 @@ PlacedExtents open_nees_alone(const RecordSource& source, RecordLayout& layout) 
     RecordShape& shape = layout.shape;
     open_named(source, layout);
     if (shape.sources[0] == GroupSource::nothing) {
-        int all = 0;
-        for (const ComponentGroup& group : shape.groups) all += group.count;
-        shape.groups[0].count = std::min(all, static_cast<int>(largest_record_state));
+        int& all = shape.groups[0].count;
+        for (std::size_t b = 1; b < shape.groups.size(); ++b)
+            all = std::min(all + shape.groups[b].count, static_cast<int>(largest_record_state));
     }
     shape.n = shape.groups[0].count;
     PlacedExtents leading = placed(layout.data.own[0] ? *layout.data.own[0] : *layout.data.own[1]);
