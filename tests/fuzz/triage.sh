@@ -37,10 +37,30 @@ signature() {
   echo "$who: $what: $(paste -sd '<' <<<"$where" | sed 's/</ < /g')"
 }
 
+# Runs a finding; its output is the file `log`. What did not end within 20 s will not end within 5.
+run() {
+  local limit=()
+  [[ $(basename "$1") != timeout-* ]] || limit=(-timeout=5)
+  timeout 120 "build-fuzz/tests/fuzz/fuzz_$target" "${limits[@]}" "${limit[@]}" "$1" >"$scratch/log" 2>&1 || true
+}
+
+# What happened and the addresses of the frames, without symbols, whose look-up takes most of the time.
+addresses() {
+  ASAN_OPTIONS=$ASAN_OPTIONS:symbolize=0 UBSAN_OPTIONS=$UBSAN_OPTIONS:symbolize=0 run "$1"
+  { grep -oE "$kinds" "$scratch/log" | head -n 1
+    sed -n '/^ *#0 /,/^$/p' "$scratch/log" | sed '/^$/q' | grep -oE '\([^ ]*\+0x[0-9a-f]+\)' || true; } | paste -sd ' '
+}
+
+declare -A alike=() firsts=()  # by addresses: how many, and the first
 for file in "$@"; do
-  timeout 120 "build-fuzz/tests/fuzz/fuzz_$target" "${limits[@]}" "$file" >"$scratch/log" 2>&1 || true
-  echo "$(signature "$scratch/log")|$file"
-done | sort | awk -F'|' '{count[$1]++; if (!($1 in first)) first[$1] = $2}
+  key="$(addresses "$file") "
+  alike[$key]=$((${alike[$key]:-0} + 1))
+  firsts[$key]=${firsts[$key]:-$file}
+done
+for key in "${!alike[@]}"; do
+  run "${firsts[$key]}"
+  echo "$(signature "$scratch/log")|${firsts[$key]}|${alike[$key]}"
+done | sort | awk -F'|' '{count[$1] += $3; if (!($1 in first)) first[$1] = $2}
   END {for (what in count) print count[what] " x " what "\n    " first[what]}' | tee "$scratch/findings"
 # A file may claim to hold a thousand times its size, as compressed ones do: time and memory are shown, but no failure.
 ! grep " x credence" "$scratch/findings" | grep -qvE ": (out-of-memory|timeout after)"
