@@ -1,5 +1,5 @@
-/* Preloaded: reading the file that READING_FAILS names gives EIO from its byte READING_FAILS_FROM on, as a bad disk does,
-   and removing the one that REMOVING_FAILS names gives EPERM, as in a folder of which others own the files. */
+/* Preloaded: reading the file that READING_FAILS names gives EIO from its byte READING_FAILS_FROM on, as a bad disk
+   does; removing the one that REMOVING_FAILS names gives EPERM, as in a folder where others own the files. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>

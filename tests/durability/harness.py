@@ -27,7 +27,7 @@ def arguments(description, **numbers):
 
 
 def threads(pid):
-    """What each thread of a process does: its state, its system call's number, and where the kernel keeps it waiting."""
+    """What each thread of a process does: its state, its system call's number, and where the kernel lets it wait."""
     def read(task, name):
         try:
             return (task / name).read_text()

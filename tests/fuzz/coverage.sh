@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Which lines of a reader its seeds and kept inputs reach, in percent for each source file:
-#   bash tests/fuzz/coverage.sh scenario|noise|judge|results|journal [--missed]      --missed: and every line that they do not
+#   bash tests/fuzz/coverage.sh TARGET [--missed]      --missed: and every line that they do not
 # Inputs on which HDF5 crashes end a batch of 50, whose lines are then not counted.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -16,6 +16,7 @@ declare -A readers=(
   [scenario]="worlds/ini worlds/values worlds/deformable/keys worlds/deformable/settings worlds/landmarks/keys
     scenario/scenario scenario/common_keys scenario/sweep base/text"
   [noise]="files/trajectory/noise files/hdf5/read files/hdf5/handle"
+  [arrays]="files/record worlds/own/step"
   [judge]="files/record worlds/own/step files/hdf5/slab files/hdf5/read files/hdf5/handle"
   [results]="files/results study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
   [journal]="files/journal report/watch/follower base/bytes"

@@ -38,7 +38,7 @@ for seed in tests/fuzz/seeds/journal/*; do
 done
 # The kept inputs must pass. New findings of a few seconds are shown for a person to examine: chance must not fail a
 # build.
-for target in scenario noise judge results journal; do
+for target in scenario noise judge arrays results journal; do
   folders=()
   for folder in tests/fuzz/{seeds,found}/$target; do [ ! -d "$folder" ] || folders+=("$folder"); done
   ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:max_allocation_size_mb=1024 OMP_NUM_THREADS=1 \

@@ -14,7 +14,7 @@ public:
     void add(const ExactSum& other);
     void subtract(const ExactSum& other);
 
-    /// The sum, rounded once to nearest, ties to even. NaN where it is not below 1e300 in size, although its values are.
+    /// The sum, rounded once to nearest, ties to even; NaN where it is not below 1e300 in size, as its values are.
     double rounded() const;
 
     /// The sum as parts that add up to it exactly: the first is `rounded()`, each further one what rounding left. The
