@@ -7,7 +7,9 @@ it prints what it always prints of an error.
 With --most N at most N of the calls of a kind fail, at random; 0: each. With --mutants failing calls say that they
 succeeded, as if the program did not look: then this must fail."""
 
+import os
 import random
+import subprocess
 
 from harness import HERE, LESS, Bench, Failed, arguments, finish, finish_all
 
@@ -158,6 +160,17 @@ class Failing:
         self.check_files("going on left")
 
 
+def check_shim(bench):
+    """A refused allocation of libhdf5 may damage the heap: what the library of shim/ does when the C library then ends
+    the program must not wait for the heap's lock."""
+    program = bench.root / "damaged_heap"
+    subprocess.run(["cc", "-w", "-pthread", "-o", program, HERE / "damaged_heap.c"], check=True)
+    variables = {**os.environ, "LD_PRELOAD": bench.shim, "FAIL": "malloc", "FAIL_AT": "100000"}
+    done = subprocess.run([program], env=variables, capture_output=True, text=True, timeout=20)
+    if "shim: it ended in" not in done.stderr:
+        raise Failed(f"a damaged heap: the library does not say where the program ended: {done.stderr}")
+
+
 def mutants(bench):
     """Calls that fail silently, one kind after the other."""
     by_name = {command.name: command for command in commands(bench)}
@@ -172,6 +185,7 @@ def mutants(bench):
 def main():
     given = arguments(__doc__, most=0, only="", mutants=0)
     with Bench(given.credence) as bench:
+        check_shim(bench)
         if given.mutants:
             return mutants(bench)
         finish_all("every resource fails once",

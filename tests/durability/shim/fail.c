@@ -16,14 +16,17 @@ static int failure, silent, always, held;
 static atomic_long own, *count = &own;
 static int main_began;
 
-/* Says where the program ends by itself: inside a library, before main() or in its own code. */
+/* Says where the program ends by itself: inside a library, before main() or in its own code. Nothing here may allocate:
+   the C library may have found the heap damaged, and then this thread holds its lock. */
 static void say_where(void) {
     void *frames[60];
     Dl_info found;
     const char *where = main_began ? "the program" : "what runs before main";
     for (int i = 0, n = backtrace(frames, 60); i < n; ++i)
         if (dladdr(frames[i], &found) && found.dli_fname && strstr(found.dli_fname, "hdf5")) where = "libhdf5";
-    dprintf(2, "shim: it ended in %s\n", where);
+    char line[60];
+    const int length = snprintf(line, sizeof line, "shim: it ended in %s\n", where);
+    syscall(SYS_write, 2, line, (size_t)length);
 }
 static void on_signal(int signal_number) {
     say_where();
