@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes the reader of one kind of file:
-#   bash tests/fuzz/run.sh scenario|noise|judge|results|journal [SECONDS] [LIBFUZZER-OPTION...]
+#   bash tests/fuzz/run.sh scenario|noise|judge|arrays|results|journal [SECONDS] [LIBFUZZER-OPTION...]
 # Inputs that reach new code go to build-fuzz/corpus/TARGET, findings to build-fuzz/findings/TARGET; both outlive a run.
 # After a finding it goes on in a new process. Ends with 1 if there are findings that are not HDF5's own (triage.sh).
 set -euo pipefail
@@ -18,8 +18,10 @@ options=(-fork=1 -ignore_crashes=1 -ignore_ooms=1 -ignore_timeouts=1 -max_total_
   -max_len="$([ "$target" = scenario ] && echo 8192 || echo 131072)" -artifact_prefix="$findings/")
 [ ! -f "tests/fuzz/$target.dict" ] || options+=(-dict="tests/fuzz/$target.dict")
 
-folders=("$corpus" "tests/fuzz/seeds/$target")
-[ ! -d "tests/fuzz/found/$target" ] || folders+=("tests/fuzz/found/$target")  # what once failed
+folders=("$corpus")
+for folder in tests/fuzz/{seeds,found}/"$target"; do  # `found`: what once failed
+  [ ! -d "$folder" ] || folders+=("$folder")
+done
 
 # Symbols are for triage: here they would take most of the time of a finding.
 ASAN_OPTIONS=$ASAN_OPTIONS:symbolize=0 UBSAN_OPTIONS=$UBSAN_OPTIONS:symbolize=0 \
