@@ -50,7 +50,8 @@ double any_number(FuzzedDataProvider& choices) {
 
 /// Symmetric where it is a matrix, often, with a strong diagonal.
 double any_element(FuzzedDataProvider& choices, std::size_t i, const RecordArray& array) {
-    const auto n = array.extents.empty() ? 1 : static_cast<std::size_t>(array.extents.back());
+    const std::int64_t last = array.extents.empty() ? 1 : array.extents.back();
+    const auto n = static_cast<std::size_t>(std::max<std::int64_t>(last, 1));
     const bool matrix = array.extents.size() > 1 && array.extents[array.extents.size() - 2] == array.extents.back();
     if (!matrix || choices.ConsumeIntegralInRange(0, 15) == 15) return any_number(choices);
     return i % n == i / n % n ? 2 : 0.5;

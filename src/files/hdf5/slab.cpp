@@ -51,6 +51,13 @@ std::vector<std::string> fixed_texts(const Handle& attribute, const Handle& type
 
 }  // namespace
 
+void require_bits(const Handle& type, const std::string& place) {
+    const std::size_t bits = 8 * H5Tget_size(type.id()), precision = H5Tget_precision(type.id());
+    const int offset = H5Tget_offset(type.id());
+    if (precision == 0 || precision > bits || offset < 0 || static_cast<std::size_t>(offset) > bits - precision)
+        throw Error(place, "is damaged: its integers lie beyond their bytes");
+}
+
 RealDataset::RealDataset(const Handle& group, const std::string& name, Numbers numbers)
     : checked_(group, name),
       dataset_(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, checked_.place(), "is no readable dataset"),
@@ -61,6 +68,7 @@ RealDataset::RealDataset(const Handle& group, const std::string& name, Numbers n
         throw Error(place(), "does not hold floating-point numbers", "Write it as doubles, or as singles");
     if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(place(), "does not hold numbers", "Write it as integers");
     if (kind == H5T_FLOAT) epsilon_ = epsilon_of(type);
+    else require_bits(type, place());
     const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place(), "HDF5 cannot read its layout");
     if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return;
     H5Pget_chunk(creation.id(), static_cast<int>(chunk_.size()), chunk_.data());

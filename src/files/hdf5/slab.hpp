@@ -33,6 +33,9 @@ private:
     double epsilon_ = 0;
 };
 
+/// Throws where the bits of a type of integers lie beyond its bytes: HDF5 would read them there.
+void require_bits(const Handle& type, const std::string& place);
+
 /// Names of a group's links in alphabetical order: programs need not keep the order of their creation.
 std::vector<std::string> sorted_link_names(const Handle& group);
 

@@ -95,6 +95,7 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
     const H5T_class_t kind = H5Tget_class(type.id());
     if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
         return std::nullopt;
+    if (kind == H5T_INTEGER) hdf5::require_bits(type, place);
     double number = 0;
     hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
     return number;
