@@ -204,6 +204,13 @@ TEST_CASE("record 2: what its attributes and times cannot mean is refused by nam
     check_refused(time({4}, {0, 0.1, 0.1, 0.5}), "/time: step 2 (counted from 0) has 0.1, and the time before is 0.1");
     check_refused(time({3, 4}, {0, 1, 2, 3, 0, 1, 2, 3, 0, 5, 2, 3}), "/time: trial 2, step 2 (counted from 0) has 2");
     check_refused(time({3}, {0, 1, 2}), "/time: does not fit: it is [3], and there are 3 trials and 4 steps");
+    std::string many = "a 0";
+    for (int i = 1; i < 10; ++i) many += ", a" + std::to_string(i) + " 0";
+    const DrawnRecord long_one(1, 91000, 1);
+    check_refused([&](const Handle& root) {
+        write_drawn(root, long_one);
+        text(root, "groups", many);
+    }, "/: has 11 component groups at 91000 steps, together more than 1000000. Write fewer groups");
     const TemporaryFolder folder;
     write_file(folder / "record.h5", [&](const Handle& root) { write_drawn(root, drawn); }, 3);
     CHECK(refusal<InputError>([&] { read_record(folder / "record.h5"); }) ==

@@ -98,10 +98,23 @@ RecordLayout open_version_2(const RecordSource& source) {
     return layout;
 }
 
+/// The totals of a component group take some 2.7 kB a step: a small file could ask for more memory than there is.
+void require_room(const RecordShape& shape) {
+    constexpr std::int64_t most = 1'000'000;
+    const auto groups = static_cast<std::int64_t>(shape.groups.size()) + 1;
+    if (groups * shape.steps > most)
+        throw Error("/",
+                    "has " + std::to_string(groups) + " component groups at " + std::to_string(shape.steps) +
+                        " steps, together more than " + std::to_string(most),
+                    "Write fewer groups, or every tenth step");
+}
+
 }  // namespace
 
 RecordLayout open_record(const RecordSource& source) {
-    return read_version(source) == 1 ? open_version_1(source) : open_version_2(source);
+    RecordLayout layout = read_version(source) == 1 ? open_version_1(source) : open_version_2(source);
+    require_room(layout.shape);
+    return layout;
 }
 
 }  // namespace credence
