@@ -11,7 +11,7 @@ cd "$work"
 credence=usr/bin/credence
 [[ $($credence --version) == credence\ [0-9]* ]]
 printf '[scenario]\nname = mine\n' >mine.ini
-$credence show mine.ini | grep -q '^name = mine$'
+$credence show mine.ini | grep '^name = mine$' >/dev/null
 grep -q '^\.TH CREDENCE 1' usr/share/man/man1/credence.1
 bash -c 'source usr/share/bash-completion/completions/credence; COMP_WORDS=(credence rep) COMP_CWORD=1; _credence
   [ "${COMPREPLY[*]}" = "report replay" ]' || { echo "the completion does not answer"; exit 1; }

@@ -118,7 +118,7 @@ def main():
             return finish("versions, not looked at", {"journals": len(foreign), "noticed": noticed},
                           [] if noticed == len(foreign) else ["a journal of another version was gone on with, unnoticed"])
         own = [lambda v=v: versions.journal(v) for v in OWN.values()]
-        own += [lambda: versions.results(2, (SEEDS / "heading.h5").read_bytes()),
+        own += [lambda: versions.results(2, (SEEDS / "schema-2.h5").read_bytes()),
                 lambda: versions.results(3, stored("results-3.h5"))]
         finish("versions", versions.counts, failures_of(foreign + own))
 

@@ -68,11 +68,11 @@ below "$(mean both.h5 fixed.ekf mean_trace_P)" "$(mean both.h5 fixed.fading mean
 [ "$(wc -l <both.md)" -eq 4 ] && grep -qE '^\| ekf-circle-constant/fixed\.fading \| [a-z]+ \| [0-9.]+ ± [0-9.]+ \|' both.md ||
   { cat both.md; fail "A report format: it is not the table"; }
 "$build/tests/write_record" record.h5
-"$credence" judge record.h5 --quiet --format markdown | grep -qE '^\| [A-Za-z_]+/record \| consistent \|' ||
+"$credence" judge record.h5 --quiet --format markdown | grep -E '^\| [A-Za-z_]+/record \| consistent \|' >/dev/null ||
   fail "A report format: judge does not give it"
 
 # A scenario key: it is shown, takes effect, and is refused out of its range.
-"$credence" show | grep -qx 'filter.initial = 1' || fail "A scenario key: it is not shown"
+"$credence" show | grep -x 'filter.initial = 1' >/dev/null || fail "A scenario key: it is not shown"
 run told --set noise.initial_position=1
 run mistold --set noise.initial_position=1 --set filter.initial=0.5
 below "$(mean told.h5 fixed.ekf nees_ratio)" "$(mean mistold.h5 fixed.ekf nees_ratio)" || fail "A scenario key: it has no effect"
