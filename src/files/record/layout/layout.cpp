@@ -101,7 +101,7 @@ RecordLayout open_version_2(const RecordSource& source) {
 /// The totals of a component group take some 2.7 kB a step: a small file could ask for more memory than there is.
 void require_room(const RecordShape& shape) {
     constexpr std::int64_t most = 1'000'000;
-    const auto groups = static_cast<std::int64_t>(shape.groups.size()) + 1;
+    const auto groups = static_cast<std::int64_t>(shape.groups.size());
     if (groups * shape.steps > most)
         throw Error("/",
                     "has " + std::to_string(groups) + " component groups at " + std::to_string(shape.steps) +
