@@ -89,8 +89,11 @@ std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials) {
 std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(static_cast<std::size_t>(count));
-    for (std::int64_t row = first; row < first + count; ++row)
-        numbers.push_back(results.blocks[static_cast<std::size_t>(row / block_size)] * block_size + row % block_size);
+    for (std::int64_t row = first; row < first + count;) {
+        const std::int64_t start = results.blocks[static_cast<std::size_t>(row / block_size)] * block_size;
+        do numbers.push_back(start + row % block_size);
+        while (++row % block_size != 0 && row < first + count);
+    }
     return numbers;
 }
 

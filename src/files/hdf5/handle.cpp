@@ -38,16 +38,16 @@ herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
 
 }  // namespace
 
-Error failure(const std::string& place, const std::string& problem) {
+int system_error() {
     int error = 0;
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, note_system_error, &error);
+    return error;
+}
+
+Error error_of(int error, const std::string& place, const std::string& problem) {
     if (error == 0) return Error(place, problem);
     if (error == ENOMEM) return Error(place, "HDF5 got no memory", remedy_for_reading(error));
     return Error(place, "cannot be read (" + words_for(error) + ")", remedy_for_reading(error));
-}
-
-Handle::Handle(hid_t id, Close close, const std::string& place, const std::string& problem) : id_(id), close_(close) {
-    if (id_ < 0) throw failure(place, problem);
 }
 
 Handle::~Handle() {
@@ -55,12 +55,8 @@ Handle::~Handle() {
 }
 
 void Handle::close() {
-    const std::string place = place_of(*this);
-    check(close_(std::exchange(id_, H5I_INVALID_HID)), place, "HDF5 could not close it");
-}
-
-void check(herr_t returned, const std::string& place, const std::string& problem) {
-    if (returned < 0) throw failure(place, problem);
+    const std::string place = place_of(*this);  // which nobody knows once it is closed
+    close(place);
 }
 
 std::string place_of(const Handle& object) {

@@ -44,10 +44,11 @@ Dimension new_column_dimension(const Handle& group, const ScenarioResults& resul
 }
 
 void write_statuses(const Handle& group, const ArmAggregates& aggregates) {
-    const Dimension code =
+    Dimension code =
         numbered<std::int8_t>(group, "status_code", 0, aggregates.statuses.size(), "how a trial ended");
     write_status_flags(code.scale);
     hdf5::new_variable(group, "status_count", aggregates.statuses, {&code}, {"trials by how they ended", "1"});
+    code.close();
 }
 
 /// Writes counts and exact totals of columns, along `along` and the parts.
@@ -72,7 +73,7 @@ void write_differences(const Handle& group, const Dimension& column, const Dimen
         names.push_back(results.arms[b].name);
         for (const std::size_t c : reported_columns(results)) totals.push_back(aggregates.differences[b][c]);
     }
-    const Dimension other = numbered<std::int32_t>(group, "subtracted_arm", 0, names.size(), "arm that is subtracted");
+    Dimension other = numbered<std::int32_t>(group, "subtracted_arm", 0, names.size(), "arm that is subtracted");
     hdf5::write_text(other.scale, "arm_names", joined(names, " "));
     const std::string what = "differences, this arm minus the other, over the trials that failed in neither";
     write_moments(group, "difference", {&other, &column}, part, what, totals,
@@ -84,6 +85,7 @@ void write_differences(const Handle& group, const Dimension& column, const Dimen
     };
     write_trials("difference_below", &DifferenceTotals::below, "trials in which this arm's column is lower");
     write_trials("difference_above", &DifferenceTotals::above, "trials in which this arm's column is higher");
+    other.close();
 }
 
 /// Reads counts and exact totals as write_moments wrote them.
@@ -132,11 +134,12 @@ std::size_t largest_part_count(const ArmAggregates& aggregates) {
 
 void write_block_ranges(const Handle& group, const BlockRanges& blocks) {
     const std::vector<BlockRange> ranges = blocks.ranges();
-    const Dimension first =
+    Dimension first =
         hdf5::new_dimension(group, "first_block", each<std::int64_t>(ranges, [](auto& range) { return range.first; }),
                             {"first block of a range of those that are there", "1"});
     hdf5::new_variable(group, "last_block", each<std::int64_t>(ranges, [](auto& range) { return range.last; }), {&first},
                        {"last block of that range", "1"});
+    first.close();
 }
 
 BlockRanges read_block_ranges(const Handle& group, std::int64_t asked) {
@@ -157,10 +160,11 @@ BlockRanges read_block_ranges(const Handle& group, std::int64_t asked) {
 void write_aggregates(const Handle& group, const Dimension& part, const ScenarioResults& results,
                       const ArmResults& arm) {
     write_statuses(group, arm.aggregates);
-    const Dimension column = new_column_dimension(group, results);
+    Dimension column = new_column_dimension(group, results);
     write_moments(group, "column", {&column}, part, "columns of the trials that did not fail, where they have them",
                   reported_columns(results), [&](std::size_t c) { return arm.aggregates.columns[c]; });
     if (!arm.aggregates.differences.empty()) write_differences(group, column, part, results, arm.aggregates);
+    column.close();
 }
 
 ArmAggregates read_aggregates(const Handle& group, const ScenarioResults& results, hsize_t parts) {

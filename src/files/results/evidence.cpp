@@ -28,10 +28,9 @@ std::string cells_name(const ScenarioResults& results) { return first_nees(resul
 
 /// The values were rounded to single precision when they were stored. The bits of NaN depend on the processor.
 std::vector<float> single(const std::vector<double>& values) {
-    std::vector<float> singles;
-    singles.reserve(values.size());
-    for (const double value : values)
-        singles.push_back(value == value ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> singles(values.size());
+    std::transform(values.begin(), values.end(), singles.begin(),
+                   [](double value) { return static_cast<float>(one_nan(value)); });
     return singles;
 }
 
@@ -42,32 +41,46 @@ std::vector<double> read_single(const Handle& group, const std::string& name, co
 
 void write_coverage(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
                     const ArmResults& arm) {
-    const auto level =
+    auto level =
         hdf5::new_dimension(group, "level", levels, {"share of chi-square below the coverage bound", "1"});
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (const Series& series = results.all_series[f]; series.role == SeriesRole::nees)
             hdf5::new_variable(group, coverage_name(series), arm.totals[f].covered, {&step, &level},
                                {series.long_name + ": counted trials below that quantile of chi-square", "1"});
+    level.close();
 }
 
 void write_products(const Handle& group, const hdf5::Dimension& part, const ScenarioResults& results,
                     const ArmResults& arm) {
     if (lags(results) == 0) return;
-    const auto lag = numbered<std::int32_t>(group, "lag", 1, lags(results), "steps between two whitened innovations");
+    auto lag = numbered<std::int32_t>(group, "lag", 1, lags(results), "steps between two whitened innovations");
     const std::string what = "products of whitened innovations, over the detailed trials, their steps and rows";
     hdf5::new_variable(group, "whiteness_total", parts_of(arm.products.sum, part.size), {&lag, &part},
                        {"total of " + what, "1"});
     hdf5::new_variable(group, "whiteness_square_total", parts_of(arm.products.square_sum, part.size), {&lag, &part},
                        {"total over the trials of the square of each one's sum of " + what, "1"});
     hdf5::new_variable(group, "whiteness_count", arm.products.count, {&lag}, {"number of " + what, "1"});
+    lag.close();
+}
+
+void write_detailed_moments(const Handle& group, const hdf5::Dimension& detailed, const ScenarioResults& results,
+                            const ArmResults& arm) {
+    auto moment = numbered<std::int32_t>(group, "moment", 0, static_cast<std::size_t>(results.moment_count()),
+                                         "moment: NEES by group, standardised error, its products, correlations of P");
+    std::vector<double> values(arm.moments.size());
+    std::transform(arm.moments.begin(), arm.moments.end(), values.begin(), one_nan);
+    const Handle moments = hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
+                                              {"means and sums over the steps of standardised errors and covariances", "1"});
+    hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(NAN)});
+    moment.close();
 }
 
 void write_errors(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
                   const ArmResults& arm) {
-    const auto detailed =
+    auto detailed =
         hdf5::new_dimension(group, "detailed_trial", trial_numbers(results, 0, results.detailed()),
                             {"trials whose errors are kept: of the first ones of the study those in the file", "1"});
-    const auto component = new_component_dimension(group, results.scenario.components, "component", "component of the state");
+    auto component = new_component_dimension(group, results.scenario.components, "component", "component of the state");
     const float fill = std::numeric_limits<float>::quiet_NaN();
     const Handle nees = hdf5::new_variable(group, "detailed_nees", single(arm.nees), {&detailed, &step},
                                            {"normalised estimation error squared of the whole state", "1"});
@@ -77,14 +90,9 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
                                              {"error of the state after the update, estimate - truth",
                                               state_units(results.scenario.components)});
     hdf5::write_numbers<float>(errors, "_FillValue", {fill});
-    if (results.moment_count() == 0) return;
-    const auto moment = numbered<std::int32_t>(group, "moment", 0, static_cast<std::size_t>(results.moment_count()),
-                                               "moment: NEES by group, standardised error, its products, correlations of P");
-    std::vector<double> values;
-    std::transform(arm.moments.begin(), arm.moments.end(), std::back_inserter(values), one_nan);
-    const Handle moments = hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
-                                              {"means and sums over the steps of standardised errors and covariances", "1"});
-    hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(NAN)});
+    component.close();
+    if (results.moment_count() > 0) write_detailed_moments(group, detailed, results, arm);
+    detailed.close();
 }
 
 void read_coverage(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
@@ -141,10 +149,11 @@ void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, c
                     const ArmResults& arm) {
     write_coverage(group, dimensions.step, results, arm);
     if (distribution_counted(results.steps())) {
-        const auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
-                                                 "cell of chi-square; every one is as probable as any other");
+        auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
+                                           "cell of chi-square; every one is as probable as any other");
         hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
                            {results.all_series.front().long_name + ": counted trials by cell", "1"});
+        cell.close();
     }
     write_products(group, dimensions.part, results, arm);
     write_errors(group, dimensions.step, results, arm);

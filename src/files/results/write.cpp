@@ -27,7 +27,7 @@ hdf5::Handle write_values(const Handle& group, const Column& column, const Scena
                                          const std::vector<double> values = column_values(arm, c, first, count);
                                          std::vector<T> converted(values.size());
                                          std::transform(values.begin(), values.end(), converted.begin(),
-                                                        [](double value) { return static_cast<T>(one_nan(value)); });
+                                                        [](double value) { return static_cast<T>(value == value ? value : nan); });
                                          return converted;
                                      });
 }
@@ -130,10 +130,10 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
         trial.emplace(new_trial_dimension(group, results));
     else
         write_block_ranges(group, results.blocks);
-    const Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
-                                                  "pose that the step leads to");
-    const Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
-                                                  "part of an exact total: 0 the total, the others what rounding left");
+    Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
+                                            "pose that the step leads to");
+    Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
+                                            "part of an exact total: 0 the total, the others what rounding left");
     if (trial)
         for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
     else
@@ -141,6 +141,9 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         write_series(group, step, part, results.all_series[f], arm.totals[f]);
     write_evidence(group, {step, part}, results, arm);
+    if (trial) trial->close();
+    step.close();
+    part.close();
 }
 
 void write_study(const Handle& root, const Study& study, const RunFacts& run) {

@@ -73,12 +73,13 @@ void write_variable(const Handle& group, const TrajectoryVariable& variable, con
 void write_trajectory(const Handle& scenario_group, const Trajectory& trajectory) {
     const Handle group = hdf5::new_group(scenario_group, trajectory.arm);
     write_columns(group, trajectory);
-    const std::map<std::string, Dimension> dimensions = write_dimensions(group, trajectory);
+    std::map<std::string, Dimension> dimensions = write_dimensions(group, trajectory);
     for (const TrajectoryVariable& variable : trajectory.variables) {
         hdf5::Dimensions along;
         for (const std::string& name : variable.dimensions) along.push_back(&dimensions.at(name));
         write_variable(group, variable, along);
     }
+    for (auto& [name, dimension] : dimensions) dimension.close();
     for (const auto& [name, text] : trajectory.notes) hdf5::write_text(group, name, text);
 }
 

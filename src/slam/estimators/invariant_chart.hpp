@@ -42,7 +42,7 @@ template <class Layout, class Real, int capacity>
     const auto whole = [&](int last) {  // rolled loops: few scenarios ask for this chart
         Real value{};
         nested_squared_errors<Layout::by_axis>(belief.covariance, invariant, 0, last, work,
-                              [&](int, const SquaredError<Real>& sum) { value = sum.value; });
+                                               [&](int, const SquaredError<Real>& sum) { value = sum.value; });
         return value;
     };
     nees.all = whole(layout.size());
