@@ -17,8 +17,8 @@ look() {
   if [ ! -f "$kept" ]; then
     "$program" run "$scenario" -o "$own.h5" --trials "$1" --seed "$3" --threads 1 --quiet --set "filter.covariance=$2"
     "$program" report "$own.h5" --format json >"$own.json"
-    awk -F'[":, ]+' '$2 == "verdict" { verdict = $3 } $2 == "blocks" { blocks = 1 }
-      blocks && $2 == "steps_outside_simultaneous" { print verdict, $3; exit }' "$own.json" >"$own"
+    awk -F'[":, ]+' '$2 == "verdict" { verdict = $3 } $2 == "groups" { groups = 1 }
+      groups && $2 == "steps_outside_simultaneous" { print verdict, $3; exit }' "$own.json" >"$own"
     rm "$own.h5" "$own.json"
     mv "$own" "$kept"
   fi

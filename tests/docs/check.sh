@@ -3,7 +3,8 @@
 # With --update the pages are rewritten; with --slow what takes minutes is run as well. CREDENCE is the program
 # (build/credence); FURTHER_PROGRAMS, parted by spaces, are others that a page calls as build/NAME.
 #
-# What is run, in a folder of each page's own with the project's experiments, analysis and counts.txt in it, in the order of the page:
+# What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis, python
+# and counts.txt in it:
 #
 #   ```console                   A block whose lines begin with `$ ` shows commands, each with its standard output below.
 #   $ credence report a.h5       A line `…` stands for any lines, and `…` in a line for anything there.
@@ -40,7 +41,7 @@ status=0
 for page in "${pages[@]}"; do
   scratch=$folder/$(basename "$page" .md) complaints=$folder/complaints renewed=$folder/renewed
   mkdir -p "$scratch/build" "$scratch/docs/figures" "$scratch/tests/durability"
-  cp -r experiments analysis "$scratch"
+  cp -r experiments analysis python "$scratch"
   cp tests/durability/counts.txt "$scratch/tests/durability"
   ln -s "$CREDENCE" "$scratch/build/credence"
   for program in ${FURTHER_PROGRAMS:-}; do ln -s "$(realpath "$program")" "$scratch/build"; done
