@@ -4,16 +4,11 @@
 # in build-bench/peers. Arguments go to bench/peers/peers.py. CREDENCE is another program to measure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+source experiments/setup.sh
 if [ -z "${CREDENCE:-}" ]; then
-  source experiments/setup.sh
   install_missing $build_packages python3-venv >&2
   build build credence -DCMAKE_BUILD_TYPE=Release >&2
   CREDENCE=build/credence
 fi
-venv=build-bench/peers
-if [ ! "$venv/complete" -nt bench/peers/requirements.txt ]; then
-  /usr/bin/python3 -m venv "$venv"
-  "$venv/bin/pip" install --quiet --disable-pip-version-check -r bench/peers/requirements.txt >&2
-  touch "$venv/complete"
-fi
-exec "$venv/bin/python" bench/peers/peers.py --credence "$CREDENCE" "$@"
+python_venv build-bench/peers bench/peers/requirements.txt
+exec build-bench/peers/bin/python bench/peers/peers.py --credence "$CREDENCE" "$@"

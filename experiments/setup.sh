@@ -27,6 +27,15 @@ install_missing() {
 build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev"
 test_packages="catch2 librandom123-dev hdf5-tools mandoc"
 
+# python_venv FOLDER REQUIREMENTS [WHAT…]: makes the Python environment FOLDER with WHAT and what the file REQUIREMENTS
+# names, unless there is one that is newer than the file.
+python_venv() {
+  if [ "$1/complete" -nt "$2" ]; then return 0; fi
+  /usr/bin/python3 -m venv "$1"
+  "$1/bin/pip" install --quiet --disable-pip-version-check "${@:3}" -r "$2" >&2
+  touch "$1/complete"
+}
+
 # build DIRECTORY TARGET [cmake arguments]: configures and builds, showing the log only where it fails.
 build() {
   local directory=$1 target=$2 log

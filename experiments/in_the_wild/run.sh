@@ -12,12 +12,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 if [ -z "${CREDENCE_PYTHON:-}" ]; then
-  venv=$PWD/build/in-the-wild CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
-  if [ ! "$venv/complete" -nt python/requirements.txt ]; then
-    python3 -m venv "$venv"
-    "$CREDENCE_PYTHON" -m pip install --quiet . -r python/requirements.txt >&2
-    touch "$venv/complete"
-  fi
+  source experiments/setup.sh
+  python_venv build/in-the-wild python/requirements.txt .
+  CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
 fi
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
 if [ "${1:-}" = --causes ]; then exec "$CREDENCE_PYTHON" experiments/in_the_wild/causes.py; fi
