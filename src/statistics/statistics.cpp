@@ -22,6 +22,16 @@ double exact_mean(const std::vector<double>& values) {
     return sum.rounded() / static_cast<double>(values.size());
 }
 
+/// Beyond so many degrees Boost's series end without an answer; a thousand million trials have more.
+constexpr double many_degrees = 1e10;
+
+/// The quantile of chi-square with many degrees where the normal distribution has z: the expansion of Cornish and Fisher
+/// [Fisher, Cornish 1960], whose next term is below rounding.
+double expanded_quantile(double z, double degrees) {
+    const double zz = z * z, root = std::sqrt(degrees);
+    return degrees + z * std::sqrt(2.0) * root + 2 * (zz - 1) / 3 + z * (zz - 7) / (9 * std::sqrt(2.0) * root);
+}
+
 }  // namespace
 
 double t_quantile(double alpha, double degrees) {
@@ -34,10 +44,12 @@ double normal_quantile(double alpha) {
 }
 
 double chi_square_quantile(double p, double degrees) {
+    if (degrees > many_degrees) return expanded_quantile(boost::math::quantile(boost::math::normal(), p), degrees);
     return boost::math::quantile(boost::math::chi_squared(degrees), p);
 }
 
 double chi_square_upper_quantile(double p, double degrees) {
+    if (degrees > many_degrees) return expanded_quantile(-boost::math::quantile(boost::math::normal(), p), degrees);
     return boost::math::quantile(boost::math::complement(boost::math::chi_squared(degrees), p));
 }
 

@@ -66,6 +66,9 @@ def quantiles():
         "normal_quantile": [[a, stats.norm.isf(a / 2)] for a in alphas],
         "chi_square_quantile": [[p, d, chi_square_quantile(p, d)] for p in shares for d in counts],
         "chi_square_upper_quantile": [[p, d, stats.chi2.isf(p, d)] for p in shares + [1e-12] for d in counts],
+        "standardised_chi_square": [[a, d, (stats.chi2.ppf(a, d) - d) / math.sqrt(2 * d),
+                                     (stats.chi2.isf(a, d) - d) / math.sqrt(2 * d)]
+                                    for a in [0.025, 0.05 / 38] for d in [9e9, 2e10, 1.9e11, 1e13]],
         "chi_square_p": [[f * d, d, stats.chi2.sf(f * d, d)] for f in [0, 0.1, 0.7, 1, 1.3, 2, 5] for d in counts[:5]],
         "chi_square_band": [[d, a, stats.chi2.ppf(a / 2, d) / d, stats.chi2.isf(a / 2, d) / d]
                             for d in counts for a in [0.05, 0.01, 0.05 / 19]],

@@ -4,6 +4,7 @@
 
 using namespace credence;
 using namespace credence::test;
+using Catch::Matchers::WithinAbs;
 
 TEST_CASE("statistics: t and normal quantiles agree with SciPy, alpha being that of both tails") {
     for (const Json& row : reference("t_quantile")) check_agrees(t_quantile(row[0], row[1]), row[2]);
@@ -17,6 +18,14 @@ TEST_CASE("statistics: chi-square quantiles agree with SciPy") {
     for (const Json& row : reference("chi_square_quantile")) check_agrees(chi_square_quantile(row[0], row[1]), row[2]);
     for (const Json& row : reference("chi_square_upper_quantile"))
         check_agrees(chi_square_upper_quantile(row[0], row[1]), row[2]);
+}
+
+TEST_CASE("statistics: chi-square quantiles of a thousand million trials' degrees have an answer") {
+    for (const Json& row : reference("standardised_chi_square")) {
+        const double degrees = row[1], deviation = std::sqrt(2 * degrees);
+        CHECK_THAT((chi_square_quantile(row[0], degrees) - degrees) / deviation, WithinAbs(row[2], 1e-8));
+        CHECK_THAT((chi_square_upper_quantile(row[0], degrees) - degrees) / deviation, WithinAbs(row[3], 1e-8));
+    }
 }
 
 TEST_CASE("statistics: statistics of samples agree with NumPy and SciPy") {
