@@ -27,7 +27,7 @@ hdf5::Handle write_values(const Handle& group, const Column& column, const Scena
                                          const std::vector<double> values = column_values(arm, c, first, count);
                                          std::vector<T> converted(values.size());
                                          std::transform(values.begin(), values.end(), converted.begin(),
-                                                        [](double value) { return static_cast<T>(value == value ? value : nan); });
+                                                        [](double value) { return static_cast<T>(one_nan(value)); });
                                          return converted;
                                      });
 }
