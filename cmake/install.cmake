@@ -27,7 +27,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/credence-config.cmake.
   ${PROJECT_BINARY_DIR}/credence-config.cmake INSTALL_DESTINATION ${CREDENCE_PACKAGE})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/credence-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/credence-config.cmake ${PROJECT_BINARY_DIR}/credence-config-version.cmake
-  cmake/add_world.cmake cmake/target_object.cmake DESTINATION ${CREDENCE_PACKAGE} COMPONENT development)
+  cmake/add_world.cmake cmake/target_object.cmake cmake/FindDeflate.cmake DESTINATION ${CREDENCE_PACKAGE} COMPONENT development)
 
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation

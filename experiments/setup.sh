@@ -24,7 +24,7 @@ install_missing() {
   rm -f "$log"
 }
 
-build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev zlib1g-dev nlohmann-json3-dev"
+build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev libdeflate-dev nlohmann-json3-dev"
 test_packages="catch2 librandom123-dev hdf5-tools mandoc"
 
 # python_venv FOLDER REQUIREMENTS [WHAT…]: makes the Python environment FOLDER with WHAT and what the file REQUIREMENTS

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <new>
+#include <sstream>
 
 namespace credence::cli {
 
@@ -30,6 +32,18 @@ po::options_description described(const Command& command) {
                                       option.help.c_str());
     }
     return description;
+}
+
+/// The options as --help lists them. Boost writes the names into a stream of its own, which cuts them short where it gets
+/// no memory, and says nothing.
+std::string help_text(const po::options_description& description) {
+    std::ostringstream text;
+    text.exceptions(std::ios::badbit);
+    text << description;
+    for (const auto& option : description.options())
+        if (text.str().find(option->format_name() + " " + option->format_parameter()) == std::string::npos)
+            throw std::bad_alloc();
+    return text.str();
 }
 
 [[noreturn]] void refuse_unknown(const Command& command, const std::string& given) {
@@ -154,7 +168,7 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     if (parsed.has("help")) {
         std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n"
                   << command.summary << "\n\n"
-                  << description << command.details;
+                  << help_text(description) << command.details;
         return std::nullopt;
     }
     check_repeats(command, parsed);

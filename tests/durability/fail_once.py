@@ -56,7 +56,8 @@ def commands(bench):
                   ["judge", record, "--format", "html", "-o", "r", "--overwrite"], output="r")
     yield Command("watch", ["watch", "../whole.h5", "--once"])
     yield Command("show", ["show", "../tiny.ini"])
-    yield Command("help", ["run", "--help"])
+    # Boost indents the text by the names that a stream of its own holds, whole or cut short.
+    yield Command("help", ["run", "--help"], printed="the same words")
     yield Command("manual", ["manual"])
     yield Command("completion", ["completion", "bash"])
     yield Command("version", ["--version"], printed="the processor, where it can be read")
@@ -122,7 +123,10 @@ class Failing:
         self.check_goes_on()
 
     def check_done(self, done):
-        if done.stdout != self.expected.stdout and self.command.printed == "always the same":
+        printed, expected = done.stdout, self.expected.stdout
+        if self.command.printed == "the same words":
+            printed, expected = printed.split(), expected.split()
+        if printed != expected and self.command.printed in ("always the same", "the same words"):
             raise Failed("ended well, but printed something else")
         self.check_files("ended well, but left")
 
@@ -132,7 +136,9 @@ class Failing:
             lines = [line for line in lines if not line.startswith(("HDF5-DIAG", "  #", "    major: ", "    minor: "))]
         if len(lines) != 1:
             raise Failed(f"ended with {done.returncode} and said {lines}")
-        if words not in lines[0].lower():
+        # pthread_create() says of memory that it does not get what it says of threads.
+        threads = words == "memory" and "Thread creation failed: Resource temporarily unavailable" in lines[0]
+        if words not in lines[0].lower() and not threads:
             raise Failed(f"ended with {done.returncode}, but did not say {words}: {lines[0]}")
 
     def check_kept(self, before):

@@ -2,6 +2,7 @@
 // Kind: foreign files.
 
 #include "files/hdf5/read.hpp"
+#include "files/system/checksum.hpp"
 #include "of_scenarios.hpp"
 #include "store_damage.hpp"
 
@@ -33,6 +34,12 @@ void write_small(const std::string& path, Keep keep) {
 }
 
 }  // namespace
+
+TEST_CASE("checksum: the check value of the CRC-32 of Ethernet, zlib and PNG") {
+    const std::string digits = "123456789";
+    CHECK(checksum(digits.data(), digits.size()) == 0xcbf43926);
+    CHECK(checksum(digits.data() + 4, 5, checksum(digits.data(), 4)) == 0xcbf43926);
+}
 
 TEST_CASE("checksum: one changed bit of a dataset is refused by the dataset's name") {
     const TemporaryFolder folder;

@@ -23,16 +23,21 @@ QuietErrors::~QuietErrors() {
 
 namespace {
 
+/// In the place of a system's error: zlib could not inflate a chunk. HDF5 does not say whether it got no memory.
+constexpr int not_inflated = -1;
+
 /// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`; where
-/// it gets no memory, by the entry's number.
+/// it gets no memory, by the entry's number, and where zlib gets none to begin with, in the text again.
 herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
     int& error = *static_cast<int*>(to);
     if (const std::size_t at = said.rfind(number); at != std::string::npos)
         error = std::atoi(said.c_str() + at + number.size());
     else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE ||
-                            entry->min_num == H5E_CANTALLOC))
+                            entry->min_num == H5E_CANTALLOC || said == "inflateInit() failed"))
         error = ENOMEM;
+    else if (error == 0 && said == "inflate() failed")
+        error = not_inflated;
     return 0;
 }
 
@@ -46,6 +51,7 @@ int system_error() {
 
 Error error_of(int error, const std::string& place, const std::string& problem) {
     if (error == 0) return Error(place, problem);
+    if (error == not_inflated) return Error(place, problem + ", or had no memory to uncompress them");
     if (error == ENOMEM) return Error(place, "HDF5 got no memory", remedy_for_reading(error));
     return Error(place, "cannot be read (" + words_for(error) + ")", remedy_for_reading(error));
 }

@@ -1,11 +1,11 @@
 #include "files/system/checksum.hpp"
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 namespace credence {
 
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc) {
-    return static_cast<std::uint32_t>(crc32_z(crc, static_cast<const Bytef*>(bytes), size));
+    return libdeflate_crc32(crc, bytes, size);
 }
 
 }  // namespace credence

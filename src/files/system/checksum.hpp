@@ -6,7 +6,7 @@
 
 namespace credence {
 
-/// zlib's CRC-32, continued from `crc`.
+/// The CRC-32 of zlib, continued from `crc`.
 std::uint32_t checksum(const void* bytes, std::size_t size, std::uint32_t crc = 0);
 
 }  // namespace credence
