@@ -104,11 +104,11 @@ hid_t driver_id() {
 
 Handle new_file(ByteFile& bytes) {
     const std::string place = "/", problem = "HDF5 could not make a file";
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, place, problem);
+    const Handle access = new_properties(H5P_FILE_ACCESS, place);
     ByteFile* const target = &bytes;
     check(H5Pset_driver(access.id(), driver_id(), &target), place, problem);
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), place, problem);
-    const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, place, problem);
+    const Handle creation = new_properties(H5P_FILE_CREATE, place);
     constexpr unsigned order = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED;
     check(H5Pset_obj_track_times(creation.id(), false), place, problem);
     check(H5Pset_attr_creation_order(creation.id(), order), place, problem);

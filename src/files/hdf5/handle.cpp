@@ -65,6 +65,12 @@ void Handle::close() {
     close(place);
 }
 
+Handle new_properties(hid_t kind, const std::string& place) {
+    const hid_t id = H5Pcreate(kind);
+    if (id < 0) throw error_of(ENOMEM, place, "");  // HDF5 does not always name the reason
+    return {id, H5Pclose, place, ""};
+}
+
 std::string place_of(const Handle& object) {
     const ssize_t length = H5Iget_name(object.id(), nullptr, 0);
     if (length <= 0) return "/";

@@ -86,6 +86,9 @@ void Handle::close(const At& place) {
     check(close_(std::exchange(id_, H5I_INVALID_HID)), place, "HDF5 could not close it");
 }
 
+/// A property list of the class `kind`; throws Error(place, …) where it gets no memory, as it needs nothing else.
+Handle new_properties(hid_t kind, const std::string& place);
+
 /// The HDF5 type of a number in files, always little-endian, and in memory.
 struct Type {
     hid_t file, memory;

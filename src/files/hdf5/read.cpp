@@ -3,7 +3,6 @@
 #include "base/readable_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
 
 namespace credence::hdf5 {
 
@@ -80,9 +79,7 @@ Handle open_file(const std::string& path) {
     if (start.starts_with("MATLAB"))
         throw Error(whole, "is a MATLAB workspace", "Write the record with h5create, h5write and h5writeatt");
     if (start != signature) throw Error(whole, "is not an HDF5 file", "Give an HDF5 file");
-    const hid_t properties = H5Pcreate(H5P_FILE_ACCESS);
-    if (properties < 0) throw error_of(ENOMEM, whole, "");  // it needs nothing else, but does not always say so
-    const Handle access(properties, H5Pclose, whole, "");
+    const Handle access = new_properties(H5P_FILE_ACCESS, whole);
 #if H5_VERSION_GE(1, 10, 7) && !(H5_VERSION_GE(1, 12, 0) && !H5_VERSION_GE(1, 12, 1))
     // No lock is needed: finished files appear whole under their name, and locking fails on some file systems.
     check(H5Pset_file_locking(access.id(), false, true), "/", "HDF5 refuses its access properties");

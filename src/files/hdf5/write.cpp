@@ -14,7 +14,7 @@ constexpr unsigned creation_order = H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXE
 /// Properties of a new group or dataset. Tracked creation order also lets an attribute exceed 64 kB.
 Handle creation_properties(hid_t kind) {
     const std::string place = "/", problem = "HDF5 refuses its creation properties";
-    Handle properties(H5Pcreate(kind), H5Pclose, place, "HDF5 gives no properties");
+    Handle properties = new_properties(kind, place);
     check(H5Pset_obj_track_times(properties.id(), false), place, problem);
     check(H5Pset_attr_creation_order(properties.id(), creation_order), place, problem);
     // Beyond 8 attributes HDF5 would keep them in a B-tree, which takes longer to write.
