@@ -18,7 +18,8 @@
 #   ```ini                       A scenario whose first line is its name is a file that commands below may read.
 #   # own.ini
 #
-# Beyond that it complains of blocks without a language, tables with ± and no command, and bullets that stand twice.
+# Beyond that it complains of blocks without a language, tables with ± and no command, bullets that are there twice, and
+# lines of more than 120 characters that are not tables, pictures or links.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 slow=0 update=0
@@ -48,6 +49,12 @@ for page in "${pages[@]}"; do
   : >"$complaints"
   PATH=$scratch/build:$PATH awk -v scratch="$scratch" -v slow=$slow -v complaints="$complaints" \
     -f tests/docs/renew.awk "$page" >"$renewed"
+  # In UTF-8, bytes that continue a character do not count.
+  LC_ALL=C awk -v page="$page" '
+    /^```/ { code = !code }
+    code || /^[|<!]/ || /https?:/ { next }
+    { gsub(/[\200-\277]/, ""); if (length > 120) print page ":" FNR ": a line of " length " characters" }' \
+    "$page" >>"$complaints"
   if [ -s "$complaints" ]; then
     cat "$complaints"
     status=1
