@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# install_test.sh BUILD SOURCE: what is installed works, and somebody else's project builds on it: docs/own-filter.md's.
+# install_test.sh BUILD SOURCE: what is installed works, and a user's project builds on it, that of docs/own-filter.md.
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)

@@ -45,7 +45,7 @@ row "linear (Kalman filter)" linear matched-linear.ini
 row "linear, sighted within 0.1 to 2 only" linear-gated matched-linear.ini sensor.range_min=0.1 sensor.range_max=2
 heading "Matched world, EKF: heading noise" "σ_head"
 over_heading_noise ekf matched-ekf.ini 0.001,0.002,0.005,0.01,0.02,0.03,0.05,0.07,0.1
-heading "Misinformed filters, linear matched world" "what the filter is told"
+heading "Misinformed filters, linear matched world" "what the filter is given"
 row "0.8 of σ_feat" told-sigma-0.8 matched-linear.ini filter.measurement=0.8
 row "√0.7 of every process σ" told-process-0.7 matched-linear.ini filter.odometry=0.83666002653407556 \
   filter.features=0.83666002653407556

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int sizes[] = {50, 200, 1000}, studies_each = 100, trials_of_truth = 200'000;
 
-/// A scenario file below experiments, and what it is told besides.
+/// A scenario file below experiments, and the settings that it gets besides.
 struct World {
     std::string file;
     Overrides overrides{};

@@ -38,7 +38,7 @@ def framed(page: str) -> str:
 
 
 def _is_watched() -> bool:
-    """Whether somebody sees a bar: on a terminal, or in a notebook."""
+    """Whether a progress bar can be seen: on a terminal, or in a notebook."""
     shell = sys.modules.get("IPython")
     return sys.stderr.isatty() or (shell is not None and type(shell.get_ipython()).__name__ == "ZMQInteractiveShell")
 

@@ -66,7 +66,7 @@ def _array(given: object) -> tuple[Numbers, float]:
 
     array = np.asarray(given)
     if array.dtype.kind not in "fiub":
-        raise TypeError(f"an array of {array.dtype} is none of numbers. Give floating-point numbers.")
+        raise TypeError(f"an array of {array.dtype} does not hold numbers. Give floating-point numbers.")
     precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
     if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
         array = array.astype(float)

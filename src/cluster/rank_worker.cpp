@@ -54,7 +54,7 @@ private:
     /// Whether there is any work before the end.
     bool await_order() {
         for (;; std::this_thread::sleep_for(rank_pause)) {
-            tell_of_life();
+            show_life();
             const std::optional<Message> message = transport_.receive();
             if (!message) continue;
             if (message->word == Word::end) return false;
@@ -121,10 +121,10 @@ private:
         for (;;) {
             while (const std::optional<Message> message = transport_.receive()) hear(*message);
             if (over()) return;
-            tell_of_signal();
+            pass_signal_on();
             ask_for_tasks();
             send_what_is_done();
-            tell_of_life();
+            show_life();
             std::this_thread::sleep_for(rank_pause);
         }
     }
@@ -158,19 +158,19 @@ private:
         spoke_ = Clock::now();
     }
 
-    void tell_of_life() {
+    void show_life() {
         if (Clock::now() - spoke_ > silence) send(Word::alive);
     }
 
-    void tell_of_signal() {
-        const std::string name = told_of_signal_ ? "" : signal_();
+    void pass_signal_on() {
+        const std::string name = signal_passed_on_ ? "" : signal_();
         if (name.empty()) return;
         send(Word::stop, name);
-        told_of_signal_ = true;
+        signal_passed_on_ = true;
     }
 
     void ask_for_tasks() {
-        if (waiting_ || dropping_ || told_of_signal_) return;
+        if (waiting_ || dropping_ || signal_passed_on_) return;
         std::int64_t some = 0;
         {
             const std::lock_guard lock(mutex_);
@@ -232,7 +232,7 @@ private:
     bool over_ = false;
     std::exception_ptr trouble_;
 
-    bool dropping_ = false, waiting_ = false, told_of_signal_ = false;  // used by the communicating thread only
+    bool dropping_ = false, waiting_ = false, signal_passed_on_ = false;  // used by the communicating thread only
     Clock::time_point spoke_ = Clock::now(), sent_ = Clock::now();
 };
 

@@ -13,7 +13,7 @@ namespace credence {
 struct GridAxis {
     std::string key;
     std::vector<std::string> values;
-    std::vector<double> numbers;  ///< the same as numbers; empty where one of them is none
+    std::vector<double> numbers;  ///< the same as numbers; empty where one of them is not a number
 };
 
 /// A scenario of the study as a point of a grid.

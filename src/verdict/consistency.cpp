@@ -36,7 +36,7 @@ private:
         if (std::isfinite(group_.rounding))
             std::snprintf(text, sizeof text, "rounding alone may change it by %.2g %%", 100 * group_.rounding);
         else
-            std::snprintf(text, sizeof text, "P cannot be told from singular");
+            std::snprintf(text, sizeof text, "P cannot be distinguished from a singular one");
         judgement_.not_shown("conditioning: NEES of " + group_.name + " is left out, because " + text, false);
     }
 

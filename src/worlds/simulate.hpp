@@ -47,7 +47,7 @@ inline constexpr const char* force_target_variable = "CREDENCE_FORCE_UNIT";
 std::vector<Target> runnable_targets();
 
 /// The target that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_UNIT names. Throws
-/// InputError where that is none of runnable_targets; programs that compute call this before anything else.
+/// InputError where that is not one of runnable_targets; programs that compute call this before anything else.
 Target best_target();
 
 }  // namespace credence

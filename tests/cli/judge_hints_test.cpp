@@ -223,7 +223,7 @@ TEST_CASE("judge: covariances in singles are judged to the accuracy of their typ
     CHECK(coarse["verdict"] == "undecided");
     CHECK_THAT(coarse["reason"].get<std::string>(),
                Contains("conditioning: NEES of all is left out, because rounding alone may change it by 2.4 %") &&
-                   Contains("cannot be told from singular in 1 direction"));
+                   Contains("cannot be distinguished from a singular one in 1 direction"));
     CHECK(write(0.0f, 1 - 1e-3)["verdict"] == "consistent");
 }
 

@@ -60,7 +60,7 @@ refuse_everywhere() {
       3) refuse_at $n "" "" EIO "input/output error" ;;
     esac
   done
-  echo "$name: $total changes, $runs runs, $refusals refused and told"
+  echo "$name: $total changes, $runs runs, $refusals refused with a message"
 }
 
 command=("${study[@]}") again=("${study[@]}" --resume)

@@ -28,7 +28,7 @@ limit_on_file_sizes() {
     fails "ulimit -f $blocks" "file too large" limited_to $blocks "$credence" "${study[@]}"
     goes_on "ulimit -f $blocks"
   done
-  echo "limit on file sizes: told, and gone on"
+  echo "limit on file sizes: refused with a message, and gone on with"
 }
 
 # In a mount namespace of its own, so that nothing of it stays.
@@ -54,7 +54,7 @@ small_disk() {
     check_whole "disk of $size"
     rm x.h5
   done
-  echo "small disk: told, and gone on"
+  echo "small disk: refused with a message, and gone on with"
 }
 
 # To root every folder can be written to.
@@ -72,7 +72,7 @@ folder_that_is_read_only() {
   expected=2 fails "read-only folder" "permission denied" "${as[@]}" ../program "${study[@]}"
   chmod u=rwx .
   goes_on "read-only folder"
-  echo "read-only folder: told"
+  echo "read-only folder: refused with a message"
 }
 
 folder_that_goes() {
@@ -87,7 +87,7 @@ folder_that_goes() {
   [ $status -eq 1 ] || fail "folder that goes: ended with $status"
   check_message "folder that goes" "no such file or directory"
   goes_on "folder that goes"
-  echo "folder that goes: told"
+  echo "folder that goes: refused with a message"
 }
 
 expected=1

@@ -8,7 +8,7 @@ source "$(dirname "$0")/common.sh"
 every=${2:-1} offset=${3:-0}
 
 # Of the killed runs, ../log: what had been committed when the last died, in bytes of the journal and in commits of
-# blocks (its beginning, which is synced too, is none). Of the run that went on, ../log2: the least that it left of the
+# blocks (its beginning, which is synced too, does not count). Of the run that went on, ../log2: the least that it left of the
 # journal, and its appends. A journal that is shorter than before is another; the commits stay counted.
 read_logs() {
   read -r committed commits least appends < <(awk '
@@ -39,7 +39,7 @@ check_kept() {
   [ $((appends + commits)) -le "$blocks" ] || fail "$what: $commits commits, but $appends of $blocks blocks ran again"
 }
 
-# Where not even the journal's beginning was committed, a file that was to be replaced is still somebody else's.
+# Where not even the journal's beginning was committed, a file that was to be replaced still belongs to another study.
 go_on() {
   journal=gone
   if [ -s x.h5.journal ]; then journal=there; fi

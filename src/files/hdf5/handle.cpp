@@ -61,7 +61,7 @@ Handle::~Handle() {
 }
 
 void Handle::close() {
-    const std::string place = place_of(*this);  // which nobody knows once it is closed
+    const std::string place = place_of(*this);  // which is unknown once it is closed
     close(place);
 }
 

@@ -31,7 +31,7 @@ ArmChoice read_arm(const std::string& part, const std::string& text, const std::
     const std::vector<std::string> labels = file_labels(paths);
     for (std::size_t file = 0; file < paths.size(); ++file)
         if (name == paths[file] || name == labels[file]) return {file, arm};
-    throw invalid_value("--arms", text, name + " is none of the files", "The files are " + joined(labels));
+    throw invalid_value("--arms", text, name + " is not one of the files", "The files are " + joined(labels));
 }
 
 }  // namespace

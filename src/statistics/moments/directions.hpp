@@ -43,7 +43,7 @@ struct GroupDirections {
     enum class State { known, few_trials, singular };
     State state = State::few_trials;
     double trials = 0;
-    int left_out = 0;             ///< dimensions in which P cannot be told from 0: `consistent` is withheld
+    int left_out = 0;             ///< dimensions in which P cannot be distinguished from 0: `consistent` is withheld
     Direction largest, smallest;  ///< findings above and below
 };
 

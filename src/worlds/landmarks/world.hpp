@@ -1,6 +1,6 @@
 #pragma once
 // The world of landmarks that stand about a loop [docs/landmarks.md]. The robot follows its loop to the letter;
-// the noise is on what its filter is told of the motion, so that where each landmark comes into sight is known before
+// the noise is on what its filter is given of the motion, so that where each landmark comes into sight is known before
 // any trial.
 //
 //   r  robot position, theta  heading, f_j  landmark; omega, v  turn and move (body frame) from one pose to the next
@@ -47,7 +47,7 @@ void start_truth(Truth<Real, capacity>& truth, const LandmarkParameters& world, 
     for (int j = 0; j < features; ++j) truth.feature[j] = truth.centre[j] = broadcast<Real>(world.landmark[j]);
 }
 
-/// What the filter is told of the motion to pose k: omega - sigma_head eps, v - sigma_odom eps (body frame).
+/// What the filter is given of the motion to pose k: omega - sigma_head eps, v - sigma_odom eps (body frame).
 template <class Layout, class Real>
 CREDENCE_FLAT Command<Real> reported_motion(const LandmarkParameters& world, int k,
                                         const LandmarkDraws<Layout, Real>& draws) {

@@ -26,7 +26,7 @@ public:
     std::vector<double>& at(std::size_t k) { return whitened_[k % whitened_.size()]; }
     void leave_out(std::size_t k) { std::fill(at(k).begin(), at(k).end(), nan); }
 
-    /// Takes step k's rows in; those of the steps before are there. A product with NaN is none.
+    /// Takes step k's rows in; those of the steps before are there. A product with NaN does not count.
     void correlate(std::size_t k) {
         for (std::size_t lag = 1; lag < whitened_.size() && lag <= k; ++lag) {
             const std::vector<double>&now = at(k), &before = at(k - lag);

@@ -56,14 +56,14 @@ struct RecordShape {
     int steps_of(std::int64_t trial) const {
         return declared.empty() ? longest : declared[static_cast<std::size_t>(trial)];
     }
-    /// Whether the file's step is one of the trial's: what stands behind its declared end is not looked at.
+    /// Whether the file's step is one of the trial's: what comes after its declared end is not read.
     bool covers(std::int64_t trial, int step) const { return declared.empty() || step < steps_of(trial); }
 };
 
 /// The name of a component: x0, x1 ... where the record has none.
 std::string component_name(const RecordShape& shape, int j);
 
-/// A step of a record as it stands in the file.
+/// A step of a record as the file has it.
 struct RecordStep {
     std::int64_t trial = 0;
     int step = 0;
