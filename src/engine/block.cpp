@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <numeric>
 
@@ -153,14 +154,48 @@ void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock
     arm.product_counts = added_up(from.product_counts);
 }
 
+/// What one thread computes in.
+struct Workspace {
+    Octets octets;
+    WorkRoom room;
+};
+
+/// The workspaces of all threads, kept from block to block. (They are no thread_local objects: where the C library gets
+/// no memory for one that is to be destroyed, it ends the process.)
+class Workspaces {
+public:
+    /// One that no other thread has, until the returned pointer is destroyed. Throws std::bad_alloc.
+    auto take() {
+        const auto put_back = [this](Workspace* workspace) {
+            const std::lock_guard lock(mutex_);
+            free_.emplace_back(workspace);  // for which there is capacity
+        };
+        const std::lock_guard lock(mutex_);
+        if (free_.empty()) {
+            free_.reserve(made_ + 1);
+            free_.push_back(std::make_unique<Workspace>());
+            ++made_;
+        }
+        std::unique_ptr<Workspace, decltype(put_back)> taken(free_.back().release(), put_back);
+        free_.pop_back();
+        return taken;
+    }
+
+private:
+    std::mutex mutex_;
+    std::size_t made_ = 0;
+    std::vector<std::unique_ptr<Workspace>> free_;
+};
+Workspaces workspaces;
+
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
                  std::uint64_t root_seed, std::int64_t index, int trials) {
     const SimulationShape& shape = simulation.shape();
-    thread_local Octets octets;
-    thread_local WorkRoom room;
+    const auto taken = workspaces.take();
+    Octets& octets = taken->octets;
     octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
-    void* workspace = room.of_size(simulation.workspace_size(a));
-    simulation.simulate(a, octets.batch(root_seed, index * block_size, workspace));
+    void* room = taken->room.of_size(simulation.workspace_size(a));
+    simulation.simulate(a, octets.batch(root_seed, index * block_size, room));
     ArmBlock arm;
     arm.sums = added_up(octets.sums);
     arm.square_sums = added_up(octets.square_sums);
