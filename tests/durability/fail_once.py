@@ -4,11 +4,13 @@ system said; nothing is lost: the same command without the failure ends as it al
 libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no memory to start with,
 it prints what it always prints of an error.
 
-With --most N at most N of the calls of a kind fail, at random; 0: each. With --mutants failing calls say that they
-succeeded, as if the program did not look: then this must fail."""
+With --most N at most N of the calls of a kind fail, at random; 0: each. With --callers D, of the allocations and mappings
+the first fails of all that have the same D innermost callers, in whichever command it is; N more are chosen at random.
+With --mutants failing calls say that they succeeded, as if the program did not look: then this must fail."""
 
 import os
 import random
+import struct
 import subprocess
 
 from harness import HERE, LESS, Bench, Failed, arguments, finish, finish_all
@@ -64,8 +66,9 @@ def commands(bench):
 
 
 class Failing:
-    def __init__(self, bench, command, most, kinds=tuple(KINDS), silent=None):
+    def __init__(self, bench, command, most, kinds=tuple(KINDS), silent=None, callers=0, tried=None):
         self.bench, self.command, self.most, self.kinds = bench, command, most, kinds
+        self.callers, self.tried = callers, set() if tried is None else tried
         self.silent = {"FAIL_SILENT": 1} if silent else {}
         self.counts = {"calls": 0, "failed": 0, "done all the same": 0, "refused": 0, "ended by libhdf5": 0,
                        "ended before main": 0}
@@ -76,12 +79,29 @@ class Failing:
         for name, source in self.command.start.items():
             (self.bench.at / name).write_bytes(source.read_bytes())
 
-    def once(self, kind, n):
+    def once(self, kind, n, **more):
         count = self.bench.root / "count"
         count.unlink(missing_ok=True)
         done = self.bench.run(*self.command.command, environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count,
-                                                                  **self.silent})
+                                                                  **self.silent, **more})
         return done, int.from_bytes(count.read_bytes(), "little")
+
+    def chosen(self, kind):
+        """How many calls there are, and which of them fail."""
+        places, by_callers = self.bench.root / "places", set()
+        places.unlink(missing_ok=True)
+        look = self.callers and kind in ("malloc", "mmap")
+        _, calls = self.once(kind, 0, **({"FAIL_PLACES": places, "FAIL_CALLERS": self.callers} if look else {}))
+        everything = range(1, calls + 1)
+        if not self.most or calls <= self.most:
+            return calls, everything
+        if look:
+            with open(places, "rb") as file:
+                for n, (place,) in zip(everything, struct.iter_unpack("=Q", file.read(8 * calls))):
+                    if place not in self.tried:
+                        self.tried.add(place)
+                        by_callers.add(n)
+        return calls, sorted(by_callers.union(random.Random(calls).sample(everything, self.most)))
 
     def all(self):
         self.start()
@@ -89,10 +109,7 @@ class Failing:
         self.made = self.bench.files()
         for kind in self.kinds:
             self.start()
-            _, calls = self.once(kind, 0)
-            numbers = range(1, calls + 1)
-            if self.most and calls > self.most:
-                numbers = sorted(random.Random(calls).sample(numbers, self.most))
+            calls, numbers = self.chosen(kind)
             self.counts["calls"] += calls
             for n in numbers:
                 self.counts["failed"] += 1
@@ -187,14 +204,15 @@ def mutants(bench):
 
 
 def main():
-    given = arguments(__doc__, most=0, only="", mutants=0)
+    given = arguments(__doc__, most=0, callers=0, only="", mutants=0)
+    tried = set()
     with Bench(given.credence) as bench:
         check_shim(bench)
         if given.mutants:
             return mutants(bench)
         finish_all("every resource fails once",
-                   ((command.name, Failing(bench, command, given.most).all()) for command in commands(bench)
-                    if given.only in ("", command.name)))
+                   ((command.name, Failing(bench, command, given.most, callers=given.callers, tried=tried).all())
+                    for command in commands(bench) if given.only in ("", command.name)))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,9 @@
    FAIL_ALWAYS=1    not only the n-th, but each
    FAIL_SILENT=1    plants a bug: the call does not happen and says that it did
    FAIL_HELD=1      plants a bug: fcntl says of closed standard streams that they are open
-   FAIL_COUNT=file  8 bytes: how many of these calls there were */
+   FAIL_COUNT=file  8 bytes: how many of these calls there were
+   FAIL_PLACES=file for each of these calls, 8 bytes: a hash of its innermost callers,
+   FAIL_CALLERS=d   of so many of them, at most 40 */
 #include "shim.h"
 
 #include <execinfo.h>
@@ -15,6 +17,10 @@ static long at;
 static int failure, silent, always, held;
 static atomic_long own, *count = &own;
 static int main_began;
+static uint64_t *places;
+static long callers;
+static const void *own_base;
+enum { most_places = 1 << 22, most_callers = 40, own_frames = 8 };
 
 /* Says where the program ends by itself: inside a library, before main() or in its own code. Nothing here may allocate:
    the C library may have found the heap damaged, and then this thread holds its lock. */
@@ -40,6 +46,35 @@ void exit(int code) {
     die();
 }
 
+/* A file of `size` bytes that this process shares with what reads it. */
+static void *shared_file(const char *path, size_t size) {
+    const int file = (int)syscall(SYS_openat, AT_FDCWD, path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0 || syscall(SYS_ftruncate, file, size) != 0) _exit(99);
+    void *shared = (void *)syscall(SYS_mmap, NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    syscall(SYS_close, file);
+    if (shared == MAP_FAILED) _exit(99);
+    return shared;
+}
+
+static const void *base_of(const void *code) {
+    Dl_info found;
+    return dladdr(code, &found) ? found.dli_fbase : NULL;
+}
+
+/* FNV-1a over the callers' offsets in their libraries, which are the same in every run. */
+static uint64_t place_of_call(void) {
+    void *frames[most_callers + own_frames];
+    uint64_t hash = 14695981039346656037u;
+    long left = callers;
+    for (int i = 0, n = backtrace(frames, most_callers + own_frames); i < n && left > 0; ++i) {
+        const void *base = base_of(frames[i]);
+        if (base == own_base) continue;
+        hash = (hash ^ ((uintptr_t)frames[i] - (uintptr_t)base)) * 1099511628211u;
+        --left;
+    }
+    return hash;
+}
+
 __attribute__((constructor)) static void read_environment(void) {
     static const struct { const char *name; enum kind kind; int error; } kinds[] = {
         {"malloc", ALLOCATING, ENOMEM}, {"open", OPENING, EMFILE}, {"read", READING, EIO},   {"mmap", MAPPING, ENOMEM},
@@ -51,6 +86,9 @@ __attribute__((constructor)) static void read_environment(void) {
     silent = is_on("FAIL_SILENT");
     always = is_on("FAIL_ALWAYS");
     held = is_on("FAIL_HELD");
+    callers = number("FAIL_CALLERS");
+    own_base = base_of(&callers);
+    if (callers < 0 || callers > most_callers) _exit(99);
     void *frame;
     backtrace(&frame, 1); /* loads what it needs */
     static char room[1 << 16]; /* libhdf5 may have used up the stack */
@@ -60,13 +98,8 @@ __attribute__((constructor)) static void read_environment(void) {
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
         if (strcmp(name, kinds[i].name) == 0) kind = kinds[i].kind, failure = kinds[i].error;
     if (failure == 0 && strcmp(name, "none") != 0) _exit(99);
-    if (!counted) return;
-    const int file = (int)syscall(SYS_openat, AT_FDCWD, counted, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0 || syscall(SYS_ftruncate, file, sizeof own) != 0) _exit(99);
-    void *shared = (void *)syscall(SYS_mmap, NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    syscall(SYS_close, file);
-    if (shared == MAP_FAILED) _exit(99);
-    count = shared;
+    if (counted) count = shared_file(counted, sizeof own);
+    if (getenv("FAIL_PLACES")) places = shared_file(getenv("FAIL_PLACES"), most_places * sizeof *places);
 }
 
 enum fate fail_fate(const struct call *call, int *error) {
@@ -74,5 +107,11 @@ enum fate fail_fate(const struct call *call, int *error) {
     *error = failure;
     if (call->kind == ASKING) main_began = 1; /* the program looks at its standard streams first */
     if (call->kind == ASKING) return held && call->fd <= 2 && call->flags == F_GETFD ? is_left_out : goes_on;
-    return atomic_fetch_add(count, 1) + 1 == at || always ? (silent ? is_left_out : fails) : goes_on;
+    const long before = atomic_fetch_add(count, 1);
+    static __thread int within; /* an unwinder may allocate */
+    if (places && before < most_places) {
+        if (within++ == 0) places[before] = place_of_call();
+        --within;
+    }
+    return before + 1 == at || always ? (silent ? is_left_out : fails) : goes_on;
 }
