@@ -3,7 +3,7 @@
 # usage: all.sh CREDENCE [DEPTH]
 #   sample   some of each, in minutes: the label durability
 #   evening  more of each, in about two hours
-#   full     every allocation, every byte, every folder: a day or so
+#   full     all ways to an allocation, all bytes of a small results file (where build/tests is built), all folders: a day
 # After the last two the lines are kept in counts.txt, which docs/durability.md shows.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -13,8 +13,12 @@ case $depth in
   sample)
     sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1" streams="--every 7" bytes="--every 20011" turns=44
     ;;
-  evening) sweep=20 kills=100 folders="--some 10" calls="--most 60" streams= bytes="--every 401" turns=1000 ;;
-  full)    sweep=1 kills=200 folders="--some 60" calls="--most 0" streams="" bytes="--every 1" turns=10000 ;;
+  evening)
+    sweep=20 kills=100 folders="--some 10" calls="--most 20 --callers 3" streams= bytes="--every 401" turns=1000
+    ;;
+  full)
+    sweep=1 kills=200 folders="--some 60" calls="--most 200 --callers 12" streams= bytes="--every 41" turns=10000
+    ;;
   *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
 esac
 
@@ -31,6 +35,12 @@ harnesses() {
   python3 "$here/corruption.py" "$credence" $bytes
   python3 "$here/interleave.py" "$credence" --schedules $turns
   python3 "$here/versions.py" "$credence"
+  local tests
+  tests=$(dirname "$credence")/tests/credence_long_tests
+  if [ "$depth" = full ] && [ -x "$tests" ]; then
+    CREDENCE_FLIP_EVERY=1 "$tests" 'store: a results file of which any byte is flipped reads the same, or is refused by name' |
+      grep '^each byte'
+  fi
 }
 
 # Kills and refusals at chosen writes, and at random times.

@@ -118,7 +118,8 @@ TEST_CASE("store: a results file of which any byte is flipped reads the same, or
         CHECK(outcomes.with(process_ended).empty());
         CHECK(outcomes.with(refused_by_name).size() > outcomes.size() / 2);
         if (every == 1)
-            std::cout << keep_name(keep) << ": " << good.size() << " bytes, " << outcomes.with(same).size()
-                      << " harmless, " << outcomes.with(refused_by_name).size() << " refused by name\n";
+            std::cout << "each byte of results of " << keep_name(keep) << ": " << good.size() << " bytes, "
+                      << outcomes.with(same).size() << " harmless, " << outcomes.with(refused_by_name).size()
+                      << " refused by name\n";
     }
 }

@@ -92,7 +92,7 @@ TEST_CASE("compare: --arms that cannot be read, or that nothing has, are refused
     CHECK_THAT(refused({one, two, three}, "greedy,fixed"), Contains("greedy does not say of which file it is"));
     CHECK_THAT(refused({one, two, three}, "one:greedy,two:fixed"), Contains("three.h5 takes no part"));
     CHECK_THAT(refused({one, two}, "one:greedy,four:fixed"),
-               Contains("four is none of the files). The files are one, two"));
+               Contains("four is not one of the files). The files are one, two"));
     StudyFile ambiguous = one;
     ambiguous.study.scenarios[0].arms.push_back(ambiguous.study.scenarios[0].arms[1]);
     ambiguous.study.scenarios[0].arms.back().name = "greedy.other";
