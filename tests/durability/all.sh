@@ -35,6 +35,7 @@ harnesses() {
   python3 "$here/corruption.py" "$credence" $bytes
   python3 "$here/interleave.py" "$credence" --schedules $turns
   python3 "$here/versions.py" "$credence"
+  [ "$depth" = sample ] || ! command -v valgrind >/dev/null || python3 "$here/memcheck.py" "$credence"
   local tests
   tests=$(dirname "$credence")/tests/credence_long_tests
   if [ "$depth" = full ] && [ -x "$tests" ]; then

@@ -1,0 +1,42 @@
+"""Every command of fail_once.py under Valgrind's memcheck: no value is used that was never written, and no memory that is
+not the program's. (Clang's memory sanitizer would need libhdf5 and the C++ library compiled with it.) The instruction
+set is v3, the widest that Valgrind knows. A program with such a fault comes first, which must be noticed."""
+
+import os
+import shutil
+import subprocess
+
+from fail_once import commands
+from harness import Bench, arguments, finish
+
+FAULT = "#include <stdlib.h>\nint main(void) { int *n = malloc(sizeof *n); return *n > 0 ? 2 : 3; }\n"
+
+
+def checked(command, **more):
+    """What memcheck says of a command: nothing where it finds no fault."""
+    log = more["cwd"].parent / "memcheck.log"
+    subprocess.run(["valgrind", "-q", f"--log-file={log}", *command], capture_output=True, check=False,
+                   env={**os.environ, "CREDENCE_FORCE_UNIT": "v3"}, **more)
+    return log.read_text()
+
+
+def main():
+    given = arguments(__doc__)
+    failures = []
+    with Bench(given.credence) as bench:
+        subprocess.run(["cc", "-w", "-O0", "-xc", "-", "-o", bench.root / "fault"], input=FAULT, text=True, check=True)
+        if "uninitialised" not in checked([bench.root / "fault"], cwd=bench.at):
+            failures.append("a value that was never written is not noticed")
+        number = 0
+        for number, command in enumerate(commands(bench), start=1):
+            bench.empty()
+            for name, source in command.start.items():
+                shutil.copy(source, bench.at / name)
+            found = checked([bench.credence, *command.command], cwd=bench.at)
+            if found:
+                failures.append(f"{command.name}: {found[:1000]}")
+    finish("memcheck", {"commands": number, "with a fault": len(failures)}, failures)
+
+
+if __name__ == "__main__":
+    main()
