@@ -147,7 +147,7 @@ def test_what_does_not_fit_is_refused(arguments, message):
 
 
 def test_what_is_no_array_of_numbers_is_refused():
-    with pytest.raises(TypeError, match="none of numbers"):
+    with pytest.raises(TypeError, match="does not hold numbers"):
         credence.judge(np.array([["a"]]), np.zeros((1, 1, 1)))
     with pytest.raises(TypeError, match="Give the path alone"):
         credence.judge("record.h5", np.zeros((1, 1, 1)))
