@@ -79,11 +79,11 @@ class Failing:
         for name, source in self.command.start.items():
             (self.bench.at / name).write_bytes(source.read_bytes())
 
-    def once(self, kind, n, **more):
+    def once(self, kind, n, timeout=20, **more):
         count = self.bench.root / "count"
         count.unlink(missing_ok=True)
-        done = self.bench.run(*self.command.command, environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count,
-                                                                  **self.silent, **more})
+        done = self.bench.run(*self.command.command, timeout=timeout,
+                              environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count, **self.silent, **more})
         return done, int.from_bytes(count.read_bytes(), "little")
 
     def chosen(self, kind):
@@ -91,7 +91,8 @@ class Failing:
         places, by_callers = self.bench.root / "places", set()
         places.unlink(missing_ok=True)
         look = self.callers and kind in ("malloc", "mmap")
-        _, calls = self.once(kind, 0, **({"FAIL_PLACES": places, "FAIL_CALLERS": self.callers} if look else {}))
+        # (To look up the callers of each call takes a while.)
+        _, calls = self.once(kind, 0, 200, **({"FAIL_PLACES": places, "FAIL_CALLERS": self.callers} if look else {}))
         everything = range(1, calls + 1)
         if not self.most or calls <= self.most:
             return calls, everything
