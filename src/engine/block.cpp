@@ -154,21 +154,21 @@ void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock
     arm.product_counts = added_up(from.product_counts);
 }
 
-/// What one thread computes in.
+/// The memory in which one thread computes a block.
 struct Workspace {
     Octets octets;
     WorkRoom room;
 };
 
-/// The workspaces of all threads, kept from block to block. (They are no thread_local objects: where the C library gets
-/// no memory for one that is to be destroyed, it ends the process.)
+/// The workspaces of all threads, kept from block to block. (These are not thread_local objects: glibc ends the process
+/// where it cannot allocate the record of a thread_local destructor.)
 class Workspaces {
 public:
-    /// One that no other thread has, until the returned pointer is destroyed. Throws std::bad_alloc.
+    /// A workspace that no other thread has until the returned pointer is destroyed. Throws std::bad_alloc.
     auto take() {
         const auto put_back = [this](Workspace* workspace) {
             const std::lock_guard lock(mutex_);
-            free_.emplace_back(workspace);  // for which there is capacity
+            free_.emplace_back(workspace);  // within the capacity that take() has reserved
         };
         const std::lock_guard lock(mutex_);
         if (free_.empty()) {
@@ -181,20 +181,30 @@ public:
         return taken;
     }
 
+    void clear() {
+        const std::lock_guard lock(mutex_);
+        made_ -= free_.size();
+        free_.clear();
+    }
+
 private:
     std::mutex mutex_;
     std::size_t made_ = 0;
     std::vector<std::unique_ptr<Workspace>> free_;
 };
-Workspaces workspaces;
+
+/// Never destroyed, because a thread may still compute when the process ends.
+Workspaces& workspaces() {
+    static Workspaces& all = *new Workspaces;
+    return all;
+}
 
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
-                 std::uint64_t root_seed, std::int64_t index, int trials) {
+                 std::uint64_t root_seed, std::int64_t index, int trials, Workspace& workspace) {
     const SimulationShape& shape = simulation.shape();
-    const auto taken = workspaces.take();
-    Octets& octets = taken->octets;
+    Octets& octets = workspace.octets;
     octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
-    void* room = taken->room.of_size(simulation.workspace_size(a));
+    void* room = workspace.room.of_size(simulation.workspace_size(a));
     simulation.simulate(a, octets.batch(root_seed, index * block_size, room));
     ArmBlock arm;
     arm.sums = added_up(octets.sums);
@@ -224,10 +234,13 @@ bool detailed(const SimulationShape& shape, std::int64_t index) {
 Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,
                 std::uint64_t root_seed, std::int64_t index, int trials) {
     Block block{index, trials, {}};
+    const auto workspace = workspaces().take();
     for (std::size_t a = 0; a < arms; ++a)
-        block.arms.push_back(run_arm(simulation, columns, a, root_seed, index, trials));
+        block.arms.push_back(run_arm(simulation, columns, a, root_seed, index, trials, *workspace));
     return block;
 }
+
+void free_workspaces() { workspaces().clear(); }
 
 BlockRunner::BlockRunner(const Scenario& scenario)
     : columns_(world_of(scenario).columns(scenario)),

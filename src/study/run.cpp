@@ -117,6 +117,7 @@ private:
         if (trouble_) std::rethrow_exception(trouble_);
         for (const Work& work : work_)  // blocks that were present are kept when a run is stopped
             if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);
+        free_workspaces();
         if (options_.keeper == nullptr) return;
         prepare_all();
         commit();

@@ -63,4 +63,7 @@ private:
 Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,
                 std::uint64_t root_seed, std::int64_t index, int trials);
 
+/// Frees the memory in which blocks were computed, except for what a thread uses now.
+void free_workspaces();
+
 }  // namespace credence
