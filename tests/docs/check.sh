@@ -19,7 +19,7 @@
 #   # own.ini
 #
 # Beyond that it complains of blocks without a language, tables with ± and no command, bullets that are there twice, and
-# lines of more than 120 characters that are not tables, pictures or links.
+# lines of more than 120 characters outside code, tables, HTML and pictures, and without a URL.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 slow=0 update=0

@@ -4,9 +4,10 @@ system said; nothing is lost: the same command without the failure ends as it al
 libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no memory to start with,
 it prints what it always prints of an error.
 
-With --most N at most N of the calls of a kind fail, at random; 0: each. With --callers D, of the allocations and mappings
-the first fails of all that have the same D innermost callers, in whichever command it is; N more are chosen at random.
-With --mutants failing calls say that they succeeded, as if the program did not look: then this must fail."""
+With --most N at most N of the calls of a kind fail, at random; 0: each. With --callers D, one allocation and one
+mapping fail besides for each distinct chain of D innermost callers, counted over all commands, which have one thread
+then, so that a call has the same number in each run. With --mutants failing calls say that they succeeded, as if the
+program did not look: then this must fail."""
 
 import os
 import random
@@ -65,6 +66,10 @@ def commands(bench):
     yield Command("version", ["--version"], printed="the processor, where it can be read")
 
 
+def with_one_thread(command):
+    return [("1" if before == "--threads" else word) for before, word in zip(["", *command], command)]
+
+
 class Failing:
     def __init__(self, bench, command, most, kinds=tuple(KINDS), silent=None, callers=0, tried=None):
         self.bench, self.command, self.most, self.kinds = bench, command, most, kinds
@@ -72,37 +77,42 @@ class Failing:
         self.silent = {"FAIL_SILENT": 1} if silent else {}
         self.counts = {"calls": 0, "failed": 0, "done all the same": 0, "refused": 0, "ended by libhdf5": 0,
                        "ended before main": 0}
-        self.failures = []
+        self.failures, self.one_thread = [], False
 
     def start(self):
-        self.bench.empty()
-        for name, source in self.command.start.items():
-            (self.bench.at / name).write_bytes(source.read_bytes())
+        self.bench.begin(self.command.start)
 
     def once(self, kind, n, timeout=20, **more):
         count = self.bench.root / "count"
         count.unlink(missing_ok=True)
-        done = self.bench.run(*self.command.command, timeout=timeout,
-                              environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count, **self.silent, **more})
+        command = with_one_thread(self.command.command) if self.one_thread else self.command.command
+        done = self.bench.run(*command, timeout=timeout, environment={"FAIL": kind, "FAIL_AT": n, "FAIL_COUNT": count,
+                                                                      **self.silent, **more})
+        if n == 0 and done.returncode != self.expected.returncode:
+            raise Failed(f"{self.command.name}: a run whose {kind} calls are counted ended with {done.returncode}")
         return done, int.from_bytes(count.read_bytes(), "little")
 
-    def chosen(self, kind):
+    def at_random(self, kind):
         """How many calls there are, and which of them fail."""
-        places, by_callers = self.bench.root / "places", set()
+        _, calls = self.once(kind, 0)
+        numbers = range(1, calls + 1)
+        if self.most and calls > self.most:
+            numbers = sorted(random.Random(calls).sample(numbers, self.most))
+        return calls, numbers
+
+    def first_of_each_chain(self, kind):
+        """The first call of each chain of callers that no command before had."""
+        places = self.bench.root / "places"
         places.unlink(missing_ok=True)
-        look = self.callers and kind in ("malloc", "mmap")
-        # (To look up the callers of each call takes a while.)
-        _, calls = self.once(kind, 0, 200, **({"FAIL_PLACES": places, "FAIL_CALLERS": self.callers} if look else {}))
-        everything = range(1, calls + 1)
-        if not self.most or calls <= self.most:
-            return calls, everything
-        if look:
-            with open(places, "rb") as file:
-                for n, (place,) in zip(everything, struct.iter_unpack("=Q", file.read(8 * calls))):
-                    if place not in self.tried:
-                        self.tried.add(place)
-                        by_callers.add(n)
-        return calls, sorted(by_callers.union(random.Random(calls).sample(everything, self.most)))
+        # To look up the callers of each call takes seconds.
+        _, calls = self.once(kind, 0, 200, FAIL_PLACES=places, FAIL_CALLERS=self.callers)
+        with open(places, "rb") as file:
+            hashes = [place for place, in struct.iter_unpack("=Q", file.read(8 * calls))]
+        if 0 in hashes or len(hashes) != calls:
+            raise Failed(f"{self.command.name}: the callers of some {kind} calls were not found")
+        first = {place: n for n, place in reversed(list(enumerate(hashes, start=1))) if place not in self.tried}
+        self.tried.update(first)
+        return sorted(first.values())
 
     def all(self):
         self.start()
@@ -110,15 +120,23 @@ class Failing:
         self.made = self.bench.files()
         for kind in self.kinds:
             self.start()
-            calls, numbers = self.chosen(kind)
+            calls, numbers = self.at_random(kind)
             self.counts["calls"] += calls
-            for n in numbers:
-                self.counts["failed"] += 1
-                try:
-                    self.check(kind, n)
-                except Failed as error:
-                    self.failures.append(f"{self.command.name}, {kind} {n} of {calls}: {error}")
+            self.fail_at(kind, numbers)
+            if self.most and self.callers and kind in ("malloc", "mmap"):
+                self.one_thread = True
+                self.start()
+                self.fail_at(kind, self.first_of_each_chain(kind))
+                self.one_thread = False
         return self
+
+    def fail_at(self, kind, numbers):
+        for n in numbers:
+            self.counts["failed"] += 1
+            try:
+                self.check(kind, n)
+            except Failed as error:
+                self.failures.append(f"{self.command.name}, {kind} {n}: {error}")
 
     def check(self, kind, n):
         self.start()

@@ -96,6 +96,12 @@ class Bench:
         for path in self.at.iterdir():
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
 
+    def begin(self, files):
+        """Empties the folder, and copies these files into it, each under its name."""
+        self.empty()
+        for name, source in files.items():
+            shutil.copy(source, self.at / name)
+
     def files(self):
         """The folder's files and their bytes."""
         return {path.name: path.read_bytes() for path in sorted(self.at.iterdir()) if path.is_file()}

@@ -28,7 +28,7 @@ limit_on_file_sizes() {
     fails "ulimit -f $blocks" "file too large" limited_to $blocks "$credence" "${study[@]}"
     goes_on "ulimit -f $blocks"
   done
-  echo "limit on file sizes: refused with a message, and gone on with"
+  echo "limit on file sizes: refused with a message, and resumed"
 }
 
 # In a mount namespace of its own, so that nothing of it stays.
@@ -54,7 +54,7 @@ small_disk() {
     check_whole "disk of $size"
     rm x.h5
   done
-  echo "small disk: refused with a message, and gone on with"
+  echo "small disk: refused with a message, and resumed"
 }
 
 # To root every folder can be written to.

@@ -8,8 +8,8 @@ source "$(dirname "$0")/common.sh"
 every=${2:-1} offset=${3:-0}
 
 # Of the killed runs, ../log: what had been committed when the last died, in bytes of the journal and in commits of
-# blocks (its beginning, which is synced too, does not count). Of the run that went on, ../log2: the least that it left of the
-# journal, and its appends. A journal that is shorter than before is another; the commits stay counted.
+# blocks (its beginning, which is synced too, does not count). Of the run that went on, ../log2: the least that it left
+# of the journal, and its appends. A journal that is shorter than before is another; the commits stay counted.
 read_logs() {
   read -r committed commits least appends < <(awk '
     $2 !~ /\.journal$/ { next }

@@ -6,8 +6,7 @@
    FAIL_SILENT=1    plants a bug: the call does not happen and says that it did
    FAIL_HELD=1      plants a bug: fcntl says of closed standard streams that they are open
    FAIL_COUNT=file  8 bytes: how many of these calls there were
-   FAIL_PLACES=file for each of these calls, 8 bytes: a hash of its innermost callers,
-   FAIL_CALLERS=d   of so many of them, at most 40 */
+   FAIL_PLACES=file for each of these calls, 8 bytes: a hash of its FAIL_CALLERS innermost callers (at most 40) */
 #include "shim.h"
 
 #include <execinfo.h>
@@ -107,11 +106,13 @@ enum fate fail_fate(const struct call *call, int *error) {
     *error = failure;
     if (call->kind == ASKING) main_began = 1; /* the program looks at its standard streams first */
     if (call->kind == ASKING) return held && call->fd <= 2 && call->flags == F_GETFD ? is_left_out : goes_on;
+    static __thread int within; /* an unwinder may allocate: that is not a call of the program */
+    if (within) return goes_on;
     const long before = atomic_fetch_add(count, 1);
-    static __thread int within; /* an unwinder may allocate */
     if (places && before < most_places) {
-        if (within++ == 0) places[before] = place_of_call();
-        --within;
+        within = 1;
+        places[before] = place_of_call();
+        within = 0;
     }
     return before + 1 == at || always ? (silent ? is_left_out : fails) : goes_on;
 }
