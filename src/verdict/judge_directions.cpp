@@ -92,7 +92,8 @@ void accept_state(const Evidence& evidence, const GroupMoments& state, const Fol
     judgement.directions.range = accepted.bounds;
     judgement.directions.spectrum = accepted.spectrum;
     if (accepted.left_out > 0)
-        judgement.not_shown("conditioning: P cannot be distinguished from a singular one in " + std::to_string(accepted.left_out) +
+        judgement.not_shown("conditioning: P cannot be distinguished from a singular one in " +
+                                std::to_string(accepted.left_out) +
                                 (accepted.left_out == 1 ? " direction" : " directions"),
                             false);
     judgement.accept(accepted.acceptance, "directions");

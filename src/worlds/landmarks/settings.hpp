@@ -29,7 +29,7 @@ struct LandmarkSensorSettings {
     double sigma = 0.3;                  ///< of each axis of a relative position, body frame
 };
 
-/// The noise on what the filter is given of the motion.
+/// The noise on the motion that the filter is given.
 struct LandmarkNoiseSettings {
     double heading = 0.05;
     double odometry = 0.1;
