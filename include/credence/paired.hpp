@@ -1,6 +1,6 @@
 #pragma once
 // Module statistics: two arms compared by trial, as pairs: all arms of a trial share their noise. [docs/statistics.md,
-// Comparison of arms]
+// Comparison]
 
 #include <credence/detail/aggregates.hpp>
 #include <credence/histogram.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 // What is kept of a study's first trials only: the errors of the state, and how far whitened innovations are
-// correlated in time [docs/statistics.md, Whiteness, Credibility]. An observer of the trial; idle unless asked.
+// correlated in time [docs/statistics.md, Whiteness, NCI]. An observer of the trial; idle unless asked.
 //
 //   nu~ = L^-1 nu, S = L L', rows features (body frame) then edges in graph order
 

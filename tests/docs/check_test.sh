@@ -48,8 +48,9 @@ $ echo >>own.ini; wc -l <own.ini
 END
 cp "$page" "$work/right.md"
 check || fail "refuses a page that is right"
-printf '%s\n' "$(printf 'ü%.0s' {1..120})" >>"$page"
-check || fail "refuses a line of 120 characters"
+long=$(printf 'ü%.0s' {1..121})
+printf '%s\n' "${long%ü}" '```text' "$long" '```' "| $long |" "$long https://example.org" >>"$page"
+check || fail "refuses a line of 120 characters, or a long one of code, of a table or with a URL"
 cp "$work/right.md" "$page"
 
 # Each of these makes it wrong, and --update right again.
@@ -63,7 +64,7 @@ done
 # Each of these is a mistake that --update cannot mend.
 for wrong in '0,/^```console$/s//```/' 's/^six 6$/elsewhere/' 's/^\$ true$/$ false/' 's/^<!-- slow .*//' 's/^<!-- slow /<!-- /' \
     's/^<!-- slow .*/&\n/;$a - A bullet that stands in the page twice, word for word, as it was copied.\n- A bullet that stands in the page twice, word for word, as it was copied.' \
-    '$a ```sh' "\$a $(printf 'ü%.0s' {1..121})"; do
+    '$a ```sh' "\$a $long"; do
   sed "$wrong" "$work/right.md" >"$page"
   cp "$page" "$work/before.md"
   if check --update; then fail "does not refuse $wrong"; fi

@@ -1,6 +1,5 @@
 // Bytes of small results files are flipped one by one: the file then reads the same, or is refused by its name. Usually
 // every 101st byte is flipped; CREDENCE_FLIP_EVERY=1 in the environment takes each, for some ten minutes.
-// Kind: foreign files.
 
 #include "journal_support.hpp"
 

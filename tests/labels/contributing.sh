@@ -12,7 +12,7 @@ mkdir "$tree" "$work/run"
 git ls-files -z | xargs -0 cp --parents -t "$tree"
 fail() { echo "CONTRIBUTING.md, $1" >&2; exit 1; }
 
-# The diffs in their order, N-NAME.diff with the heading that each stands under.
+# The diffs in their order, N-NAME.diff with the heading that each is below.
 awk -v folder="$work" '
   /^```diff$/ { out = sprintf("%s/%d-%s.diff", folder, ++count, heading); next }
   /^```/ { out = "" }

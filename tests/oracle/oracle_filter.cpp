@@ -61,7 +61,7 @@ Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Ei
 }
 
 /// Q (n x n) = diag(sigma_head^2, sigma_odom^2 I_2, (sigma_walk^2 + sigma_def^2) I_{2M}), each sigma times the filter's
-/// factor [docs/model.md, Filter, Predict; Conventions].
+/// factor [docs/model.md, Filter, Predict].
 Eigen::MatrixXd process_noise(const DeformableSettings& scenario) {
     const int n = state_dimension(scenario);
     const NoiseSettings& noise = scenario.noise;
@@ -84,7 +84,7 @@ Belief predict(const DeformableSettings& scenario, const Belief& belief, const C
     return prior;
 }
 
-/// Predicted measurement z_hat_j (2, body frame) = R(theta)' (f_j - r) [docs/model.md, Filter, Predicted].
+/// Predicted measurement z_hat_j (2, body frame) = R(theta)' (f_j - r) [docs/model.md, Filter, Expect].
 Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j) {
     const Eigen::Vector2d r = x.segment<2>(row_of_position(scenario));
     const Eigen::Vector2d f = x.segment<2>(row_of_feature(scenario, j));
@@ -92,7 +92,7 @@ Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const 
 }
 
 /// H_j (2 x n) = [-J z_hat_j, -R', R'] at (theta, r, f_j); no theta in the translation model
-/// [docs/model.md, Filter, Predicted].
+/// [docs/model.md, Filter, Expect].
 Eigen::MatrixXd measurement_rows(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j) {
     const Eigen::Matrix2d R = rotation(heading(scenario, x));
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, state_dimension(scenario));

@@ -163,7 +163,7 @@ bool in_range(const DeformableSettings& scenario, double q) {
 }
 
 /// True sigma_feat(q) (length): constant, or sigma_near + (sigma_far - sigma_near) max(0, q - r_min)/(r_max - r_min),
-/// not clamped above [docs/model.md, Targets].
+/// not clamped above [docs/model.md, Units].
 double measurement_sigma(const DeformableSettings& scenario, double q) {
     const SensorSettings& sensor = scenario.sensor;
     if (sensor.noise == RangeNoise::constant) return sensor.sigma;

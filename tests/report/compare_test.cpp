@@ -105,7 +105,7 @@ TEST_CASE("compare: a study and the same world with filter.measurement=0.8") {
     CHECK(pair.differences[0].key == "filter.measurement");
     CHECK(pair.differences[0].a == "0.8");
     CHECK(pair.differences[0].b == "1");
-    // An independent implementation has NEES/n 1.382 +- 0.006 [docs/model.md, last section] and 1 exactly: 4 standard
+    // An independent implementation has NEES/n 1.382 +- 0.006 (1,500 trials) and 1 exactly: 4 standard
     // errors are exceeded with 6e-5.
     const Summary& nees = of(pair, column_nees_ratio).difference;
     CHECK(std::abs(nees.mean - 0.382) < 4 * std::hypot(nees.standard_error, 0.006));

@@ -1,6 +1,6 @@
 #pragma once
 // The parts of an arm's group beside columns and totals: coverage, the distribution of NEES, whiteness, and the errors
-// of the detailed trials [docs/results-format.md, Coverage, Shape, Whiteness, Errors].
+// of the detailed trials [docs/results-format.md, Coverage, Distribution, Whiteness, Errors].
 
 #include <credence/results.hpp>
 

@@ -64,7 +64,7 @@ void check_sensor(const SensorSettings& sensor) {
             "Give at least sigma_near");
 }
 
-/// A believed sigma of 0 is refused where it makes P or S singular [model.md, Conventions].
+/// A believed sigma of 0 is refused where it makes P or S singular [docs/model.md, What is refused].
 void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why) {
     if (!harmful || has_variance(sigma * factor)) return;
     if (!has_variance(sigma))
