@@ -2,78 +2,85 @@
 # Runs everything here, and first that each harness notices the bugs that are planted for it. Prints a line for each.
 # usage: all.sh CREDENCE [DEPTH]
 #   sample   some of each, in minutes: the label durability
-#   evening  more of each, in about two hours
-#   full     every chain of 12 callers of an allocation, every byte of two small results files, every folder: about a day
-# After the last two the lines are kept in counts.txt, which docs/durability.md shows.
+#   evening  more of each, in about an hour
+#   full     every chain of 12 callers of an allocation, every byte of two small results files, every change of a file:
+#            hours
+# The last two run as many harnesses at a time as there are processors, and keep the lines in counts.txt, which
+# docs/durability.md shows.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")
 depth=${2:-full}
+at_a_time=$(nproc)
 case $depth in
   sample)
+    at_a_time=1
     sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1" streams="--every 7" bytes="--every 20011" turns=44
     ;;
   evening)
     sweep=20 kills=100 folders="--some 10" calls="--most 20 --callers 3" streams= bytes="--every 401" turns=1000
     ;;
   full)
-    sweep=1 kills=200 folders="--some 60" calls="--most 200 --callers 12" streams= bytes="--every 41" turns=10000
+    sweep=1 kills=200 folders="--some 30" calls="--most 50 --callers 12" streams= bytes="--every 101" turns=4000
     ;;
   *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
 esac
 
-harnesses() {
-  python3 "$here/interleave.py" "$credence" --mutants 1
-  python3 "$here/corruption.py" "$credence" --every 997 --mutants 1
-  python3 "$here/fail_once.py" "$credence" --mutants 1
-  python3 "$here/descriptors.py" "$credence" --mutants 1
-  python3 "$here/versions.py" "$credence" --mutants 1
-  [ "$depth" = sample ] || python3 "$here/power_loss.py" "$credence" --mutants 1
-  python3 "$here/power_loss.py" "$credence" $folders
-  python3 "$here/fail_once.py" "$credence" $calls
-  python3 "$here/descriptors.py" "$credence" $streams
-  python3 "$here/corruption.py" "$credence" $bytes
-  python3 "$here/interleave.py" "$credence" --schedules $turns
-  python3 "$here/versions.py" "$credence"
-  if [ "$depth" = sample ]; then return; fi
-  if command -v valgrind >/dev/null; then
-    python3 "$here/memcheck.py" "$credence"
-  else
-    echo "SKIPPED: valgrind is not installed" >&2
-  fi
-  if [ "$depth" = full ]; then each_byte; fi
-}
+parts=(
+  "harness interleave --mutants 1"
+  "harness corruption --every 997 --mutants 1"
+  "harness fail_once --mutants 1"
+  "harness descriptors --mutants 1"
+  "harness versions --mutants 1"
+  "harness power_loss $folders"
+  "harness fail_once $calls"
+  "harness descriptors $streams"
+  "harness corruption $bytes"
+  "harness interleave --schedules $turns"
+  "harness versions"
+  "script sweep $sweep"  # kills and refusals at chosen writes, and at random times
+  "script random_kills $kills"
+  "script no_space $sweep"
+)
+long_tests=$(dirname "$credence")/tests/credence_long_tests
+if [ "$depth" != sample ]; then
+  command -v valgrind >/dev/null || { echo "valgrind is not installed" >&2; exit 2; }
+  parts=("harness power_loss --mutants 1" "${parts[@]}" "harness memcheck")
+fi
+if [ "$depth" = full ]; then
+  [ -x "$long_tests" ] || { echo "$long_tests is not built" >&2; exit 2; }
+  parts+=(each_byte)
+fi
+
+harness() { python3 "$here/$1.py" "$credence" "${@:2}"; }
+script() { bash "$here/$1.sh" "$credence" "${@:2}"; }
 
 # The reader of results files alone, in its test's own processes.
 each_byte() {
-  local tests said
-  tests=$(dirname "$credence")/tests/credence_long_tests
-  if [ ! -x "$tests" ]; then echo "SKIPPED: $tests is not built" >&2 && return; fi
-  said=$(mktemp)
-  CREDENCE_FLIP_EVERY=1 "$tests" 'store: a results file of which any byte is flipped*' >"$said" ||
+  local said=$kept/each_byte.log
+  CREDENCE_FLIP_EVERY=1 "$long_tests" 'store: a results file of which any byte is flipped*' >"$said" ||
     { cat "$said" >&2; return 1; }
   grep '^each byte' "$said"
-  rm "$said"
 }
 
-# Kills and refusals at chosen writes, and at random times.
-scripts() {
-  bash "$here/sweep.sh" "$credence" $sweep
-  bash "$here/random_kills.sh" "$credence" $kills
-  bash "$here/no_space.sh" "$credence" $sweep
+# Prints the lines of a part, but for those that say how far it is, and keeps them under the part's number.
+run_part() {
+  $2 | grep --line-buffered -v '^  ' | tee "$kept/$1.lines" || : >"$kept/failed"
 }
 
-lines=$(mktemp)
-trap 'rm -f "$lines"' EXIT
-harnesses | grep --line-buffered -v '^  ' | tee -a "$lines"
-scripts | tee -a "$lines"
-# What is counted is what the page shows.
-cut -d: -f1 "$lines" | while read -r name; do
-  if [ "$depth" = sample ] && ! grep -q "^$name:" "$here/counts.txt"; then
-    echo "FAILED: counts.txt lacks: $name" >&2
-    exit 1
-  fi
+kept=$(mktemp -d)
+trap 'rm -rf "$kept"' EXIT
+for number in "${!parts[@]}"; do
+  while [ "$(jobs -pr | wc -l)" -ge "$at_a_time" ]; do wait -n || true; done
+  run_part "$(printf %02d "$number")" "${parts[number]}" &
 done
+wait
+[ ! -e "$kept/failed" ] || exit 1
+
+# What is counted is what the page shows.
 if [ "$depth" != sample ]; then
-  { echo "$("$credence" --version | head -n 1), depth $depth"; cat "$lines"; } >"$here/counts.txt"
+  { echo "$("$credence" --version | head -n 1), depth $depth"; cat "$kept"/*.lines; } >"$here/counts.txt"
 fi
+cat "$kept"/*.lines | cut -d: -f1 | while read -r name; do
+  grep -q "^$name:" "$here/counts.txt" || { echo "FAILED: counts.txt lacks: $name" >&2; exit 1; }
+done
