@@ -31,7 +31,8 @@ struct FileIdentity {
 
     bool operator==(const FileIdentity&) const = default;
 };
-/// The identity of the regular file that a name leads to; nothing where there is none.
+/// The identity of the regular file that a name leads to; nothing where there is none. Throws Failure where the system
+/// cannot say.
 std::optional<FileIdentity> identity_of(const std::string& path);
 
 /// A file to be written, and the existing one that it may replace.

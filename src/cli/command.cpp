@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <new>
@@ -216,7 +215,7 @@ std::optional<Output> check_output_option(const Parsed& parsed) {
     std::vector<std::string> inputs = parsed.arguments;
     if (const std::optional<std::string> noise = parsed.text("noise")) inputs.push_back(*noise);
     for (const std::string& input : inputs)
-        if (std::error_code none; std::filesystem::equivalent(input, *path, none))
+        if (output.there && identity_of(input) == output.there)
             throw InputError("cannot write " + *path + " (it is the file to read). Give another name.");
     return output;
 }

@@ -7,8 +7,6 @@
 #include <credence/error.hpp>
 #include <credence/merge.hpp>
 
-#include <filesystem>
-
 namespace credence::cli {
 
 const Command& merge_command() {
@@ -42,7 +40,7 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     if (!parsed.has("quiet"))
         print(printable(*path) + ": " + std::to_string(study.trials) + " trials of each scenario from " +
               std::to_string(parsed.arguments.size()) + " files, " +
-              bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(*path))) + "\n");
+              file_size_text(*path) + "\n");
     return 0;
 }
 

@@ -7,16 +7,12 @@
 #include "files/system/system_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 namespace credence {
 
 namespace {
 
-bool exists(const std::string& path) {
-    std::error_code none;
-    return std::filesystem::exists(std::filesystem::symlink_status(path, none));
-}
+std::optional<struct stat> status_of(const std::string& path) { return status_of(path, path, Links::themselves); }
 
 /// Refuses to continue another study, and names the difference.
 void check_same_study(const StudyDefinition& there, const StudyDefinition& asked, const std::string& path,
@@ -52,7 +48,7 @@ FileIdentity without_device(FileIdentity file) {
 std::string journal_path_of(const std::string& path) { return Output(path).target + ".journal"; }
 
 StudyDefinition stored_definition(const std::string& path) {
-    if (const std::string beside = journal_path_of(path); exists(beside)) {
+    if (const std::string beside = journal_path_of(path); status_of(beside)) {
         const Journal journal(beside);
         if (journal.header()) return journal.header()->study;
     }
@@ -71,7 +67,7 @@ StoredRun::StoredRun(const std::string& path, Study study, Start start, const st
       start_(start),
       release_(release.substr(0, commit_release_size)),  // cut as in a journal
       study_(std::move(study)) {
-    if (exists(journal_path_)) open_journal();
+    open_journal();
     if (start_ == Start::resume) go_on();
 }
 
@@ -80,8 +76,9 @@ StoredRun::StoredRun(StoredRun&&) noexcept = default;
 StoredRun::~StoredRun() = default;
 
 void StoredRun::open_journal() {
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(journal_path_, none))
+    const std::optional<struct stat> status = status_of(journal_path_);
+    if (!status) return;
+    if (!S_ISREG(status->st_mode))
         throw InputError("cannot write " + output_.path + " (" + journal_path_ +
                          " is in the way of its journal). Remove that, or give another name.");
     if (start_ == Start::fresh)

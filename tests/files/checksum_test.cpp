@@ -65,6 +65,30 @@ TEST_CASE("checksum: one changed bit of a dataset is refused by the dataset's na
     }
 }
 
+TEST_CASE("checksum: a value that changes after the file was checked is not read") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "x.h5";
+    write_small(path, Keep::trials);
+    std::size_t at = 0;
+    for_each_dataset(hdf5::open_file(path), "", [&](const std::string& name, const Handle& dataset) {
+        if (name == "/one/fixed.ekf/mean_trace_P") at = H5Dget_offset(dataset.id()) + 290 * sizeof(double);
+    });
+    REQUIRE(at > 0);
+    const Study study = read_results(path).study;
+    std::string changed = bytes_of(path);
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    put_bytes(path, changed);
+    const ScenarioResults& results = study.scenarios[0];
+    std::size_t column = 0;
+    while (results.columns[column].name != "mean_trace_P") ++column;
+    CHECK(column_values(results.arms[0], column, 0, 256).size() == 256);
+    for (const std::int64_t first : {256, 290, 299, 0})
+        CHECK(refusal<InputError>([&] { column_values(results.arms[0], column, first, 300 - first); }) ==
+              path + ": /one/fixed.ekf/mean_trace_P: is damaged: its values have changed since they were checked. " +
+                  "Run the study again, or give an undamaged copy.");
+    CHECK_THROWS_AS(column_values(results.arms[0], column, 0, 301), InputError);
+}
+
 TEST_CASE("checksum: a file that was written before there were any reads back") {
     const TemporaryFolder folder;
     write_small(folder / "new.h5", Keep::trials);

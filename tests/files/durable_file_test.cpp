@@ -9,6 +9,7 @@
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -90,6 +91,19 @@ TEST_CASE("durable file: permissions of what it replaces stay") {
     REQUIRE(chmod((folder / "new.credence-partial").c_str(), 0600) == 0);
     write(folder / "new", "whole");
     CHECK(permissions_of(folder / "new") == permissions_of_new_file());
+}
+
+TEST_CASE("durable file: the owner of what it replaces stays") {
+    if (geteuid() != 0) return;  // only root may give a file to another user
+    const TemporaryFolder folder;
+    const std::string path = folder / "file";
+    write(path, "first");
+    REQUIRE(chown(path.c_str(), 65534, 65533) == 0);
+    write(path, "next");
+    struct stat status {};
+    REQUIRE(stat(path.c_str(), &status) == 0);
+    CHECK(status.st_uid == 65534);
+    CHECK(status.st_gid == 65533);
 }
 
 TEST_CASE("durable file: what appears or changes under the name in the meantime is not replaced") {

@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 
 namespace credence::cli {
 
@@ -24,6 +26,12 @@ std::string bytes_text(std::int64_t bytes) {
     if (value < 1e6) return formatted("%.0f", value / 1e3, " kB");
     if (value < 1e9) return formatted("%.1f", value / 1e6, " MB");
     return formatted("%.1f", value / 1e9, " GB");
+}
+
+std::string file_size_text(const std::string& path) {
+    std::error_code trouble;
+    const std::uintmax_t size = std::filesystem::file_size(path, trouble);
+    return trouble ? "of unknown size" : bytes_text(static_cast<std::int64_t>(size));
 }
 
 void listen_to_progress(std::function<void(const Progress&)> listener) { progress_listener = std::move(listener); }

@@ -28,4 +28,7 @@ private:
 /// `12.3 MB`
 std::string bytes_text(std::int64_t bytes);
 
+/// The size of a file that was written, in the same way. A finished command must not fail because it is unknown.
+std::string file_size_text(const std::string& path);
+
 }  // namespace credence::cli

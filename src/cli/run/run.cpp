@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 
 namespace credence::cli {
 
@@ -144,8 +143,8 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
     print(report_text(make_report(study, {})) + "\n" + (work.last_analysis ? stopping_text(*work.last_analysis) : "") +
           printable(request.output) +
-          (work.changed ? ": " + bytes_text(static_cast<std::int64_t>(std::filesystem::file_size(request.output))) +
-                              ", computed in " + duration_text(work.seconds) + " on " + threads_text(request) + " threads\n"
+          (work.changed ? ": " + file_size_text(request.output) + ", computed in " + duration_text(work.seconds) +
+                              " on " + threads_text(request) + " threads\n"
                         : " has these trials already\n"));
 }
 

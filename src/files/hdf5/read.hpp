@@ -48,6 +48,8 @@ T read_number(const Handle& object, const std::string& name) {
     return value;
 }
 
+constexpr hsize_t values_at_once = hsize_t{1} << 17;
+
 /// A dataset whose storage is consistent with its extents. Where it has a checksum, its values must have it too.
 class Dataset {
 public:
@@ -82,15 +84,16 @@ public:
         read_some_into(type_of<T>().memory, first, count, values.data());
         return values;
     }
-    /// Of a one-dimensional dataset: reads all of it, a part at a time, and throws where the values do not have the
-    /// checksum that was written with them.
-    template <class T>
-    void check_all() const {
-        constexpr hsize_t at_once = hsize_t{1} << 17;
+    /// Of a one-dimensional dataset: all values in order, a part at a time, which bounds the memory that long ones
+    /// take; each part is passed to `visit`, and begins at a multiple of `values_at_once`. Throws at the end where the
+    /// values do not have the checksum that was written with them.
+    template <class T, class Visit>
+    void read_parts(Visit visit) const {
         std::uint32_t crc = 0;
-        for (hsize_t first = 0; first < count_; first += at_once) {
-            const std::vector<T> some = read_some<T>(first, std::min(at_once, count_ - first));
-            crc = checksum(some.data(), some.size() * sizeof(T), crc);
+        for (hsize_t first = 0; first < count_; first += values_at_once) {
+            const std::vector<T> part = read_some<T>(first, std::min(values_at_once, count_ - first));
+            crc = checksum(part.data(), part.size() * sizeof(T), crc);
+            visit(part);
         }
         check_sum(crc);
     }

@@ -103,7 +103,7 @@ void JournalFile::cut(std::int64_t size) {
 }
 
 void JournalFile::remove() {
-    if (!same_file(file_, path_)) return;
+    if (!same_file(file_, path_, path_)) return;
     if (unlink(path_.c_str()) != 0 && errno != ENOENT)
         throw Failure("cannot remove " + path_ + " (" + words_for(errno) + "). The results are written; remove it.");
     sync_folder(folder_of(path_), path_);

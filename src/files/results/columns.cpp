@@ -12,38 +12,60 @@ using hdf5::Dataset;
 using hdf5::Error;
 using hdf5::Handle;
 
-/// Number of rows that are read at once where all are checked: it bounds the memory that long columns take.
-constexpr std::int64_t rows_at_once = std::int64_t{1} << 17;
+using Checksums = std::vector<std::uint32_t>;
 
+constexpr auto rows_of_sum = static_cast<std::size_t>(block_size);
+static_assert(hdf5::values_at_once % rows_of_sum == 0);
+
+/// Adds the checksums of values that begin where a sum does.
 template <class T>
-std::vector<double> read_rows(const Dataset& dataset, std::int64_t first, std::int64_t count) {
-    const std::vector<T> values = dataset.read_some<T>(static_cast<hsize_t>(first), static_cast<hsize_t>(count));
-    return {values.begin(), values.end()};
+void add_checksums(const std::vector<T>& values, Checksums& sums) {
+    for (std::size_t first = 0; first < values.size(); first += rows_of_sum)
+        sums.push_back(checksum(&values[first], std::min(rows_of_sum, values.size() - first) * sizeof(T)));
 }
 
-std::vector<double> read_rows(const Dataset& dataset, const Column& column, std::int64_t first, std::int64_t count) {
-    switch (column.type) {
-        case ColumnType::real: return read_rows<double>(dataset, first, count);
-        case ColumnType::integer: return read_rows<std::int32_t>(dataset, first, count);
+/// Rows first ... first + count - 1, which are read together with what else their checksums are of.
+template <class T>
+std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected, std::int64_t first, std::int64_t count) {
+    const std::int64_t begin = first / block_size * block_size, wanted = first + count - begin,
+                       whole = (wanted + block_size - 1) / block_size * block_size,
+                       there = static_cast<std::int64_t>(dataset.extents().at(0)) - begin;
+    const std::vector<T> values = dataset.read_some<T>(
+        static_cast<hsize_t>(begin), static_cast<hsize_t>(std::max(wanted, std::min(whole, there))));
+    Checksums sums;
+    add_checksums(values, sums);
+    const std::size_t at = static_cast<std::size_t>(begin / block_size), end = std::min(at + sums.size(), expected.size());
+    if (!std::equal(sums.begin(), sums.end(), expected.begin() + std::min(at, end), expected.begin() + end))
+        throw Error(dataset.place(), "is damaged: its values have changed since they were checked");
+    const auto from = values.begin() + (first - begin);
+    return {from, from + count};
+}
+
+std::vector<double> read_rows(const Dataset& dataset, ColumnType type, const Checksums& sums, std::int64_t first,
+                              std::int64_t count) {
+    switch (type) {
+        case ColumnType::real: return read_rows<double>(dataset, sums, first, count);
+        case ColumnType::integer: return read_rows<std::int32_t>(dataset, sums, first, count);
         case ColumnType::status: break;
     }
-    std::vector<double> values = read_rows<std::int8_t>(dataset, first, count);
-    for (const double value : values)
-        if (value < 0 || value >= static_cast<double>(status_names().size()))
-            throw Error(dataset.place(), "holds " + to_text(value) + ", which is no status");
-    return values;
+    return read_rows<std::int8_t>(dataset, sums, first, count);
 }
 
 /// The columns of an arm, in a file that stays open for them.
 class ColumnsOfFile : public KeptColumns {
 public:
-    ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns)
-        : file_(std::move(file)), path_(std::move(path)), group_(std::move(group)), columns_(std::move(columns)) {}
+    ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns,
+                  std::vector<Checksums> sums)
+        : file_(std::move(file)),
+          path_(std::move(path)),
+          group_(std::move(group)),
+          columns_(std::move(columns)),
+          sums_(std::move(sums)) {}
 
     std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
         return hdf5::translated(path_, another_copy, [&] {
             const Dataset dataset(hdf5::open_group(*file_, group_), columns_[column].name);
-            return read_rows(dataset, columns_[column], first, count);
+            return read_rows(dataset, columns_[column].type, sums_[column], first, count);
         });
     }
 
@@ -51,53 +73,89 @@ private:
     std::shared_ptr<const Handle> file_;
     std::string path_, group_;
     std::vector<Column> columns_;
+    std::vector<Checksums> sums_;  ///< by column
+};
+
+template <class T>
+CheckedColumn check(const Dataset& dataset) {
+    CheckedColumn column;
+    dataset.read_parts<T>([&](const std::vector<T>& values) { add_checksums(values, column.sums); });
+    return column;
+}
+
+/// A status that does not exist is reported after the checksum has been compared, which says more.
+CheckedColumn check_statuses(const Dataset& dataset) {
+    CheckedColumn column{{}, 0};
+    std::optional<int> unknown;
+    dataset.read_parts<std::int8_t>([&](const std::vector<std::int8_t>& values) {
+        add_checksums(values, column.sums);
+        for (const int value : values) {
+            if (!unknown && (value < 0 || value >= static_cast<int>(status_names().size()))) unknown = value;
+            *column.counted += !failed(static_cast<Status>(value));
+        }
+    });
+    if (unknown) throw Error(dataset.place(), "holds " + std::to_string(*unknown) + ", which is no status");
+    return column;
+}
+
+/// Adds up the blocks of trials as their numbers are read, in order. A problem is reported at the end, likewise.
+class BlockReader {
+public:
+    explicit BlockReader(std::int64_t asked) : asked_(asked) {}
+    void add(std::int64_t trial) {
+        if (next_ == end_) begin(trial);
+        if (trial != next_++) note("does not count on by one within a block");
+    }
+    BlockRanges blocks(const std::string& place) {
+        if (next_ != end_) note("ends within a block");
+        if (!problem_.empty()) throw Error(place, problem_);
+        return blocks_;
+    }
+
+private:
+    void begin(std::int64_t trial) {
+        if (trial < next_ || trial >= asked_ || trial % block_size != 0)
+            return note("does not go on with a block of trials");
+        blocks_.add(trial / block_size);
+        next_ = trial;
+        end_ = trial + trials_in_block(asked_, blocks_.back());
+    }
+    void note(const std::string& problem) {
+        if (problem_.empty()) problem_ = problem;
+    }
+
+    std::int64_t asked_, next_ = 0, end_ = 0;  ///< the next trial, and the end of its block
+    BlockRanges blocks_;
+    std::string problem_;
 };
 
 }  // namespace
 
-std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const Handle> file, const std::string& path,
-                                                   const std::string& group, const std::vector<Column>& columns) {
-    return std::make_shared<ColumnsOfFile>(std::move(file), path, group, columns);
-}
-
-std::optional<std::int64_t> check_column(const Handle& group, const Column& column, std::int64_t trials) {
+CheckedColumn check_column(const Handle& group, const Column& column, std::int64_t trials) {
     const Dataset dataset(group, column.name);
     dataset.require_extents({static_cast<hsize_t>(trials)});
     switch (column.type) {
-        case ColumnType::real: dataset.check_all<double>(); return std::nullopt;
-        case ColumnType::integer: dataset.check_all<std::int32_t>(); return std::nullopt;
+        case ColumnType::real: return check<double>(dataset);
+        case ColumnType::integer: return check<std::int32_t>(dataset);
         case ColumnType::status: break;
     }
-    dataset.check_all<std::int8_t>();
-    std::int64_t counted = 0;
-    for (std::int64_t first = 0; first < trials; first += rows_at_once)
-        for (const double status : read_rows(dataset, column, first, std::min(rows_at_once, trials - first)))
-            counted += !failed(static_cast<Status>(static_cast<int>(status)));
-    return counted;
+    return check_statuses(dataset);
+}
+
+std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const Handle> file, const std::string& path,
+                                                   const std::string& group, const std::vector<Column>& columns,
+                                                   std::vector<Checksums> sums) {
+    return std::make_shared<ColumnsOfFile>(std::move(file), path, group, columns, std::move(sums));
 }
 
 BlockRanges read_blocks(const Handle& group, std::int64_t asked) {
     const Dataset dataset(group, "trial");
     if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
-    dataset.check_all<std::int64_t>();
-    const auto rows = static_cast<std::int64_t>(dataset.extents()[0]);
-    BlockRanges blocks;
-    std::int64_t next = 0, end = 0;  // the next trial, and the end of its block
-    for (std::int64_t first = 0; first < rows; first += rows_at_once) {
-        const auto count = static_cast<hsize_t>(std::min(rows_at_once, rows - first));
-        for (const std::int64_t trial : dataset.read_some<std::int64_t>(static_cast<hsize_t>(first), count)) {
-            if (next == end) {
-                if (trial < next || trial >= asked || trial % block_size != 0)
-                    throw Error(dataset.place(), "does not go on with a block of trials");
-                blocks.add(trial / block_size);
-                next = trial;
-                end = trial + trials_in_block(asked, blocks.back());
-            }
-            if (trial != next++) throw Error(dataset.place(), "does not count on by one within a block");
-        }
-    }
-    if (next != end) throw Error(dataset.place(), "ends within a block");
-    return blocks;
+    BlockReader reader(asked);
+    dataset.read_parts<std::int64_t>([&](const std::vector<std::int64_t>& trials) {
+        for (const std::int64_t trial : trials) reader.add(trial);
+    });
+    return reader.blocks(dataset.place());
 }
 
 }  // namespace credence

@@ -73,14 +73,6 @@ void check_counted(const Handle& group, const ArmResults& arm, std::int64_t coun
                     "is " + std::to_string(arm.counted) + ", but " + std::to_string(counted) + " trials did not fail");
 }
 
-/// Throws where the arm's columns are not those of its scenario, or hold another number of trials than the totals.
-void check_columns(const Handle& group, const ScenarioResults& results, const ArmResults& arm) {
-    for (const Column& column : results.columns) {
-        const std::optional<std::int64_t> counted = check_column(group, column, results.trials);
-        if (counted) check_counted(group, arm, *counted);
-    }
-}
-
 /// A study that is being read, and its file.
 struct Opened {
     std::shared_ptr<const Handle> file;
@@ -90,6 +82,19 @@ struct Opened {
     int schema = schema_version;
     std::optional<std::int64_t> most_totals;  ///< most bytes of totals to load; nothing: they are not read
 };
+
+/// The arm's columns. Throws where they are not those of its scenario, or hold another number of trials than the totals.
+std::shared_ptr<const KeptColumns> read_columns(const Handle& group, const ScenarioResults& results,
+                                                const ArmResults& arm, const Opened& source) {
+    std::vector<std::vector<std::uint32_t>> sums;
+    for (const Column& column : results.columns) {
+        CheckedColumn checked = check_column(group, column, results.trials);
+        if (checked.counted) check_counted(group, arm, *checked.counted);
+        sums.push_back(std::move(checked.sums));
+    }
+    return columns_of_file(source.file, source.path, results.scenario.name + "/" + arm.name, results.columns,
+                           std::move(sums));
+}
 
 SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts) {
     const std::string total = series.name + "_total", square = series.name + "_square_total";
@@ -163,9 +168,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     arm.name = name;
     arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
     if (trials) {
-        check_columns(group, results, arm);
-        const std::string place = results.scenario.name + "/" + name;
-        arm.kept = columns_of_file(source.file, source.path, place, results.columns);
+        arm.kept = read_columns(group, results, arm, source);
     } else {
         arm.aggregates = read_aggregates(group, results, read_parts(group));
         check_counted(group, arm, arm.aggregates.counted());

@@ -6,14 +6,12 @@
 #include "files/system/byte_file.hpp"
 #include "files/system/system_file.hpp"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
 #include <cstdio>
 #include <filesystem>
-#include <system_error>
 
 namespace credence {
 
@@ -60,22 +58,19 @@ void write_and_rename(const Output& output, const std::function<int(int descript
 }  // namespace
 
 std::optional<FileIdentity> identity_of(const std::string& path) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-    return FileIdentity{status.st_dev, status.st_ino, status.st_size,
-                        status.st_mtim.tv_sec * std::int64_t{1'000'000'000} + status.st_mtim.tv_nsec};
+    const std::optional<struct stat> status = status_of(path, path);
+    if (!status || !S_ISREG(status->st_mode)) return std::nullopt;
+    return FileIdentity{status->st_dev, status->st_ino, status->st_size,
+                        status->st_mtim.tv_sec * std::int64_t{1'000'000'000} + status->st_mtim.tv_nsec};
 }
 
 // Renaming onto a link would replace the link.
 Output::Output(const std::string& path) : path(path), target(followed(path).string()), there(identity_of(path)) {}
 
 void write_durably(const Output& output, const std::function<int(int descriptor)>& write) {
-    namespace fs = std::filesystem;
-    std::error_code trouble;
     // Renaming onto a device would replace the device.
-    const fs::file_status status = fs::symlink_status(output.target, trouble);
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        fail_to_write(output.path, "there is something that is not a file", EEXIST);
+    const std::optional<struct stat> status = status_of(output.target, output.path, Links::themselves);
+    if (status && !S_ISREG(status->st_mode)) fail_to_write(output.path, "there is something that is not a file", EEXIST);
     const FileSizeSignalIgnored ignored;
     write_and_rename(output, write);
     sync_folder(folder_of(output.target), output.path);
@@ -90,24 +85,23 @@ void write_text_file(const Output& output, const std::string& text) {
 }
 
 Output check_output(const std::string& path, bool overwrite, const std::string& way_out) {
-    namespace fs = std::filesystem;
     Output output(path);
-    const fs::path target(output.target), folder = folder_of(target);
-    std::error_code trouble;
+    const std::filesystem::path target(output.target), folder = folder_of(target);
     if (target.filename().empty()) refuse(path, "it names no file", "Give the name of a file");
     if (target.filename().string().size() + suffix.size() > NAME_MAX)
         refuse(path, "the name is too long", "Give a shorter one");
-    if (!fs::exists(folder, trouble)) refuse(path, "there is no folder " + folder.string(), "Make it first");
-    if (!fs::is_directory(folder, trouble)) refuse(path, folder.string() + " is not a folder", "Give another place");
+    const std::optional<struct stat> of_folder = status_of(folder, path);
+    if (!of_folder) refuse(path, "there is no folder " + folder.string(), "Make it first");
+    if (!S_ISDIR(of_folder->st_mode)) refuse(path, folder.string() + " is not a folder", "Give another place");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
         refuse(path, "its folder: " + words_for(errno), "Give a folder that you may write to");
-    const fs::path aside = target.string() + suffix;
-    if (const fs::file_status own = fs::symlink_status(aside, trouble); fs::exists(own) && !fs::is_regular_file(own))
+    const std::filesystem::path aside = target.string() + suffix;
+    if (const auto own = status_of(aside, path, Links::themselves); own && !S_ISREG(own->st_mode))
         refuse(path, aside.filename().string() + " is in the way of writing it", "Remove that, or give another name");
-    const fs::file_status status = fs::status(target, trouble);
-    if (fs::is_symlink(target, trouble)) refuse(path, "its links lead in a circle", "Give another name");
-    if (!fs::exists(status)) return output;
-    if (!fs::is_regular_file(status)) refuse(path, "there is something that is not a file", "Give another name");
+    const std::optional<struct stat> there = status_of(target, path, Links::themselves);
+    if (!there) return output;
+    if (S_ISLNK(there->st_mode)) refuse(path, "its links lead in a circle", "Give another name");
+    if (!S_ISREG(there->st_mode)) refuse(path, "there is something that is not a file", "Give another name");
     if (!overwrite) refuse(path, "it is there already", way_out);
     return output;
 }

@@ -3,10 +3,12 @@
 
 #include "base/descriptor.hpp"
 
+#include <sys/stat.h>
 #include <sys/types.h>
 
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace credence {
@@ -29,8 +31,15 @@ private:
     struct sigaction before_ {};
 };
 
-/// Whether the name still leads to the file that was opened.
-bool same_file(const Descriptor& opened, const std::string& path);
+enum class Links { followed, themselves };
+
+/// What the system says of the file that a name leads to; nothing where it leads to none that this user can reach.
+/// Throws Failure about `target` where the system cannot say.
+std::optional<struct stat> status_of(const std::string& path, const std::string& target,
+                                     Links links = Links::followed);
+
+/// Whether the name still leads to the file that was opened. Throws likewise.
+bool same_file(const Descriptor& opened, const std::string& path, const std::string& target);
 
 /// Opens or creates a regular file for reading and writing, `mode` being its permissions if it is created, locked
 /// against a second writer, which may have renamed or removed it between our opening and locking. Throws Failure about
@@ -44,7 +53,7 @@ Descriptor open_new_locked(const std::string& path, const std::string& target);
 mode_t permissions_of(const std::string& path);
 
 /// Gives a file the owner and the permissions of another one, as far as the system allows it; where there is no other,
-/// nothing changes.
+/// nothing changes. Throws Failure where the file would stay readable or writable for more users than the other one.
 void take_owner_and_permissions(const Descriptor& file, const std::string& other);
 
 /// Renames `from` unless `to` exists: then nothing happens. Returns 0 or an error of the system, EEXIST for that.
@@ -53,8 +62,8 @@ int rename_to_free_name(const std::string& from, const std::string& to);
 /// The path after following the symbolic links at its end, whether or not a file exists there.
 std::filesystem::path followed(std::filesystem::path path);
 
-/// Syncs a folder, so that renaming and removing in it are durable. A folder that cannot be opened for reading, or
-/// whose file system does not support this, is skipped. Throws Failure about `path`.
+/// Syncs a folder, so that renaming and removing in it are durable. A folder that this user may not read, or whose file
+/// system does not support this, is skipped. Throws Failure about `path`.
 void sync_folder(const std::filesystem::path& folder, const std::string& path);
 
 /// The folder of a path; `.` for a name without one.

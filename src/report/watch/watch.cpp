@@ -80,8 +80,8 @@ std::optional<Snapshot> RunWatch::journal_snapshot() {
 }
 
 Snapshot RunWatch::results_snapshot() const {
-    std::error_code none;
-    if (!std::filesystem::exists(path_, none))
+    std::error_code trouble;
+    if (!std::filesystem::exists(path_, trouble) && !trouble)
         throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
                          " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
     const Study study = read_results(path_, 0).study;
