@@ -15,13 +15,16 @@ at_a_time=$(nproc)
 case $depth in
   sample)
     at_a_time=1
-    sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1" streams="--every 7" bytes="--every 20011" turns=44
+    sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1 --many 1 --every 4"
+    streams="--every 7" bytes="--every 20011" turns=62
     ;;
   evening)
-    sweep=20 kills=100 folders="--some 10" calls="--most 20 --callers 3" streams= bytes="--every 401" turns=1000
+    sweep=20 kills=100 folders="--some 10" calls="--most 20 --many 20 --callers 3"
+    streams= bytes="--every 401" turns=1000
     ;;
   full)
-    sweep=1 kills=200 folders="--some 30" calls="--most 50 --callers 12" streams= bytes="--every 101" turns=4000
+    sweep=1 kills=200 folders="--some 30" calls="--many 50 --callers 12"
+    streams= bytes="--every 101" turns=4000
     ;;
   *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
 esac

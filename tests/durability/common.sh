@@ -1,5 +1,5 @@
-# Sourced by the scripts here, with the program as their first argument: the library that crashes it (shim/crash.c), a folder to work
-# in, a scenario whose file takes few writes, and what must be true of every file that a run leaves.
+# Sourced by the scripts here, with the program as their first argument: the library that crashes it (shim/crash.c), a
+# folder to work in, a scenario whose file takes few writes, and what must be true of every file that a run leaves.
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")
 work=$(mktemp -d)
@@ -49,6 +49,19 @@ start_with() {
   : >../log2
   if [ -n "$1" ]; then cp "$1" x.h5; fi
 }
+
+# count_changes "VARIABLE=value ...": sets `total`, the changes of `command` on the file `before`, undisturbed. Where
+# there are few, the library does not see them, and what follows would show nothing.
+count_changes() {
+  start_with "$before"
+  crashing "CRASH_LOG=../log OMP_NUM_THREADS=1 $1" "${command[@]}"
+  [ $status -eq 0 ] || [ $status -eq 3 ] || fail "$name: ended with $status undisturbed"
+  total=$(wc -l <../log)
+  [ "$total" -gt 10 ] || fail "$name: the library saw $total changes only"
+}
+
+# not_tried WHAT WHY: what cannot be tried here is no line of what was done.
+not_tried() { echo "LEFT OUT: $1, $2" >&2; }
 
 # The results are those of an undisturbed run, and nothing else is there.
 check_whole() {

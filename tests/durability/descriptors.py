@@ -1,115 +1,173 @@
-"""Every state of the standard streams: descriptors 0, 1 and 2 closed in all combinations, while libraries print what
-they can: OpenMP's settings and threads, the dynamic linker's statistics, HDF5's tracing, MPI's. No byte of it gets
-into a file.
+"""Every state of the standard streams: descriptors 0, 1 and 2 closed in all combinations, for commands that make
+files, while libraries print what they can: OpenMP's settings and threads, the dynamic linker's statistics, HDF5's
+complaint of a setting, MPI's parameters. No byte of it gets into a file. On open streams each of them must be heard.
 
 Of these states every --every-th is tried. With --mutants fcntl says of closed descriptors that they are open
-(shim/fail.c), so that the program does not hold them: then this must fail."""
+(shim/fail.c), so that the program does not hold them: then this must fail for each library that prints while a file is
+open."""
 
 import itertools
 import os
 import shutil
 import subprocess
+import sys
+from dataclasses import dataclass
 
-from harness import Bench, Failed, arguments, finish, finish_mutant
-
-TALK = {
-    "libgomp, settings": {"OMP_DISPLAY_ENV": "verbose"},
-    "libgomp, threads": {"OMP_DISPLAY_AFFINITY": "true", "OMP_AFFINITY_FORMAT": "OpenMP thread %n of %N"},
-    "libgomp, no thread": {"FAIL": "thread", "FAIL_AT": "2", "OMP_NUM_THREADS": "2"},  # of those that compute
-    "glibc, linker": {"LD_DEBUG": "libs,statistics"},
-    "glibc, allocation": {"FAIL": "malloc", "FAIL_AT": "30000"},
-    "HDF5": {"HDF5_DEBUG": "all"},
-}
-SAID = (b"OMP_", b"OpenMP thread", b"libgomp", b"calling init", b"runtime linker", b"HDF5-DIAG", b"terminate called",
-        b"H5Fcreate(", b"credence run:", b"PMIX", b"mca_")
-MPI = {"MPI": {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_mpi_show_mca_params": "all", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_btl_base_verbose": "100"}}
+from fail_once import Command, commands
+from harness import Bench, Failed, arguments, finish
 
 
-def commands(bench):
-    """Of each: its arguments, the file that it makes, and that file as it is undisturbed."""
-    whole = bench.make("whole.h5")
-    shards = [str(bench.make(f"{i}.h5", "--shard", f"{i}/3")) for i in range(3)]
-    trial = ["--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3"]
-    yield bench.study(threads=4), "x.h5", whole
-    yield ["merge", *shards, "-o", "x.h5", "--quiet"], "x.h5", whole
-    yield (["report", "../whole.h5", "-o", "r.txt"], "r.txt",
-           made(bench, ["report", "../whole.h5", "-o", "../r.txt"], "r.txt"))
-    yield (["replay", "../whole.h5", *trial, "-o", "t.h5"], "t.h5",
-           made(bench, ["replay", "../whole.h5", *trial, "-o", "../t.h5"], "t.h5"))
+@dataclass
+class Talker:
+    """What makes a library print, words of it, and whether it prints while a file is open to be written."""
+
+    name: str
+    environment: dict
+    says: bytes
+    late: bool = False
+    launcher: tuple = ()
 
 
-def made(bench, command, name):
-    bench.expect(0, *command)
-    return bench.root / name
+# Before main() OpenMP's library prints its settings, and the linker, which prints again at the end, what it does. What
+# MPI prints comes while it starts, before any file. A refused allocation is said when the files are closed.
+TALKERS = [
+    Talker("libgomp, settings", {"OMP_DISPLAY_ENV": "verbose"}, b"OMP_"),
+    Talker("libgomp, threads", {"OMP_DISPLAY_AFFINITY": "true", "OMP_AFFINITY_FORMAT": "OpenMP thread %n of %N"},
+           b"OpenMP thread", late=True),
+    Talker("libgomp, no thread", {"FAIL": "thread", "FAIL_AT": "2", "OMP_NUM_THREADS": "2"}, b"libgomp", late=True),
+    Talker("glibc, linker", {"LD_DEBUG": "libs,statistics"}, b"runtime linker"),
+    Talker("glibc, allocation", {"FAIL": "malloc", "FAIL_AT": "30000"}, b"memory"),
+    Talker("HDF5", {"HDF5_DEBUG": "nosuch"}, b"HDF5_DEBUG", late=True),
+]
+MPI = Talker("MPI", {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                     "OMPI_MCA_mpi_show_mca_params": "all", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+                     "OMPI_MCA_btl_base_verbose": "100"}, b"mca_", launcher=("mpirun", "-n", "2"))
+SAID = (b"calling init", b"HDF5-DIAG", b"terminate called", b"credence run:", b"PMIX",
+        *(talker.says for talker in (*TALKERS, MPI) if talker.says != b"memory"))
+WRITERS = ("run", "resume", "overwrite", "merge", "report, page", "replay, file", "judge, page", "compare, file")
+CLOSINGS = [closed for n in range(4) for closed in itertools.combinations((0, 1, 2), n)]
 
 
-def start(bench, command, closed, talk, mutant, launcher=()):
-    """Runs the program with these descriptors closed; what libraries say on open ones is read and thrown away."""
-    bench.empty()
+def writers(bench):
+    """Commands, each with the files that it makes undisturbed, in a folder of their own."""
+    by_name = {command.name: command for command in commands(bench)}
+    by_name["compare, file"] = Command("compare, file", [*by_name["compare"].command, "-o", "r"])
+    for command in (by_name[name] for name in WRITERS):
+        bench.begin(command.start)
+        bench.expect(0, *command.command)
+        made = bench.root / command.name
+        shutil.copytree(bench.at, made)
+        yield command, made
+
+
+def speaks(talker, command):
+    """Only runs have ranks, and threads that can fail to start."""
+    if talker is MPI:
+        return command.name in ("run", "resume")
+    return command.command[0] == "run" or talker.name != "libgomp, no thread"
+
+
+def start(bench, command, closed, talker, mutant=False):
+    """Runs the program with these descriptors closed; what libraries say on open ones is read."""
+    bench.begin(command.start)
     closing = " ".join(f"{fd}{'<' if fd == 0 else '>'}&-" for fd in closed)
-    environment = {**os.environ, **talk}
-    if "FAIL" in talk or mutant:
+    environment = {**os.environ, **talker.environment}
+    if "FAIL" in talker.environment or mutant:
         environment["LD_PRELOAD"] = bench.shim
     if mutant:
         environment = {"FAIL": "none", **environment, "FAIL_HELD": "1"}
-    closed = ["bash", "-c", f'exec "$@" {closing}', "-", bench.credence]  # under mpirun those of the ranks, not its own
-    done = subprocess.run([*launcher, *closed, *command], cwd=bench.at, env=environment, timeout=60,
+    # Under mpirun they are those of the ranks, not its own.
+    closed = ["bash", "-c", f'exec "$@" {closing}', "-", bench.credence]
+    done = subprocess.run([*talker.launcher, *closed, *command.command], cwd=bench.at, env=environment, timeout=60,
                           stdin=subprocess.DEVNULL, capture_output=True)
     # Without memory libhdf5 may end it: fail_once.py looks at that.
-    if done.returncode not in (0, 1, 2) and talk.get("FAIL") != "malloc":
+    if done.returncode not in (0, 1, 2) and talker.environment.get("FAIL") != "malloc":
         raise Failed(f"it ended with {done.returncode}: {done.stderr[-200:]!r}")
     return done
 
 
-def check(bench, done, output, whole):
-    for name, data in bench.files().items():
-        if name == output and output.endswith(".h5"):
-            if data[:4] != b"\x89HDF":
-                raise Failed(f"{name} is no HDF5 file: {data[:60]!r}")
-            bench.check_same(whole, name, "its file")
-        elif name == output:
-            if data != whole.read_bytes():
-                raise Failed(f"{name} differs")
-        elif name.endswith(".journal") and not data.startswith(b"credence-journal"):
+def check_file(bench, name, data, made):
+    """A file is one that the undisturbed command makes, or a journal."""
+    if name.endswith(".journal"):
+        if not data.startswith(b"credence-journal"):
             raise Failed(f"{name} begins with {data[:60]!r}")
-        found = [words for words in SAID if words in data] if not name.endswith(".txt") else []
-        if found:
+    elif not (made / name).exists():
+        raise Failed(f"there is a file {name}")
+    elif not name.endswith(".h5"):
+        if data != (made / name).read_bytes():
+            raise Failed(f"{name} differs")
+    elif data[:4] != b"\x89HDF":
+        raise Failed(f"{name} is no HDF5 file: {data[:60]!r}")
+    else:
+        bench.check_same(made / name, name, "its file")
+
+
+def check(bench, command, made, done):
+    files, killed = bench.files(), done.returncode not in (0, 1, 2)
+    if done.returncode == 0 and sorted(files) != sorted(path.name for path in made.iterdir()):
+        raise Failed(f"it ended with 0, and left {sorted(files)}")
+    for name, data in files.items():
+        if done.returncode != 0 and name in command.start and data == command.start[name].read_bytes():
+            continue
+        if not (killed and name.endswith(".credence-partial")):
+            check_file(bench, name, data, made)
+        found = [words for words in SAID if words in data]
+        if found and name.endswith((".h5", ".journal", ".credence-partial")):
             raise Failed(f"{name} holds {found}")
-    if done.returncode == 0 and output not in bench.files():
-        raise Failed("it ended with 0 without its file")
+
+
+def talkers_here(bench):
+    if "MPI Open MPI" in bench.expect(0, "--version").stdout and shutil.which("mpirun"):
+        return [*TALKERS, MPI]
+    print("LEFT OUT: MPI's messages, there is no mpirun or the program does not use it", file=sys.stderr)
+    return TALKERS
+
+
+def states(bench, talkers, every):
+    """Every `every`-th, and two commands with open streams besides, as one may bear a refused allocation."""
+    everything = [(*one, talker) for one in writers(bench) for talker in talkers if speaks(talker, one[0])]
+    for number, (one, closed) in enumerate(itertools.product(everything, CLOSINGS), start=1):
+        if number % every == 0 or (closed == () and one[0].name in ("run", "merge")):
+            yield *one, closed
+
+
+def all_states(bench, every):
+    counts = {"states": 0, "ended with 0": 0, "ended with 1": 0, "ended with 2": 0, "ended otherwise": 0}
+    failures, heard, talkers = [], set(), talkers_here(bench)
+    for command, made, talker, closed in states(bench, talkers, every):
+        counts["states"] += 1
+        try:
+            done = start(bench, command, closed, talker)
+            code = done.returncode
+            counts[f"ended with {code}" if code in (0, 1, 2) else "ended otherwise"] += 1
+            if closed == () and talker.says in done.stdout + done.stderr:
+                heard.add(talker.name)
+            check(bench, command, made, done)
+        except (Failed, subprocess.TimeoutExpired) as error:
+            failures.append(f"{command.name}, {talker.name}, closed {closed}: {error}")
+    failures += [f"{talker.name} says nothing on open streams" for talker in talkers if talker.name not in heard]
+    finish("standard streams", counts, failures)
+
+
+def mutants(bench):
+    """The error stream is closed, so that the journal gets its descriptor."""
+    command, made = next(writers(bench))
+    late = [talker for talker in TALKERS if talker.late]
+    survived = []
+    for talker in late:
+        done = start(bench, command, (2,), talker, mutant=True)
+        try:
+            check(bench, command, made, done)
+            survived.append(f"no message of {talker.name} was found in a file")
+        except Failed:
+            pass
+    finish("standard streams, not held", {"states": len(late), "found": len(late) - len(survived)}, survived)
 
 
 def main():
     given = arguments(__doc__, every=1, mutants=0)
-    ends = ("ended with 0", "ended with 1", "ended with 2", "ended otherwise")
-    number, counts, failures = 0, {"states": 0, **dict.fromkeys(ends, 0)}, []
-    closings = [closed for n in range(4) for closed in itertools.combinations((0, 1, 2), n)]
     with Bench(given.credence) as bench:
-        launchers = [((), TALK)]
-        has_mpi = "MPI Open MPI" in bench.expect(0, "--version").stdout
-        if has_mpi and shutil.which("mpirun") and not given.mutants:
-            launchers.append((("mpirun", "-n", "2"), MPI))
-        everything = [(one, launcher, talk) for one in commands(bench) for launcher, talks in launchers
-                      for talk in talks.items() if not launcher or one[0][0] == "run"]
-        for (command, output, whole), launcher, (name, talk) in everything:
-            for closed in closings:
-                number += 1
-                if number % given.every or (given.mutants and failures):
-                    continue
-                counts["states"] += 1
-                try:
-                    done = start(bench, command, closed, talk, given.mutants, launcher)
-                    code = done.returncode
-                    counts[f"ended with {code}" if code in (0, 1, 2) else "ended otherwise"] += 1
-                    check(bench, done, output, whole)
-                except (Failed, subprocess.TimeoutExpired) as error:
-                    failures.append(f"{command[0]}, {name}, closed {closed}: {error}")
-    if given.mutants:
-        return finish_mutant("standard streams, not held", counts, failures, "no library's message was found in a file",
-                             noticed="found")
-    finish("standard streams", counts, failures)
+        mutants(bench) if given.mutants else all_states(bench, given.every)
 
 
 if __name__ == "__main__":

@@ -1,33 +1,51 @@
-"""Every resource fails once: the n-th allocation, open, read, lock, thread, sync, rename, removal or write of every
-command (shim/fail.c). The command does its work all the same, or ends with 1 or 2 and one line that says what the
-system said; nothing is lost: the same command without the failure ends as it always does. Where memory is refused,
-libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no memory to start with,
-it prints what it always prints of an error.
+"""Every resource fails once: the n-th call of each kind of every command (shim/fail.c). The command does its work all
+the same, or ends with 1 or 2 and one line that says what the system said; nothing is lost: every file is what it was
+before, is not there, or is whole, and the same command without the failure ends as it always does. A read or write of
+half the bytes, one that is interrupted, and a file system without the flags of renameat2 must make no difference. Where
+memory is refused, libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no
+memory to start with, it prints what it always prints of an error.
 
-With --most N at most N of the calls of a kind fail, at random; 0: each. With --callers D, one allocation and one
+With --most N at most N of the calls of a kind fail, at random, and --many N of the kinds that have thousands; 0: each.
+With --every N only each N-th of the kinds, others from command to command. With --callers D, one allocation and one
 mapping fail besides for each distinct chain of D innermost callers, counted over all commands, which have one thread
 then, so that a call has the same number in each run. With --mutants failing calls say that they succeeded, as if the
 program did not look: then this must fail."""
 
 import os
 import random
+import shutil
 import struct
 import subprocess
 
 from harness import HERE, LESS, Bench, Failed, arguments, finish, finish_all
 
-KINDS = {"open": "too many open files", "read": "input/output error", "thread": "resource temporarily unavailable",
-         "sync": "input/output error", "rename": "input/output error", "remove": "input/output error",
-         "lock": "no locks available", "write": "input/output error", "malloc": "memory",
-         "mmap": "memory"}
+IO = "input/output error"
+MEMORY = ("malloc", "mmap")
+MANY = (*MEMORY, "short", "eintr")
+# What must be said of a failure; nothing of what a program has to bear.
+KINDS = {"open": "too many open files", "read": IO, "write": IO, "cut": IO, "sync": IO, "rename": IO, "remove": IO,
+         "stat": IO, "close": IO, "own": "operation not permitted", "lock": "no locks available",
+         "thread": "resource temporarily unavailable", "short": None, "eintr": None, "norename2": None,
+         **dict.fromkeys(MEMORY, "memory")}
 
 
 class Command:
-    """`again` is what goes on after a failure; `whole` the file that it makes, beside the folder."""
+    """`again` is what goes on after a failure; `whole` has the results that x.h5 must have, beside the folder."""
 
-    def __init__(self, name, command, again=None, start=None, whole=None, output=None, printed="always the same"):
+    def __init__(self, name, command, again=None, start=None, whole=None, printed="always the same"):
         self.name, self.command, self.again, self.printed = name, command, again or command, printed
-        self.start, self.whole, self.output = start or {}, whole, output
+        self.start, self.whole = start or {}, whole
+
+
+def overwriting(command):
+    return [*command, "--overwrite"]
+
+
+def torn_journal(bench, name, *more, start=None):
+    """The journal of a run that was killed within its third commit."""
+    bench.begin(start or {})
+    bench.run(*bench.study(*more), environment={"CRASH_AT": 11, "CRASH_HALF": 1})
+    return shutil.copy(bench.at / "x.h5.journal", bench.root / name)
 
 
 def commands(bench):
@@ -42,22 +60,27 @@ def commands(bench):
     yield Command("run", two, [*two, "--resume"], whole=whole)
     yield Command("resume", [*two, "--resume"], start={"x.h5": less}, whole=whole)
     yield Command("overwrite", [*two, "--overwrite"], start={"x.h5": other}, whole=whole)
+    grown = {"x.h5": less, "x.h5.journal": torn_journal(bench, "grown", "--resume", start={"x.h5": less})}
+    torn = {"x.h5.journal": torn_journal(bench, "torn")}
+    yield Command("resume, journal", [*two, "--resume"], start=torn, whole=whole)
+    yield Command("resume, journal and file", [*two, "--resume"], start=grown, whole=whole)
     yield Command("aggregates", [*two, "--keep", "aggregates"], [*two, "--keep", "aggregates", "--resume"],
                   whole=bench.root / "aggregates.h5")
     yield Command("dry-run", [*two, "--dry-run"], printed="times")
-    yield Command("merge", merge, [*merge, "--overwrite"], whole=whole)
+    yield Command("merge", merge, overwriting(merge), whole=whole)
     yield Command("report", ["report", "../whole.h5"])
-    yield Command("report, page", ["report", "../whole.h5", "--format", "html", "-o", "r"],
-                  ["report", "../whole.h5", "--format", "html", "-o", "r", "--overwrite"], output="r")
+    page = ["report", "../whole.h5", "--format", "html", "-o", "r"]
+    yield Command("report, page", page, overwriting(page))
     yield Command("compare", ["compare", "../whole.h5", "../changed.h5", "--arms", "fixed.ekf,fixed.ekf"])
-    yield Command("replay", ["replay", "../whole.h5", *trial])
-    yield Command("replay, file", ["replay", "../whole.h5", *trial, "-o", "t.h5"],
-                  ["replay", "../whole.h5", *trial, "-o", "t.h5", "--overwrite"])
-    record = str(HERE.parent / "reference" / "record_gaussian.h5")
-    yield Command("judge", ["judge", record])
-    yield Command("judge, page", ["judge", record, "--format", "html", "-o", "r"],
-                  ["judge", record, "--format", "html", "-o", "r", "--overwrite"], output="r")
+    replay = ["replay", "../whole.h5", *trial]
+    yield Command("replay", replay)
+    yield Command("replay, file", [*replay, "-o", "t.h5"], overwriting([*replay, "-o", "t.h5"]))
+    judge = ["judge", str(HERE.parent / "reference" / "record_gaussian.h5")]
+    yield Command("judge", judge)
+    page = [*judge, "--format", "html", "-o", "r"]
+    yield Command("judge, page", page, overwriting(page))
     yield Command("watch", ["watch", "../whole.h5", "--once"])
+    yield Command("watch, journal", ["watch", "x.h5", "--once"], start=torn, printed="times")
     yield Command("show", ["show", "../tiny.ini"])
     # Boost indents the text by the names that a stream of its own holds, whole or cut short.
     yield Command("help", ["run", "--help"], printed="the same words")
@@ -71,8 +94,9 @@ def with_one_thread(command):
 
 
 class Failing:
-    def __init__(self, bench, command, most, kinds=tuple(KINDS), silent=None, callers=0, tried=None):
-        self.bench, self.command, self.most, self.kinds = bench, command, most, kinds
+    def __init__(self, bench, command, most, many=0, kinds=tuple(KINDS), silent=None, callers=0, tried=None):
+        self.bench, self.command, self.kinds = bench, command, kinds
+        self.most = {kind: many if kind in MANY else most for kind in kinds}
         self.callers, self.tried = callers, set() if tried is None else tried
         self.silent = {"FAIL_SILENT": 1} if silent else {}
         self.counts = {"calls": 0, "failed": 0, "done all the same": 0, "refused": 0, "ended by libhdf5": 0,
@@ -96,8 +120,8 @@ class Failing:
         """How many calls there are, and which of them fail."""
         _, calls = self.once(kind, 0)
         numbers = range(1, calls + 1)
-        if self.most and calls > self.most:
-            numbers = sorted(random.Random(calls).sample(numbers, self.most))
+        if self.most[kind] and calls > self.most[kind]:
+            numbers = sorted(random.Random(calls).sample(numbers, self.most[kind]))
         return calls, numbers
 
     def first_of_each_chain(self, kind):
@@ -118,12 +142,13 @@ class Failing:
         self.start()
         self.expected = self.bench.expect(0, *self.command.command)
         self.made = self.bench.files()
+        self.keep_made()
         for kind in self.kinds:
             self.start()
             calls, numbers = self.at_random(kind)
             self.counts["calls"] += calls
             self.fail_at(kind, numbers)
-            if self.most and self.callers and kind in ("malloc", "mmap"):
+            if self.most[kind] and self.callers and kind in MEMORY:
                 self.one_thread = True
                 self.start()
                 self.fail_at(kind, self.first_of_each_chain(kind))
@@ -145,7 +170,7 @@ class Failing:
         if done.returncode == self.expected.returncode:
             self.counts["done all the same"] += 1
             self.check_done(done)
-        elif done.returncode in (1, 2):
+        elif done.returncode in (1, 2) and KINDS[kind]:
             self.counts["refused"] += 1
             self.check_said(done, KINDS[kind])
             self.check_kept(before)
@@ -175,21 +200,36 @@ class Failing:
         if words not in lines[0].lower() and not threads:
             raise Failed(f"ended with {done.returncode}, but did not say {words}: {lines[0]}")
 
+    def keep_made(self):
+        """Keeps what the undisturbed command made, beside the folder."""
+        if self.command.whole:
+            self.bench.check_same(self.command.whole, what="undisturbed")
+        self.kept = self.bench.root / "made"
+        shutil.rmtree(self.kept, ignore_errors=True)
+        shutil.copytree(self.bench.at, self.kept)
+
+    def is_whole(self, name, data):
+        """Whether a file is what the undisturbed command made of that name."""
+        if name.endswith(".h5"):
+            return name in self.made and self.bench.same_results(self.kept / name, self.bench.at / name)
+        return self.made.get(name) == data
+
     def check_kept(self, before):
+        """Files are what they were, or whole, but for those of a run that is to be gone on with."""
         now = self.bench.files()
-        for name, data in before.items():
-            if now.get(name) != data and not (self.command.whole and name in now and
-                                              self.bench.same_results(self.command.whole, self.bench.at / name)):
-                raise Failed(f"{name} is neither what it was nor whole")
+        missing = [name for name in before if name not in now and name in self.made]
+        changed = [name for name, data in now.items() if before.get(name) != data and not self.is_whole(name, data) and
+                   not name.endswith((".journal", ".credence-partial"))]
+        if missing or changed:
+            raise Failed(f"{missing} gone, {changed} neither what they were nor whole")
 
     def check_files(self, what):
         now = self.bench.files()
         if sorted(now) != sorted(self.made):
             raise Failed(f"{what} {sorted(now)}")
-        if self.command.output and now[self.command.output] != self.made[self.command.output]:
-            raise Failed(f"{what} another {self.command.output}")
-        if self.command.whole:
-            self.bench.check_same(self.command.whole, what=what)
+        for name, data in now.items():
+            if not self.is_whole(name, data):
+                raise Failed(f"{what} another {name}")
 
     def check_goes_on(self):
         if not self.made:
@@ -211,27 +251,36 @@ def check_shim(bench):
         raise Failed(f"a damaged heap: the library does not say where the program ended: {done.stderr}")
 
 
+def unnoticed(bench, command, kind):
+    """Failures of which the command knew nothing: it ended well, but its work is not done, or it refused what it had not
+    read, but did not say why."""
+    failures = Failing(bench, command, 20, kinds=(kind,), silent=True).all().failures
+    return [failure for failure in failures if ", but " in failure]
+
+
 def mutants(bench):
     """Calls that fail silently, one kind after the other."""
     by_name = {command.name: command for command in commands(bench)}
     planted = [("run", "write"), ("run", "rename"), ("run", "remove"), ("report", "read"), ("merge", "read"),
                ("judge", "read")]
-    survived = [f"{kind} of {name}" for name, kind in planted
-                if not Failing(bench, by_name[name], 20, (kind,), silent=True).all().failures]
+    survived = [f"{kind} of {name}" for name, kind in planted if not unnoticed(bench, by_name[name], kind)]
     finish("every resource fails once, silently", {"kinds": len(planted), "noticed": len(planted) - len(survived)},
            [f"nothing was noticed of a failed {one}" for one in survived])
 
 
 def main():
-    given = arguments(__doc__, most=0, callers=0, only="", mutants=0)
+    given = arguments(__doc__, most=0, many=0, every=1, callers=0, only="", mutants=0)
     tried = set()
     with Bench(given.credence) as bench:
         check_shim(bench)
         if given.mutants:
             return mutants(bench)
+        kinds = [[kind for place, kind in enumerate(KINDS) if (place + shift) % given.every == 0]
+                 for shift in range(given.every)]
         finish_all("every resource fails once",
-                   ((command.name, Failing(bench, command, given.most, callers=given.callers, tried=tried).all())
-                    for command in commands(bench) if given.only in ("", command.name)))
+                   ((command.name, Failing(bench, command, given.most, given.many, kinds[number % given.every],
+                                           callers=given.callers, tried=tried).all())
+                    for number, command in enumerate(commands(bench)) if given.only in ("", command.name)))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,23 @@ check_message() {
   grep -qF "$2" ../said || fail "$1: it did not say $2"
 }
 
+# check_journal WHAT ERROR ONCE: a run says whether anything is kept. Its first sync of the journal is that of the
+# beginning, which is nothing yet; then no journal is left, unless removing it was refused too.
+check_journal() {
+  if [ "${command[0]}" = merge ]; then
+    [ ! -e x.h5.journal ] || fail "$1: a merge left a journal"
+  elif [ -n "$before" ] || [ "$(grep -c '^fdatasync .*\.journal ' ../log)" -gt 1 ]; then
+    grep -qF "What was committed is kept" ../said || fail "$1: it did not say that something is kept"
+    [ -e x.h5 ] || [ -s x.h5.journal ] || fail "$1: nothing was kept"
+  else
+    nothing=$((nothing + 1))
+    grep -qF "Nothing had been committed." ../said || fail "$1: it did not say that nothing had been committed"
+    case $2$3 in
+      ENOSPC | EDQUOT | *1) [ ! -e x.h5.journal ] || fail "$1: it left a journal of nothing" ;;
+    esac
+  fi
+}
+
 # The results file is what it was before, is not there, or is whole.
 check_file() {
   if [ ! -e x.h5 ] || { [ -n "$before" ] && cmp -s "$before" x.h5; }; then return; fi
@@ -32,6 +49,7 @@ refuse_at() {
     refusals=$((refusals + 1))
     [ $status -eq 1 ] || fail "$what: it ended with $status"
     check_message "$what" "$5"
+    check_journal "$what" "$4" "$3"
   else
     [ $status -eq 0 ] || fail "$what: nothing was refused, but it ended with $status"
   fi
@@ -43,11 +61,8 @@ refuse_at() {
 
 # refuse_everywhere NAME BEFORE: `command` on the file BEFORE; `again` goes on with it.
 refuse_everywhere() {
-  local name=$1 before=$2 runs=0 refusals=0 total n
-  start_with "$before"
-  crashing "CRASH_LOG=../log OMP_NUM_THREADS=1" "${command[@]}"
-  [ $status -eq 0 ] || fail "$name: ended with $status undisturbed"
-  total=$(wc -l <../log)
+  local name=$1 before=$2 runs=0 refusals=0 nothing=0 total n
+  count_changes ""
   for ((n = 1; n <= total; ++n)); do
     if left_out $n; then continue; fi
     refuse_at $n "$([ $((n % 2)) -eq 1 ] || echo 1)" "" ENOSPC "no space left on device"
@@ -60,6 +75,8 @@ refuse_everywhere() {
       3) refuse_at $n "" "" EIO "input/output error" ;;
     esac
   done
+  [ $refusals -gt 0 ] || fail "$name: nothing was refused"
+  [ "$name" != fresh ] || [ $nothing -gt 0 ] || fail "$name: something had been committed each time"
   echo "$name: $total changes, $runs runs, $refusals refused with a message"
 }
 

@@ -1,13 +1,14 @@
-"""Power loss: every write and sync of a run, resume, overwrite, merge and report is recorded (shim/record.c); after
-every one of them the disk forgets what it may (replay.py), and the program goes on from there. It ends with the
-results of an undisturbed run and computes no block again whose commit had returned. It may refuse only before
-anything was committed. Of the ways in which many unsynced sectors reach the disk --some random ones are tried; of
-all folders every --every-th.
+"""Power loss: every write and sync of a run, resume, overwrite and merge is recorded (shim/record.c); after every one
+of them the disk forgets what it may (replay.py). The results file is then the old one, the whole new one or not there,
+and the new one is there once the command had ended. The program goes on from there: it ends with the results of an
+undisturbed run and computes no block again whose commit had returned. It may refuse only before anything was committed.
+Of the ways in which many unsynced sectors reach the disk --some random ones are tried; of all folders every --every-th.
 
-With --mutants every sync of a run is left out in turn: then this must fail. Two are not needed for what is promised:
-that of the header, which the first commit's covers, and that of the journal's removal."""
+With --mutants every sync of a run and of a merge is left out in turn: then this must fail. Two of a run are not needed
+for what is promised: that of the header, which the first commit's covers, and that of the journal's removal."""
 
 import os
+import shutil
 import struct
 
 from harness import LESS, Bench, Failed, arguments, finish, finish_all
@@ -65,7 +66,7 @@ class PowerLoss:
         self.bench, self.case, self.some, self.every = bench, case, some, every
         self.left_out, self.places = left_out, places  # which sync, 0: none; and where each of them is in the trace
         self.counts = {"changes": 0, "folders": 0, "resumed": 0, "refused": 0}
-        self.failures, self.seen = [], set()
+        self.failures, self.seen, self.whole = [], set(), set()
 
     def record(self):
         bench, case = self.bench, self.case
@@ -79,6 +80,7 @@ class PowerLoss:
         trace.unlink(missing_ok=True)
         bench.expect(case.code, *case.command,
                      environment={"RECORD": trace, "RECORD_LEFT_OUT": self.left_out, **case.environment})
+        shutil.copy(bench.at / "x.h5", bench.root / "made.h5")
         self.events = read_trace(trace)
         disk = Disk(start)
         for event in self.events:
@@ -116,7 +118,7 @@ class PowerLoss:
             if key in self.seen:
                 continue
             self.seen.add(key)
-            if len(self.seen) % self.every:
+            if (len(self.seen) - 1) % self.every:
                 continue
             self.counts["folders"] += 1
             try:
@@ -134,9 +136,20 @@ class PowerLoss:
             else:
                 (self.bench.at / name).write_bytes(image)
 
+    def check_file(self, folder, ended):
+        """The results file is the old one, the whole new one or not there; the new one where the command had ended."""
+        image = folder.get("x.h5", (None, None))[1]
+        if not ended and image == (self.base and self.base[1]):
+            return
+        if image is None or image not in self.whole and not self.bench.same_results(self.bench.root / "made.h5",
+                                                                                   self.bench.at / "x.h5"):
+            raise Failed("the command had ended, and its file is not there" if ended else "there is half a file")
+        self.whole.add(image)
+
     def go_on(self, folder, promised, ended):
         bench, case = self.bench, self.case
         self.put(folder)
+        self.check_file(folder, ended)
         trace = bench.root / "again"
         trace.unlink(missing_ok=True)
         done = bench.run(*case.again, environment={"RECORD": trace})
@@ -176,21 +189,22 @@ def computed(events):
 
 
 def mutants(bench):
-    """Leaves out each sync of a run in turn."""
-    fresh = next(cases(bench))
-    undisturbed = PowerLoss(bench, fresh, 0)
-    undisturbed.record()
-    places = [n for n, event in enumerate(undisturbed.events) if event.call in ("fsync", "fdatasync")]
-    needed = range(2, len(places))
-    survived = []
-    for n in needed:
-        failures = PowerLoss(bench, fresh, 1, 1, n, places).all().failures
-        print(f"  sync {n}: {failures[0][:200] if failures else 'not noticed'}", flush=True)
-        if not failures:
-            survived.append(n)
-    finish("power loss, a sync left out",
-           {"syncs": len(places), "needed": len(needed), "noticed": len(needed) - len(survived)},
-           [f"nothing was lost without sync {n}" for n in survived])
+    """Leaves out each sync of a run and of a merge in turn, but for those that are not needed."""
+    by_name, counts, survived = {case.name: case for case in cases(bench)}, {"syncs": 0, "needed": 0}, []
+    for name, first, last in (("fresh", 2, -1), ("merge", 1, None)):
+        undisturbed = PowerLoss(bench, by_name[name], 0)
+        undisturbed.record()
+        places = [n for n, event in enumerate(undisturbed.events) if event.call in ("fsync", "fdatasync")]
+        needed = range(1, len(places) + 1)[first - 1:last]
+        counts["syncs"] += len(places)
+        counts["needed"] += len(needed)
+        for n in needed:
+            failures = PowerLoss(bench, by_name[name], 1, 1, n, places).all().failures
+            print(f"  {name}, sync {n}: {failures[0][:200] if failures else 'not noticed'}", flush=True)
+            if not failures:
+                survived.append(f"{name}, sync {n}")
+    finish("power loss, a sync left out", {**counts, "noticed": counts["needed"] - len(survived)},
+           [f"nothing was lost without it: {one}" for one in survived])
 
 
 def main():

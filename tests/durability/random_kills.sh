@@ -37,4 +37,5 @@ while [ $kills -lt "$count" ]; do
   h5diff --exclude-path /run ../long.h5 x.h5 >../said 2>&1 || fail "other results"
   done=$((done + 1))
 done
+[ $rose -gt 0 ] || fail "no run that was killed had more in its journal than before"
 echo "random kills: $kills of $runs runs killed, $rose with more in the journal than before, $done studies the same"

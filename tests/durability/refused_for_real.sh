@@ -37,7 +37,7 @@ small_disk() {
   if [ "$(id -u)" -ne 0 ]; then own=(unshare --user --map-root-user --mount); fi
   mkdir -p ../small
   if ! "${own[@]}" mount -t tmpfs none ../small 2>/dev/null; then
-    echo "small disk: left out, nothing can be mounted here"
+    not_tried "small disk" "nothing can be mounted here"
     return
   fi
   for size in 8k 100k 400k 800k; do
@@ -64,7 +64,7 @@ folder_that_is_read_only() {
   cp "$credence" ../program
   chmod -R a+rX "$work"
   if ! "${as[@]}" ../program --version >/dev/null 2>&1; then
-    echo "read-only folder: left out, there is no other user to be"
+    not_tried "read-only folder" "there is no other user to be"
     return
   fi
   start_with ""

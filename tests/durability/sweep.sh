@@ -75,16 +75,14 @@ kill_at() {
 # sweep NAME BEFORE BLOCKS [ENVIRONMENT]: `command` on the file BEFORE computes BLOCKS blocks; `again` goes on with it.
 sweep() {
   local name=$1 before=$2 blocks=$3 environment=${4:-} kills=0 ended=0 kept=0 refused=0 total n
-  start_with "$before"
-  crashing "CRASH_LOG=../log OMP_NUM_THREADS=1 $environment" "${command[@]}"
-  [ $status -eq 0 ] || [ $status -eq 3 ] || fail "$name: ended with $status undisturbed"
-  total=$(wc -l <../log)
+  count_changes "$environment"
   for ((n = 1; n <= total; ++n)); do
     if left_out $n; then continue; fi
     # The whole with one thread and half with two, then the other way round.
     kill_at $n 0 $((1 + n % 2))
     kill_at $n 1 $((2 - n % 2))
   done
+  [ $kills -gt $ended ] || fail "$name: no run was killed"
   [ "$blocks" -eq 0 ] || [ $kept -gt 0 ] || fail "$name: no commit was ever synced"
   echo "$name: $total changes, $kills runs killed ($ended had ended before), $kept commits kept," \
     "$refused times nothing was committed yet of what replaces another study"

@@ -1,24 +1,28 @@
 """Journals of every version and results files of every schema version that were written, by the releases that wrote
-them (versions/, and for schema version 2 the seeds of the fuzz targets): what is safe is gone on with, and the
-file says whose trials are whose; anything else is refused, changes nothing and says which release to use. So is a
+them (versions/, and of schema version 2 and of journals of a whole block the seeds of the fuzz targets): each is gone
+on with, and the file says whose blocks are whose; or it is refused, with the words expected of it, unchanged. So is a
 journal of a later version or schema, which is made here of this program's own.
 
-With --mutants journals of other versions say that they are this program's, as if it did not look: then each must fail."""
+With --mutants journals of other versions say that they are this program's, and this program's that they are later ones:
+then each must fail."""
 
 import gzip
 import re
 import subprocess
 import zlib
+from dataclasses import dataclass
 
 from harness import HERE, Bench, Failed, arguments, finish
 
 WORLD = HERE.parent / "fuzz" / "journal.ini"
-SEEDS = HERE.parent / "fuzz" / "seeds" / "results"
+SEEDS = HERE.parent / "fuzz" / "seeds"
 KEPT = {1: "trials", 2: "trials", 3: "aggregates", 4: "trials", 5: "aggregates", 6: "trials", 7: "aggregates"}
-
-
 OWN = {"trials": 6, "aggregates": 7}  # versions of this program's journals
 SCHEMA = 3
+MORE = 600  # trials: three blocks
+LATER = ((2, 0), (0, 1), (2, 1))  # a journal's version and its schema's, over this program's
+FINISH = "Finish the run with the release that began it."
+AGAIN = "Use the release that wrote it, or run the study again."
 
 
 def stored(name):
@@ -34,93 +38,160 @@ def labelled(journal, version, schema):
     return header + zlib.crc32(header).to_bytes(4, "little") + journal[end + 4:]
 
 
-class Versions:
-    """`blind`: every journal says that it is this program's."""
+@dataclass
+class File:
+    """`refused`: the words with which it is refused; nothing where it is gone on with."""
 
-    def __init__(self, bench, blind=False):
-        self.bench, self.blind = bench, blind
+    what: str
+    data: bytes
+    keep: str = "trials"
+    refused: str = ""
+    whole_blocks: int = 0  # that need not be computed again
+
+    @property
+    def name(self):
+        return "x.h5.journal" if self.data.startswith(b"credence-journal") else "x.h5"
+
+
+def later(keep, version, schema):
+    """A journal that is later by so many versions. Its layout is this program's, so that only its label is wrong."""
+    version, schema = OWN[keep] + version, SCHEMA + schema
+    words = (f"is a journal of version {version}, this program's is {OWN['trials']}. {FINISH}" if version != OWN[keep]
+             else f"is of schema version {schema}, this program's is {SCHEMA}. {FINISH}")
+    data = labelled(stored(f"journal-{OWN[keep]}"), version, schema)
+    return File(f"journal {version} of schema {schema}", data, keep, words)
+
+
+def foreign_journals():
+    for version, keep in KEPT.items():
+        if version not in OWN.values():
+            yield File(f"journal {version}", stored(f"journal-{version}"), keep,
+                       f"is a journal of version {version}, this program's is {OWN['trials']}. {FINISH}")
+    for keep in OWN:
+        for version, schema in LATER:
+            yield later(keep, version, schema)
+
+
+def own_journals():
+    for keep, version in OWN.items():
+        yield File(f"journal {version}", stored(f"journal-{version}"), keep)
+        yield File(f"journal {version} of two blocks", (SEEDS / "journal" / f"257-{keep}").read_bytes(), keep,
+                   whole_blocks=1)
+
+
+def results_files():
+    """Those of schema version 3 were written before there were checksums, and since."""
+    words = f"it has schema version 2, this program writes {SCHEMA}). {AGAIN}"
+    yield File("results 2", (SEEDS / "results" / "schema-2.h5").read_bytes(), refused=words)
+    yield File("results 2, aggregates", (SEEDS / "results" / "schema-2-aggregates.h5").read_bytes(), "aggregates",
+               words)
+    yield File("results 3", stored("results-3.h5"), whole_blocks=1)
+    yield File("results 3, checksums", stored("results-3-crc32.h5"), whole_blocks=1)
+    yield File("results 3, aggregates", stored("results-3-crc32-aggregates.h5"), "aggregates", whole_blocks=1)
+
+
+def growing(keep, output):
+    return "run", str(WORLD), "--trials", str(MORE), "--keep", keep, "--quiet", "-o", str(output), "--resume"
+
+
+class Versions:
+    def __init__(self, bench):
+        self.bench = bench
         self.counts = {"journals": 0, "results files": 0, "gone on with": 0, "refused": 0}
 
-    def journal(self, version):
-        self.start(f"journal {version}", stored(f"journal-{version}"), KEPT[version])
-
-    def later(self, keep, version, schema):
-        """A journal that is later by so many versions. Its layout is this program's, so that only its label is wrong."""
-        label = OWN[keep] + version, SCHEMA + schema
-        self.start(f"journal {label[0]} of schema {label[1]}", labelled(stored(f"journal-{OWN[keep]}"), *label), keep)
-
-    def start(self, name, data, keep):
-        self.counts["journals"] += 1
-        self.bench.empty()
-        own = labelled(data, OWN[keep], SCHEMA)
-        data, foreign = own if self.blind else data, data != own
-        (self.bench.at / "x.h5.journal").write_bytes(data)
-        self.grow(name, {"x.h5.journal": data}, keep, foreign)
-
-    def results(self, version, data):
-        self.counts["results files"] += 1
-        self.bench.empty()
-        (self.bench.at / "x.h5").write_bytes(data)
-        self.bench.expect(0, "report", "x.h5")
-        self.grow(f"results {version}", {"x.h5": data}, "trials")
-
-    def grow(self, name, before, keep, foreign=False):
-        """Goes on for more trials than are there. What is `foreign` must be refused."""
-        done = self.bench.run("run", str(WORLD), "--trials", "600", "--keep", keep, "--quiet", "-o", "x.h5", "--resume")
-        if done.returncode == 2:
+    def check(self, file):
+        self.counts["journals" if "journal" in file.name else "results files"] += 1
+        done = self.run(file, *growing(file.keep, "x.h5"))
+        if file.refused:
+            self.check_refused(file, done)
             self.counts["refused"] += 1
-            if self.bench.files() != before:
-                raise Failed(f"{name}: it was refused, but changed")
-            if not re.search(r"is a journal of version \d, this program's is \d.*release that began it|"
-                             r"schema.version (is )?\d|computed trials of it", done.stderr):
-                raise Failed(f"{name}: the refusal does not say whose it is: {done.stderr.strip()}")
-            return
+        else:
+            self.check_grown(file, done)
+            self.counts["gone on with"] += 1
+        if file.name == "x.h5":
+            self.check_readers(file)
+
+    def run(self, file, *command):
+        self.bench.empty()
+        (self.bench.at / file.name).write_bytes(file.data)
+        return self.bench.run(*command)
+
+    def check_refused(self, file, done):
+        if done.returncode != 2:
+            raise Failed(f"{file.what}: {done.args[1]} did not refuse it, and ended with {done.returncode}")
+        if file.refused not in done.stderr or "x.h5" not in done.stderr:
+            raise Failed(f"{file.what}: the refusal is another one: {done.stderr.strip()}")
+        if self.bench.files() != {file.name: file.data}:
+            raise Failed(f"{file.what}: it was refused, but changed")
+
+    def check_grown(self, file, done):
         if done.returncode != 0:
-            raise Failed(f"{name}: it ended with {done.returncode}: {done.stderr.strip()}")
-        if foreign:
-            raise Failed(f"{name}: it was gone on with")
-        self.counts["gone on with"] += 1
-        whole = self.bench.root / f"{keep}.h5"
+            raise Failed(f"{file.what}: it was not gone on with: {done.stderr.strip()}")
+        whole = self.bench.root / f"{file.keep}.h5"
         if not whole.exists():
-            self.bench.expect(0, "run", str(WORLD), "--trials", "600", "--keep", keep, "--quiet", "-o", str(whole))
-        self.bench.check_same(whole, what=name)
-        self.check_releases(name)
+            self.bench.expect(0, *growing(file.keep, whole))
+        self.bench.check_same(whole, what=file.what)
+        self.check_releases(file)
 
-    def check_releases(self, name):
+    def check_readers(self, file):
+        """A file of any schema version is reported, and what can be gone on with can be merged."""
+        if self.run(file, "report", "x.h5").returncode != 0:
+            raise Failed(f"{file.what}: it is not reported")
+        merged = self.run(file, "merge", "x.h5", "-o", "y.h5", "--quiet")
+        if file.refused:
+            self.check_refused(file, merged)
+        elif merged.returncode != 0:
+            raise Failed(f"{file.what}: it is not merged: {merged.stderr.strip()}")
+
+    def check_releases(self, file):
         """Blocks that the older release computed are said to be its own."""
-        text = subprocess.run(["h5dump", "-a", "/run/computed_by", "x.h5"], cwd=self.bench.at, capture_output=True,
+        said = subprocess.run(["h5dump", "-a", "/run/computed_by", "x.h5"], cwd=self.bench.at, capture_output=True,
                               text=True, check=True).stdout
-        own = re.search(r"git_revision: (\S+)", self.bench.expect(0, "--version").stdout)
-        others = [revision for revision in re.findall(r"git revision ([0-9a-f]+(?:-dirty)?)", text)
-                  if not own or revision != own[1]]
-        if not others and "journal" not in name:  # those have a partial block alone, which is computed again
-            raise Failed(f"{name}: it does not say whose trials are whose: {text}")
+        own = self.own_release()
+        parts, theirs = [own], release_in(file.data) if file.whole_blocks else own
+        if theirs != own:
+            parts = [f"{theirs}: tiny 0", f"{own}: tiny {file.whole_blocks}-2"]
+        if re.findall(r"credence [^\"\n]*", said) != parts:
+            raise Failed(f"{file.what}: it does not say whose blocks are whose, which are {parts}: {said}")
+
+    def own_release(self):
+        said = self.bench.expect(0, "--version").stdout
+        return f"{said.splitlines()[0]}, git revision {re.search(r'git_revision: (.*)', said)[1]}"
 
 
-def failures_of(checks):
+def release_in(data):
+    return re.search(rb"credence [0-9.]+, git revision [0-9a-f]{12}(-dirty)?", data)[0].decode()
+
+
+def failures_of(files, check):
     failures = []
-    for check in checks:
+    for file in files:
         try:
-            check()
+            check(file)
         except Failed as error:
             failures.append(str(error))
     return failures
 
 
+def mislabelled():
+    """Journals under the other kind's label, but what is expected of them is what it was."""
+    for file in foreign_journals():
+        yield File(file.what, labelled(file.data, OWN[file.keep], SCHEMA), file.keep, file.refused)
+    for file in own_journals():
+        yield File(file.what, later(file.keep, *LATER[0]).data, file.keep)
+
+
 def main():
     given = arguments(__doc__, mutants=0)
     with Bench(given.credence) as bench:
-        versions = Versions(bench, blind=bool(given.mutants))
-        foreign = [lambda v=v: versions.journal(v) for v in KEPT if v not in OWN.values()]
-        foreign += [lambda k=k, v=v, s=s: versions.later(k, v, s) for k in OWN for v, s in ((2, 0), (0, 1), (2, 1))]
+        versions = Versions(bench)
         if given.mutants:
-            noticed = len(failures_of(foreign))
-            return finish("versions, not looked at", {"journals": len(foreign), "noticed": noticed},
-                          [] if noticed == len(foreign) else ["a journal of another version was gone on with, unnoticed"])
-        own = [lambda v=v: versions.journal(v) for v in OWN.values()]
-        own += [lambda: versions.results(2, (SEEDS / "schema-2.h5").read_bytes()),
-                lambda: versions.results(3, stored("results-3.h5"))]
-        finish("versions", versions.counts, failures_of(foreign + own))
+            planted = list(mislabelled())
+            noticed = len(failures_of(planted, versions.check))
+            return finish("versions, not looked at", {"journals": len(planted), "noticed": noticed},
+                          [] if noticed == len(planted) else ["a journal under a wrong label was not noticed"])
+        finish("versions", versions.counts,
+               failures_of([*foreign_journals(), *own_journals(), *results_files()], versions.check))
 
 
 if __name__ == "__main__":

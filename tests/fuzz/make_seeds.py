@@ -1,5 +1,6 @@
 """make_seeds.py RESULTS SEEDS: the seeds in HDF5. Results are copied from the folder RESULTS, without the attributes
-that no reader of credence looks at and with the cells compressed; records are made up."""
+that no reader of credence looks at, all but one of them without checksums, which a mutation would seldom get past, and
+with the cells compressed; records are made up."""
 
 import pathlib
 import sys
@@ -7,14 +8,15 @@ import sys
 import h5py
 import numpy as np
 
-FOR_OTHERS = ("crc32", "long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
+CHECKSUMS = ("crc32",)
+FOR_OTHERS = ("long_name", "units", "DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME", "_FillValue", "flag_values",
               "flag_meanings", "series", "role", "part_of", "dimension", "rows", "more_rows", "_Netcdf4Dimid")
 
 
-def copy_attributes(source, target):
+def copy_attributes(source, target, left_out):
     """As they are in the file: text of a fixed length stays that."""
     for name in source.attrs:
-        if name in FOR_OTHERS:
+        if name in left_out:
             continue
         attribute = h5py.h5a.open(source.id, name.encode())
         copy = h5py.h5a.create(target.id, name.encode(), attribute.get_type(), attribute.get_space())
@@ -23,8 +25,8 @@ def copy_attributes(source, target):
         copy.write(value)
 
 
-def copy_group(source, target):
-    copy_attributes(source, target)
+def copy_group(source, target, left_out):
+    copy_attributes(source, target, left_out)
     for name, item in source.items():
         if isinstance(item, h5py.Group):
             group = target.create_group(name, track_order=True)
@@ -32,15 +34,15 @@ def copy_group(source, target):
                 group.attrs["compiler"] = np.bytes_("any")
                 group.attrs["threads"] = np.bytes_("1")
             else:
-                copy_group(item, group)
+                copy_group(item, group, left_out)
             continue
         packed = {"compression": 9, "shuffle": True} if item.size >= 4096 else {}
-        copy_attributes(item, target.create_dataset(name, data=item[()], **packed))
+        copy_attributes(item, target.create_dataset(name, data=item[()], **packed), left_out)
 
 
-def copy_results(path, target, libver):
+def copy_results(path, target, libver, left_out=FOR_OTHERS + CHECKSUMS):
     with h5py.File(path) as source, h5py.File(target, "w", libver=libver, track_order=True) as copy:
-        copy_group(source, copy)
+        copy_group(source, copy, left_out)
 
 
 def write(path, datasets, libver=("earliest", "v108"), blocks=None, attributes=(), **options):
@@ -179,6 +181,7 @@ def main(results, seeds):
     for path in sorted(results.glob("*.h5")):
         copy_results(path, seeds / "results" / path.name, ("v108", "v108"))
     copy_results(results / "heading.h5", seeds / "results" / "earliest.h5", ("earliest", "v108"))
+    copy_results(results / "heading.h5", seeds / "results" / "checksums.h5", ("v108", "v108"), FOR_OTHERS)
     write_noise(seeds / "noise")
     write_judge(seeds / "judge")
     write_second(seeds / "judge")

@@ -42,29 +42,11 @@ enum fate before(const struct call *call) {
 
 void after(const struct call *call, long result) {
     const int error = errno;
+    if (started && call->kind == OPENING) note_name((int)result, call->path);
     if (started && crashing) crash_log(call, result);
     if (started && recording && result >= 0) record(call, result);
     errno = error;
 }
-
-/* A call whose first `part` makes half of it, where it has a half, as its fate says. */
-#define CALL(type, has_half, part, whole, ...)                                              \
-    do {                                                                                    \
-        const struct call call = {__VA_ARGS__};                                             \
-        const enum fate fate = before(&call);                                               \
-        if (fate == fails || (fate == half_then_fails && !(has_half))) {                    \
-            after(&call, -1);                                                               \
-            return (type)-1;                                                                \
-        }                                                                                   \
-        const type result = fate == is_left_out                      ? (type)call.size      \
-                            : (fate == half_then_fails ||            \
-                               (fate == half_then_dies && has_half)) ? (part)               \
-                                                                     : (whole);             \
-        if (fate == half_then_dies) die();                                                  \
-        after(&call, (long)result);                                                         \
-        return result;                                                                      \
-    } while (0)
-#define WHOLE(type, call, ...) CALL(type, 0, call, call, __VA_ARGS__)
 
 ssize_t write(int fd, const void *bytes, size_t size) {
     REAL(write, "write");
@@ -134,6 +116,33 @@ int open64(const char *path, int flags, ...) {
     va_end(more);
     return open(path, flags, mode);
 }
+int openat(int folder, const char *path, int flags, ...) {
+    REAL(openat, "openat");
+    va_list more;
+    va_start(more, flags);
+    const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    WHOLE(int, real(folder, path, flags, mode), OPENING, "openat", -1, path, .flags = flags);
+}
+int openat64(int folder, const char *path, int flags, ...) {
+    va_list more;
+    va_start(more, flags);
+    const mode_t mode = flags & (O_CREAT | O_TMPFILE) ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    return openat(folder, path, flags, mode);
+}
+/* A descriptor is closed even where the system reports an error. */
+int close(int fd) {
+    REAL(close, "close");
+    const struct call call = {CLOSING, "close", fd};
+    const enum fate fate = before(&call);
+    const int error = errno;
+    if (fate == is_left_out) return 0;
+    forget_name(fd);
+    const int result = real(fd);
+    if (fate == fails) errno = error;
+    return fate == fails ? -1 : result;
+}
 /* -1 stands for NULL in the fates. */
 static FILE *open_stream(const char *path, const char *mode) {
     REAL(fopen, "fopen");
@@ -145,16 +154,17 @@ FILE *fopen(const char *path, const char *mode) { return open_stream(path, mode)
 FILE *fopen64(const char *path, const char *mode) { return open_stream(path, mode); }
 ssize_t read(int fd, void *bytes, size_t size) {
     REAL(read, "read");
-    WHOLE(ssize_t, real(fd, bytes, size), READING, "read", fd, .size = size);
+    CALL(ssize_t, size > 1, real(fd, bytes, size / 2), real(fd, bytes, size), READING, "read", fd, .size = size);
 }
 ssize_t pread(int fd, void *bytes, size_t size, off_t at) {
     REAL(pread, "pread");
-    WHOLE(ssize_t, real(fd, bytes, size, at), READING, "pread", fd, .size = size, .at = at);
+    CALL(ssize_t, size > 1, real(fd, bytes, size / 2, at), real(fd, bytes, size, at), READING, "pread", fd,
+         .size = size, .at = at);
 }
 ssize_t pread64(int fd, void *bytes, size_t size, off64_t at) { return pread(fd, bytes, size, at); }
 int flock(int fd, int operation) {
     REAL(flock, "flock");
-    WHOLE(int, real(fd, operation), LOCKING, "flock", fd);
+    WHOLE(int, real(locked_instead_of(fd), operation), LOCKING, "flock", fd);
 }
 /* `argument` is a pointer or a number; both are passed on as they are. */
 int fcntl(int fd, int command, ...) {
@@ -203,6 +213,9 @@ void *calloc(size_t n, size_t size) { return refused("calloc", n * size) ? NULL 
 void *realloc(void *old, size_t size) { return refused("realloc", size) ? NULL : __libc_realloc(old, size); }
 void *aligned_alloc(size_t alignment, size_t size) {
     return refused("aligned_alloc", size) ? NULL : __libc_memalign(alignment, size);
+}
+void *memalign(size_t alignment, size_t size) {
+    return refused("memalign", size) ? NULL : __libc_memalign(alignment, size);
 }
 int posix_memalign(void **place, size_t alignment, size_t size) {
     if (refused("posix_memalign", size)) return ENOMEM;

@@ -1,6 +1,9 @@
 /* A resource fails once.
 
-   FAIL=kind        malloc, open, read, mmap, thread, sync, rename, remove, lock, write or none
+   FAIL=kind        malloc, open, read, mmap, thread, sync, rename, remove, lock, write, cut (ftruncate), stat (access
+                    too), own (of owners and permissions), close, or none: nothing fails; and three that a program has
+                    to bear: short (a read or write does half of its bytes), eintr (a read or write is interrupted) and
+                    norename2 (a file system without the flags of renameat2)
    FAIL_AT=n        the n-th of these calls fails, counted from 1 (0: none)
    FAIL_ALWAYS=1    not only the n-th, but each
    FAIL_SILENT=1    plants a bug: the call does not happen and says that it did
@@ -11,9 +14,34 @@
 
 #include <execinfo.h>
 
-static enum kind kind = ALLOCATING + 1;
+/* What fails: calls of these kinds, and only those of this name, if there is one. */
+#define OF(kind) (1u << (kind))
+static const struct way {
+    const char *name;
+    unsigned kinds;
+    int error;
+    const char *only;
+} ways[] = {{"none", 0, 0},
+            {"malloc", OF(ALLOCATING), ENOMEM},
+            {"open", OF(OPENING), EMFILE},
+            {"read", OF(READING), EIO},
+            {"mmap", OF(MAPPING), ENOMEM},
+            {"thread", OF(THREADING), EAGAIN},
+            {"sync", OF(SYNCING), EIO},
+            {"rename", OF(RENAMING), EIO},
+            {"remove", OF(REMOVING), EIO},
+            {"lock", OF(LOCKING), ENOLCK},
+            {"write", OF(WRITING), EIO},
+            {"cut", OF(CUTTING), EIO},
+            {"stat", OF(ASKING_STATUS), EIO},
+            {"own", OF(OWNING), EPERM},
+            {"close", OF(CLOSING), EIO},
+            {"short", OF(READING) | OF(WRITING), 0},
+            {"eintr", OF(READING) | OF(WRITING), EINTR},
+            {"norename2", OF(RENAMING), EINVAL, "renameat2"}};
+static const struct way *way = ways;
 static long at;
-static int failure, silent, always, held;
+static int silent, always, held;
 static atomic_long own, *count = &own;
 static int main_began;
 static uint64_t *places;
@@ -75,10 +103,6 @@ static uint64_t place_of_call(void) {
 }
 
 __attribute__((constructor)) static void read_environment(void) {
-    static const struct { const char *name; enum kind kind; int error; } kinds[] = {
-        {"malloc", ALLOCATING, ENOMEM}, {"open", OPENING, EMFILE}, {"read", READING, EIO},   {"mmap", MAPPING, ENOMEM},
-        {"thread", THREADING, EAGAIN},  {"sync", SYNCING, EIO},    {"rename", RENAMING, EIO}, {"remove", REMOVING, EIO},
-        {"lock", LOCKING, ENOLCK},      {"write", WRITING, EIO}};
     const char *name = getenv("FAIL"), *counted = getenv("FAIL_COUNT");
     if (!name) return;
     at = number("FAIL_AT");
@@ -94,16 +118,22 @@ __attribute__((constructor)) static void read_environment(void) {
     sigaltstack(&(stack_t){.ss_sp = room, .ss_size = sizeof room}, NULL);
     sigaction(SIGSEGV, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
     sigaction(SIGABRT, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
-        if (strcmp(name, kinds[i].name) == 0) kind = kinds[i].kind, failure = kinds[i].error;
-    if (failure == 0 && strcmp(name, "none") != 0) _exit(99);
+    const struct way *const end = ways + sizeof ways / sizeof *ways;
+    for (way = ways; way < end && strcmp(name, way->name) != 0; ++way) {}
+    if (way == end) _exit(99);
     if (counted) count = shared_file(counted, sizeof own);
     if (getenv("FAIL_PLACES")) places = shared_file(getenv("FAIL_PLACES"), most_places * sizeof *places);
 }
 
+/* One byte has no half; a short call is the only one that does not fail. */
+static int may_fail(const struct call *call) {
+    if (way->only && strcmp(call->name, way->only) != 0) return 0;
+    return (way->kinds & OF(call->kind)) && (way->error || call->size > 1);
+}
+
 enum fate fail_fate(const struct call *call, int *error) {
-    if (call->kind != kind && call->kind != ASKING) return goes_on;
-    *error = failure;
+    if (!may_fail(call) && call->kind != ASKING) return goes_on;
+    *error = way->error;
     if (call->kind == ASKING) main_began = 1; /* the program looks at its standard streams first */
     if (call->kind == ASKING) return held && call->fd <= 2 && call->flags == F_GETFD ? is_left_out : goes_on;
     static __thread int within; /* an unwinder may allocate: that is not a call of the program */
@@ -114,5 +144,6 @@ enum fate fail_fate(const struct call *call, int *error) {
         places[before] = place_of_call();
         within = 0;
     }
-    return before + 1 == at || always ? (silent ? is_left_out : fails) : goes_on;
+    if (before + 1 != at && !always) return goes_on;
+    return silent ? is_left_out : way->error ? fails : only_half;
 }

@@ -10,10 +10,16 @@ __attribute__((constructor)) static void read_environment(void) {
     if (is_on("MEET")) turns = (int)number("MEET");
 }
 
+/* A file may have another status by the time that the program acts on it, and closing a file gives up its lock. */
+static int waits_before(const struct call *call) {
+    if (call->fd >= 0 && (call->fd <= 2 || call->fd == turns)) return 0;
+    return call->kind < MAPPING || call->kind == ASKING_STATUS || call->kind == OWNING || call->kind == CLOSING;
+}
+
 void meet(const struct call *call) {
     static pthread_mutex_t one = PTHREAD_MUTEX_INITIALIZER;
     char line[300], turn;
-    if (turns < 0 || call->kind >= MAPPING || (call->fd >= 0 && call->fd <= 2) || call->fd == turns) return;
+    if (turns < 0 || !waits_before(call)) return;
     pthread_mutex_lock(&one);
     const int length = snprintf(line, sizeof line, "%s %s\n", call->name, call->path ? call->path : "");
     if (syscall(SYS_sendto, turns, line, (size_t)length, MSG_NOSIGNAL, NULL, 0) == length)

@@ -34,7 +34,7 @@ void record(const struct call *call, long result) {
     if (call->kind == SYNCING && left_out && atomic_load(&syncs) == left_out) return;
     const int fd = call->kind == OPENING ? (int)result : call->fd;
     struct stat status = {0};
-    if (fd >= 0 && fstat(fd, &status) != 0) die();
+    if (fd >= 0 && syscall(SYS_newfstatat, fd, "", &status, AT_EMPTY_PATH) != 0) die();
     const size_t written = call->kind == WRITING ? (size_t)result : 0;
     char line[9000];
     const int length = snprintf(line, sizeof line, "%s\t%lu\t%ld\t%zu\t%s\t%s\n", call->name,
