@@ -13,7 +13,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from fail_once import Command, commands
+from commands import Command, commands
 from harness import Bench, Failed, arguments, finish
 
 

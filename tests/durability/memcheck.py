@@ -11,7 +11,7 @@ import re
 import shutil
 import subprocess
 
-from fail_once import commands
+from commands import commands
 from harness import HERE, Bench, arguments, finish
 
 FAULT = "#include <stdlib.h>\nint main(void) { int *n = malloc(sizeof *n); return *n > 0 ? 2 : 3; }\n"
