@@ -28,10 +28,42 @@ inline FiftyMatrix conditioned(std::mt19937_64& random, int n, double condition)
     return Q * values.asDiagonal() * Q.transpose();
 }
 
+/// A covariance [n, n] of numbers, and from component `first` on of the x and y of points, which know of each other
+/// 1/condition of the variance with which they know where they are.
+inline FiftyMatrix known_together(std::mt19937_64& random, int n, int first, double condition) {
+    FiftyMatrix P = conditioned(random, n, 10) / Fifty(condition);
+    for (int i = first; i < n; ++i)
+        for (int j = first + (i - first) % 2; j < n; j += 2) P(i, j) += 1;
+    return P;
+}
+
+/// P in doubles, symmetric.
+inline Eigen::MatrixXd rounded(const FiftyMatrix& P) {
+    return Eigen::MatrixXd(P.cast<double>().selfadjointView<Eigen::Lower>());
+}
+
 /// L, P = L L'.
 inline FiftyMatrix lower_factor(const FiftyMatrix& P) { return P.llt().matrixL(); }
 
 /// e'P^-1e
 inline Fifty squared_error(const FiftyMatrix& P, const FiftyVector& e) { return e.dot(P.llt().solve(e)); }
+
+/// Greatest absolute eigenvalue of a symmetric matrix.
+inline double largest_eigenvalue(const FiftyMatrix& symmetric) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric.cast<double>(), Eigen::EigenvaluesOnly)
+        .eigenvalues().cwiseAbs().maxCoeff();
+}
+
+/// |P^-1|
+inline double largest_of_inverse(const FiftyMatrix& P) {
+    return largest_eigenvalue(P.llt().solve(FiftyMatrix::Identity(P.rows(), P.cols())));
+}
+
+/// |L^-1 (P^ - P) L'^-1|, P = L L': the greatest relative error that P^ in place of P can make of a NEES.
+inline double relative_error(const Eigen::MatrixXd& in_doubles, const FiftyMatrix& P) {
+    const FiftyMatrix L = lower_factor(P);
+    const FiftyMatrix half = L.triangularView<Eigen::Lower>().solve(in_doubles.cast<Fifty>() - P);
+    return largest_eigenvalue(L.triangularView<Eigen::Lower>().solve(FiftyMatrix(half.transpose())));
+}
 
 }  // namespace credence::test

@@ -2,8 +2,7 @@
 // the joint equations in 50 digits [docs/model.md, Filter].
 
 #include "catch.hpp"
-#include "fifty_digits.hpp"
-#include "filter_samples.hpp"
+#include "fifty_digits_filter.hpp"
 
 #include "slam/update.hpp"
 #include "statistics/moments/conditioning.hpp"
@@ -54,43 +53,11 @@ struct Step {
         exact = prior - W * S.llt().solve(FiftyMatrix(W.transpose()));
     }
 
-    /// The greatest relative error that P^-1 with these errors can make of a NEES: |L^-1 (P^ - P) L'^-1|, P = L L'.
-    double error() const {
-        const FiftyMatrix L = lower_factor(exact);
-        const FiftyMatrix half = L.triangularView<Eigen::Lower>().solve(left.cast<Fifty>() - exact);
-        const FiftyMatrix whole = L.triangularView<Eigen::Lower>().solve(FiftyMatrix(half.transpose()));
-        return eigenvalues(whole.cast<double>()).cwiseAbs().maxCoeff();
-    }
+    double error() const { return relative_error(left, exact); }
     double bound() const { return rounding_bound(left, epsilon); }
     /// |P^-| |P^-1|: P is a difference of numbers as large as the largest of P^-.
-    double condition() const {
-        const FiftyMatrix inverse = exact.llt().solve(FiftyMatrix::Identity(n, n));
-        return eigenvalues(prior.cast<double>()).maxCoeff() * eigenvalues(inverse.cast<double>()).maxCoeff();
-    }
-
-private:
-    static VectorXd eigenvalues(const MatrixXd& symmetric) {
-        return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-    }
+    double condition() const { return largest_eigenvalue(prior) * largest_of_inverse(exact); }
 };
-
-/// Every noise is `sigma`, so that S is conditioned as P is.
-DeformableSettings settings_with(double sigma) {
-    Settings settings{{"model.process", "translation"}};
-    for (const char* key : {"noise.odometry", "noise.walk", "noise.deformation", "sensor.sigma"})
-        settings.emplace_back(key, to_text(sigma));
-    return scenario_with(settings);
-}
-
-/// Robot and features that know of each other 1/condition of the variance with which they know where they are.
-FiftyMatrix known_together(std::mt19937_64& random, double condition) {
-    FiftyMatrix P = conditioned(random, n, 10) / Fifty(condition);
-    for (int i = 0; i < n; ++i)
-        for (int j = i % 2; j < n; j += 2) P(i, j) += 1;
-    return P;
-}
-
-MatrixXd rounded(const FiftyMatrix& P) { return MatrixXd(P.cast<double>().selfadjointView<Eigen::Lower>()); }
 
 /// Runs `check(step)` on five beliefs of each condition from 1 to 10^20; noises of the size of the smallest eigenvalue
 /// keep them as they are.
@@ -99,7 +66,7 @@ void each_condition(const Draw& draw, const Check& check) {
     std::mt19937_64 random(2);
     for (int exponent = 0; exponent <= 20; ++exponent) {
         const double condition = std::pow(10, exponent);
-        const Problem problem(settings_with(std::sqrt(1 / condition)));
+        const Problem problem(all_noises("translation", std::sqrt(1 / condition)));
         for (int i = 0; i < 5; ++i) {
             CAPTURE(exponent, i);
             check(Step(problem, rounded(draw(random, condition))));
@@ -125,7 +92,8 @@ TEST_CASE("fifty digits: a step of the filter loses what the condition takes, an
 
 TEST_CASE("fifty digits: what a step spoils of an ill-conditioned P is within the bound on the rounding of NEES") {
     int spoilt = 0, exact = 0;
-    each_condition(known_together, [&](const Step& step) {
+    const auto together = [](auto& random, double condition) { return known_together(random, n, 0, condition); };
+    each_condition(together, [&](const Step& step) {
         const double error = step.error(), bound = step.bound();
         CAPTURE(error, bound);
         if (bound < 0.1) CHECK(error <= bound);
