@@ -34,8 +34,10 @@ std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected,
         static_cast<hsize_t>(begin), static_cast<hsize_t>(std::max(wanted, std::min(whole, there))));
     Checksums sums;
     add_checksums(values, sums);
-    const std::size_t at = static_cast<std::size_t>(begin / block_size), end = std::min(at + sums.size(), expected.size());
-    if (!std::equal(sums.begin(), sums.end(), expected.begin() + std::min(at, end), expected.begin() + end))
+    const std::int64_t at = begin / block_size;
+    const bool unchanged = at + static_cast<std::int64_t>(sums.size()) <= static_cast<std::int64_t>(expected.size()) &&
+                           std::equal(sums.begin(), sums.end(), expected.begin() + at);
+    if (!unchanged)
         throw Error(dataset.place(), "is damaged: its values have changed since they were checked");
     const auto from = values.begin() + (first - begin);
     return {from, from + count};
