@@ -30,7 +30,7 @@ case $depth in
 esac
 
 parts=(
-  "harness interleave --mutants 1"
+  "harness interleave --mutants 1 --seed 2"
   "harness corruption --every 997 --mutants 1"
   "harness fail_once --mutants 1"
   "harness descriptors --mutants 1"
