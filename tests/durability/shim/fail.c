@@ -43,32 +43,37 @@ static const struct way *way = ways;
 static long at;
 static int silent, always, held;
 static atomic_long own, *count = &own;
-static int main_began;
+static int main_began, refused_in_hdf5;
 static uint64_t *places;
 static long callers;
 static const void *own_base;
 enum { most_places = 1 << 22, most_callers = 40, own_frames = 8 };
 
-/* Says where the program ends by itself: inside a library, before main() or in its own code. Nothing here may allocate:
-   the C library may have found the heap damaged, and then this thread holds its lock. */
-static void say_where(void) {
+static int is_in_hdf5(void) {
     void *frames[60];
     Dl_info found;
-    const char *where = main_began ? "the program" : "what runs before main";
     for (int i = 0, n = backtrace(frames, 60); i < n; ++i)
-        if (dladdr(frames[i], &found) && found.dli_fname && strstr(found.dli_fname, "hdf5")) where = "libhdf5";
+        if (dladdr(frames[i], &found) && found.dli_fname && strstr(found.dli_fname, "hdf5")) return 1;
+    return 0;
+}
+
+/* Says where the program ends by itself: inside a library, before main() or in its own code. Nothing here may allocate:
+   the C library may have found the heap damaged, and then this thread holds its lock. */
+static void say_where(int in_hdf5) {
     char line[60];
-    const int length = snprintf(line, sizeof line, "shim: it ended in %s\n", where);
+    const int length = snprintf(line, sizeof line, "shim: it ended in %s\n",
+                                in_hdf5 ? "libhdf5" : main_began ? "the program" : "what runs before main");
     syscall(SYS_write, 2, line, (size_t)length);
 }
+/* A signal may come long after libhdf5 got no memory and damaged the heap. */
 static void on_signal(int signal_number) {
-    say_where();
+    say_where(refused_in_hdf5 || is_in_hdf5());
     signal(signal_number, SIG_DFL);
     raise(signal_number);
 }
 void exit(int code) {
     REAL(exit, "exit");
-    if (code != 0 && at > 0) say_where();
+    if (code != 0 && at > 0) say_where(is_in_hdf5());
     real(code);
     die();
 }
@@ -116,8 +121,10 @@ __attribute__((constructor)) static void read_environment(void) {
     backtrace(&frame, 1); /* loads what it needs */
     static char room[1 << 16]; /* libhdf5 may have used up the stack */
     sigaltstack(&(stack_t){.ss_sp = room, .ss_size = sizeof room}, NULL);
-    sigaction(SIGSEGV, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
-    sigaction(SIGABRT, &(struct sigaction){.sa_handler = on_signal, .sa_flags = SA_ONSTACK}, NULL);
+    const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_ONSTACK};
+    sigaction(SIGSEGV, &action, NULL);
+    sigaction(SIGBUS, &action, NULL);
+    sigaction(SIGABRT, &action, NULL);
     const struct way *const end = ways + sizeof ways / sizeof *ways;
     for (way = ways; way < end && strcmp(name, way->name) != 0; ++way) {}
     if (way == end) _exit(99);
@@ -145,5 +152,8 @@ enum fate fail_fate(const struct call *call, int *error) {
         within = 0;
     }
     if (before + 1 != at && !always) return goes_on;
+    within = 1;
+    refused_in_hdf5 = call->kind == ALLOCATING && is_in_hdf5();
+    within = 0;
     return silent ? is_left_out : way->error ? fails : only_half;
 }
