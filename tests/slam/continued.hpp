@@ -66,7 +66,9 @@ public:
         step.prior_mean = mean_of(belief, layout_.size());
         step.prior_covariance = dense(belief, layout_.size());
         look(truth, view_.sensor, layout_, k, measurement, noise_, sightings);
-        const auto edge = [&](int e) { return measure_edge(truth, view_.sensor, view_.filter.edges[e], k, e, noise_); };
+        const auto edge = [&, &at = truth](int e) {
+            return measure_edge(at, view_.sensor, view_.filter.edges[e], k, e, noise_);
+        };
         const auto linearised = estimator.linearised(belief, layout_, truth);
         gate_sightings(belief, view_.filter, layout_, linearised, sightings);
         keep_measurements(k, linearised);
