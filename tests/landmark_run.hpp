@@ -78,9 +78,7 @@ struct LandmarkRun {
 };
 
 template <class Estimating>
-LandmarkRun run_with(const LandmarkSettings& scenario, const AnyNoise& noise) {
-    const LandmarkProblem problem(scenario);
-    const LandmarkView& view = problem.view();
+LandmarkRun run_with(const LandmarkView& view, const AnyNoise& noise) {
     const auto work = std::make_unique<CommonWorkspace<Heading, double, Estimating>>();
     Watcher watcher;
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> figures(view.series_count, view.poses - 1);
@@ -92,10 +90,14 @@ LandmarkRun run_with(const LandmarkSettings& scenario, const AnyNoise& noise) {
     return run;
 }
 
-inline LandmarkRun run_landmarks(const LandmarkSettings& scenario, Estimator estimator, const AnyNoise& noise) {
+inline LandmarkRun run_landmarks(const LandmarkView& view, Estimator estimator, const AnyNoise& noise) {
     return with_estimator<Process::heading>(estimator, [&](auto tag) {
-        return run_with<typename decltype(tag)::template type<Heading, double>>(scenario, noise);
+        return run_with<typename decltype(tag)::template type<Heading, double>>(view, noise);
     });
+}
+
+inline LandmarkRun run_landmarks(const LandmarkSettings& scenario, Estimator estimator, const AnyNoise& noise) {
+    return run_landmarks(LandmarkProblem(scenario).view(), estimator, noise);
 }
 
 }  // namespace credence::test

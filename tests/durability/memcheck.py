@@ -1,4 +1,4 @@
-"""Every command of fail_once.py under Valgrind's memcheck, and what reads files from elsewhere with each seed and each
+"""Every command of commands.py under Valgrind's memcheck, and what reads files from elsewhere with each seed and each
 kept input of the fuzz targets: no value is used that was never written, and no memory that is not the program's.
 (Clang's memory sanitizer would need libhdf5 and the C++ library compiled with it.) What happens within libhdf5 is
 counted apart; one of the files of fuzz/libhdf5 shows that this is told from the program's own. The target is v3, the

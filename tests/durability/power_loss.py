@@ -11,6 +11,7 @@ import os
 import shutil
 import struct
 
+from commands import torn_journal
 from harness import LESS, Bench, Failed, arguments, finish, finish_all
 from replay import Disk, read_trace
 
@@ -31,9 +32,8 @@ def commits_in(journal):
 class Case:
     """A command, the files that it starts with, and the command that goes on after a power failure."""
 
-    def __init__(self, name, command, again, base=None, start=None, whole="whole.h5", blocks=BLOCKS, environment=None,
-                 code=0):
-        self.name, self.command, self.again, self.base, self.start = name, command, again, base, start or {}
+    def __init__(self, name, command, again, start=None, whole="whole.h5", blocks=BLOCKS, environment=None, code=0):
+        self.name, self.command, self.again, self.start = name, command, again, start or {}
         self.whole, self.blocks, self.environment, self.code = whole, blocks, environment or {}, code
 
 
@@ -47,18 +47,11 @@ def cases(bench):
     merge = ["merge", *shards, "-o", "x.h5", "--quiet"]
     yield Case("fresh", study, resume)
     yield Case("stopped", study, resume, environment={"CRASH_SIGNAL_AT": 14}, code=3)
-    yield Case("torn", resume, resume, start=torn(bench, study))
-    yield Case("grown", resume, resume, base=less, blocks=BLOCKS - PRESENT)
-    yield Case("overwritten", bench.study("--overwrite"), resume, base=other)
+    yield Case("torn", resume, resume, start={"x.h5.journal": torn_journal(bench, "torn")})
+    yield Case("grown", resume, resume, {"x.h5": less}, blocks=BLOCKS - PRESENT)
+    yield Case("overwritten", bench.study("--overwrite"), resume, {"x.h5": other})
     yield Case("aggregates", bench.study(*aggregates), bench.study(*aggregates, "--resume"), whole="aggregates.h5")
     yield Case("merge", merge, [*merge, "--overwrite"], blocks=0)
-
-
-def torn(bench, study):
-    """What a run leaves that is killed within a commit."""
-    bench.empty()
-    bench.run(*study, environment={"CRASH_AT": 11, "CRASH_HALF": 1})
-    return bench.files()
 
 
 class PowerLoss:
@@ -70,11 +63,7 @@ class PowerLoss:
 
     def record(self):
         bench, case = self.bench, self.case
-        bench.empty()
-        if case.base:
-            os.link(case.base, bench.at / "x.h5")  # its inode is in the journal
-        for name, data in case.start.items():
-            (bench.at / name).write_bytes(data)
+        bench.begin(case.start)
         start = {path.name: (path.stat().st_ino, path.read_bytes()) for path in bench.at.iterdir()}
         trace = bench.root / "trace"
         trace.unlink(missing_ok=True)
@@ -132,7 +121,7 @@ class PowerLoss:
         self.bench.empty()
         for name, (inode, image) in folder.items():
             if self.base and inode == self.base[0] and image == self.base[1]:
-                os.link(self.case.base, self.bench.at / name)
+                os.link(self.case.start["x.h5"], self.bench.at / name)
             else:
                 (self.bench.at / name).write_bytes(image)
 

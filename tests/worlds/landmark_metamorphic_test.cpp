@@ -44,20 +44,6 @@ struct Permuted {
     }
 };
 
-LandmarkRun run_in(const LandmarkView& view, Estimator estimator, const AnyNoise& noise) {
-    return with_estimator<Process::heading>(estimator, [&](auto tag) {
-        using Estimating = typename decltype(tag)::template type<Heading, double>;
-        const auto work = std::make_unique<CommonWorkspace<Heading, double, Estimating>>();
-        Watcher watcher;
-        LandmarkRun run{std::vector<double>(column_count), {}, {}, {}};
-        MatrixXd by_step(view.poses - 1, view.series_count);  // Eigen's columns are the engine's rows
-        run_trial(view, noise, watcher, *work, run.columns.data(), by_step.data());
-        run.figures = by_step.transpose();
-        run.steps = std::move(watcher.steps);
-        return run;
-    });
-}
-
 RunStep step_of(const Held& held) {
     RunStep step;
     step.truth = held.truth, step.mean = held.mean, step.covariance = held.covariance;
@@ -104,7 +90,7 @@ void each_trial(int trials, const Check& check) {
             for (int trial = 0; trial < trials; ++trial) {
                 const AnyNoise noise = noise_of(static_cast<std::uint64_t>(trial));
                 CAPTURE(scenario.poses, estimator, trial);
-                check(scenario, problem.view(), run_in(problem.view(), estimator, noise), estimator, noise);
+                check(scenario, problem.view(), run_landmarks(problem.view(), estimator, noise), estimator, noise);
             }
     }
 }
@@ -122,11 +108,11 @@ void compare_to_rounding(int trials) {
     each_trial(trials, [](const auto& scenario, const auto& view, const auto& run, auto estimator, const auto& noise) {
         constexpr double rounding = 1e-16 * 1e3 * 70;  // times the condition of S, over 70 poses
         const Permuted permuted(view, 3);
-        const LandmarkRun other = run_in(permuted.view, estimator, permuted.noise(noise));
+        const LandmarkRun other = run_landmarks(permuted.view, estimator, permuted.noise(noise));
         CHECK(difference(scenario, run, other, permutation(permuted)) < rounding);
         for (const double factor : {0.1, 1e3}) {
             const LandmarkProblem image(in_unit(scenario, factor));
-            const LandmarkRun scaled = run_in(image.view(), estimator, noise);
+            const LandmarkRun scaled = run_landmarks(image.view(), estimator, noise);
             CHECK(difference(scenario, run, scaled, scaling(scenario, factor)) < rounding);
         }
     });
@@ -137,7 +123,7 @@ void compare_to_rounding(int trials) {
 TEST_CASE("landmarks metamorphic: in a unit a power of two apart a trial has the same bits") {
     each_trial(1, [](const auto& scenario, const auto&, const auto& run, Estimator estimator, const auto& noise) {
         const LandmarkProblem image(in_unit(scenario, 0x1p-7));
-        REQUIRE(difference(scenario, run, run_in(image.view(), estimator, noise), scaling(scenario, 0x1p-7)) == 0);
+        REQUIRE(difference(scenario, run, run_landmarks(image.view(), estimator, noise), scaling(scenario, 0x1p-7)) == 0);
     });
 }
 

@@ -201,7 +201,7 @@ private:
 template <template <class, class> class Type>
 double learned_of_the_turn(std::uint64_t trial) {
     Watched<Type>::most = 0;
-    run_with<Watched<Type>>(classical(121), noise_of(trial));
+    run_with<Watched<Type>>(LandmarkProblem(classical(121)).view(), noise_of(trial));
     return Watched<Type>::most;
 }
 

@@ -14,19 +14,19 @@ using hdf5::Handle;
 
 using Checksums = std::vector<std::uint32_t>;
 
-constexpr auto rows_of_sum = static_cast<std::size_t>(block_size);
-static_assert(hdf5::values_at_once % rows_of_sum == 0);
+static_assert(hdf5::values_at_once % block_size == 0);
 
-/// Adds the checksums of values that begin where a sum does.
+/// Adds a checksum for every `block_size` values; they begin where one does.
 template <class T>
 void add_checksums(const std::vector<T>& values, Checksums& sums) {
-    for (std::size_t first = 0; first < values.size(); first += rows_of_sum)
-        sums.push_back(checksum(&values[first], std::min(rows_of_sum, values.size() - first) * sizeof(T)));
+    for (std::size_t first = 0; first < values.size(); first += block_size)
+        sums.push_back(checksum(&values[first], std::min<std::size_t>(block_size, values.size() - first) * sizeof(T)));
 }
 
 /// Rows first ... first + count - 1, which are read together with what else their checksums are of.
 template <class T>
-std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected, std::int64_t first, std::int64_t count) {
+std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected, std::int64_t first,
+                              std::int64_t count) {
     const std::int64_t begin = first / block_size * block_size, wanted = first + count - begin,
                        whole = (wanted + block_size - 1) / block_size * block_size,
                        there = static_cast<std::int64_t>(dataset.extents().at(0)) - begin;
