@@ -100,25 +100,51 @@ struct Update {
     Elimination<Real, capacity> alone;  ///< workspace for nis_edges
 };
 
-/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(i, K_i)`
-/// receives the gain, row by row. Returns S^-1, zero where masked.
+/// S = L D L' of two rows, L = [1 0; slope 1]: the second row less `slope` times the first is not correlated with the
+/// first, so that the two can be taken in one after the other. Rounding then costs P what the condition of S takes;
+/// multiplying by S^-1, whose entries nearly cancel, would cost its square [Higham 2002, 10.1 and 14.1].
+template <class Real>
+struct Decorrelation {
+    Real slope{};
+    Vector2<Real> precision{};  ///< D^-1, zero where masked
+    Mask<Real> positive_definite{};
+
+    /// L^-1 pair
+    Vector2<Real> operator()(const Vector2<Real>& pair) const { return {pair.x, fnma(slope, pair.x, pair.y)}; }
+
+    /// nu' S^-1 nu, of L^-1 nu
+    Real squared(const Vector2<Real>& nu) const {
+        return fma(precision.y * nu.y, nu.y, precision.x * nu.x * nu.x);
+    }
+};
+
+template <class Real>
+Decorrelation<Real> decorrelation(Real xx, Real xy, Real yy, Mask<Real> used) {
+    const Real x = select(used, Real(1) / xx, Real(0)), slope = x * xy, rest = fnma(slope, xy, yy);
+    return {slope, {x, select(used, Real(1) / rest, Real(0))},
+            either(both(xx > Real(0), rest > Real(0)), negated(used))};
+}
+
+/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(S, i, K_i)`
+/// receives the gain of each component for the decorrelated rows. Returns S.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
-Inverse2<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
-                                   Mask<Real> used, Gained&& gained) {
+Decorrelation<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
+                                        Mask<Real> used, Gained&& gained) {
     const auto n = layout.size();
     const auto entries = rows.entries();
     Vector2<Real> W[capacity];
     const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA { W[i] = rows([&](auto s) { return P.at(i, s); }); };
-    // The entries that S needs come first: the others are computed while S is being inverted.
+    // The entries that S needs come first: the others are computed while S is being factored.
     each_entry(layout, entries, make_row);
     const Vector2<Real> HWx = rows([&](auto s) { return W[s].x; });
     const Vector2<Real> HWy = rows([&](auto s) { return W[s].y; });
-    const Inverse2<Real> S_inverse = inverse(HWx.x + N, HWx.y, HWy.y + N, used);
+    const Decorrelation<Real> S = decorrelation(HWx.x + N, HWx.y, HWy.y + N, used);
     each_other(layout, entries, make_row);
+    each(zero, n, [&](auto i) CREDENCE_INLINE_LAMBDA { W[i] = S(W[i]); });
     auto& entry = read_anew(P).entry;
     const auto update_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
-        const Vector2<Real> K = times(S_inverse, W[i]);
-        gained(i, K);
+        const Vector2<Real> K{S.precision.x * W[i].x, S.precision.y * W[i].y};
+        gained(S, i, K);
         each(i, n, [&](auto j) { entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, entry[i][j])); });
     };
     // Likewise, the next measurement's S needs the pose and the next feature first.
@@ -126,14 +152,14 @@ Inverse2<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layout& l
     each(zero, Layout::pose_size, update_row);
     each(next, n, update_row);
     each(Layout::pose_size, next, update_row);
-    return S_inverse;
+    return S;
 }
 
-/// The same where P = P_1 (x) I_2, computed on the x axis: `gained(i, k)` receives the gain k of each x component i, which
-/// is that of component i + 1 as well.
+/// The same where P = P_1 (x) I_2, computed on the x axis: `gained(S, i, k)` receives the gain k of each x component i,
+/// which is that of component i + 1 as well.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
-Inverse2<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
-                                 Mask<Real> used, Gained&& gained) {
+Decorrelation<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
+                                      Mask<Real> used, Gained&& gained) {
     const auto points = half(layout.size());
     const auto entries = rows.entries();
     Real W[capacity];
@@ -141,25 +167,25 @@ Inverse2<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout& lay
         W[i] = rows([&](auto s) { return P.at(i - i % 2, s); }).x;
     };
     each_entry(layout, entries, make_row);
-    const Real S = rows([&](auto s) { return W[s]; }).x + N;
-    const Inverse2<Real> S_inverse = inverse(S, Real(0), S, used);
+    const Real xx = rows([&](auto s) { return W[s]; }).x + N;
+    const Decorrelation<Real> S = decorrelation(xx, Real(0), xx, used);
     each_other(layout, entries, make_row);
     auto& entry = read_anew(P).entry;
     each(zero, points, [&](auto c) CREDENCE_INLINE_LAMBDA {
         const auto i = two * c;
-        const Real K = S_inverse.xx * W[i];
-        gained(i, K);
+        const Real K = S.precision.x * W[i];
+        gained(S, i, K);
         each(c, points, [&](auto d) {
             const auto j = two * d;
             entry[i][j] = entry[i + one][j + one] = fnma(K, W[j], entry[i][j]);
         });
     });
-    return S_inverse;
+    return S;
 }
 
 template <class Layout, class Rows, class Real, int capacity, class Gained>
-Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
-                         Gained&& gained) {
+Decorrelation<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,
+                              Mask<Real> used, Gained&& gained) {
     if constexpr (Layout::by_axis)
         return condition_by_axis(P, layout, rows, N, used, gained);
     else
@@ -169,7 +195,7 @@ Inverse2<Real> condition(Symmetric<Real, capacity>& P, const Layout& layout, con
 /// The same for a covariance alone, as planners need it.
 template <class Layout, class Rows, class Real, int capacity>
 void condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used) {
-    condition(P, layout, rows, N, used, [](auto, const auto&) {});
+    condition(P, layout, rows, N, used, [](const auto&, auto, const auto&) {});
 }
 
 /// Conditions P on two rows whose innovation about the predicted mean is nu: adds K (nu - H correction) to the running
@@ -178,17 +204,18 @@ template <class Layout, class Rows, class Real, int capacity>
 void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
              const Vector2<Real>& nu, Update<Real, capacity>& update) {
     const Vector2<Real> fresh = nu - rows([&](auto s) { return update.correction[s]; });
-    const auto correct = [&](auto i, const auto& K) {
+    const auto correct = [&](const auto& S, auto i, const auto& K) {
         if constexpr (Layout::by_axis) {
             update.correction[i] = fma(K, fresh.x, update.correction[i]);
             update.correction[i + one] = fma(K, fresh.y, update.correction[i + one]);
         } else {
-            update.correction[i] = fma(K.y, fresh.y, fma(K.x, fresh.x, update.correction[i]));
+            const Vector2<Real> nu_S = S(fresh);
+            update.correction[i] = fma(K.y, nu_S.y, fma(K.x, nu_S.x, update.correction[i]));
         }
     };
-    const Inverse2<Real> S_inverse = condition(P, layout, rows, N, used, correct);
-    update.nis = update.nis + between(fresh, S_inverse, fresh);
-    update.positive_definite = both(update.positive_definite, S_inverse.positive_definite);
+    const Decorrelation<Real> S = condition(P, layout, rows, N, used, correct);
+    update.nis = update.nis + S.squared(S(fresh));
+    update.positive_definite = both(update.positive_definite, S.positive_definite);
 }
 
 template <class Real>

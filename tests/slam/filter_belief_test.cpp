@@ -117,7 +117,7 @@ TEST_CASE("filter: in the translation model one axis gives the same bits as both
     using Flat = Layout<Process::translation, 3>;
     constexpr int n = Flat::capacity;
     const std::array<double, 3> coefficient{1, -0.4, -0.6};
-    const auto ignored = [](int, const auto&) {};
+    const auto ignored = [](const auto&, int, const auto&) {};
     for (unsigned seed = 1; seed < 500; ++seed) {
         const MatrixXd P = on_both_axes(random_covariance(n / 2, seed));
         const VectorXd e = random_covariance(n, seed + 1000).col(0);
@@ -127,9 +127,9 @@ TEST_CASE("filter: in the translation model one axis gives the same bits as both
             const auto S = condition_both_axes(both, Flat(3), rows, 0.1, used, ignored);
             const auto S_axis = condition_by_axis(one_axis, Flat(3), rows, 0.1, used, ignored);
             CHECK(S.positive_definite == S_axis.positive_definite);
-            CHECK(S.xx == S_axis.xx);
-            CHECK(S.yy == S_axis.yy);
-            CHECK(S.xy == S_axis.xy);
+            CHECK(S.slope == S_axis.slope);
+            CHECK(S.precision.x == S_axis.precision.x);
+            CHECK(S.precision.y == S_axis.precision.y);
             for (int i = 0; i < n; ++i)
                 for (int j = i; j < n; ++j) CHECK(both.entry[i][j] == one_axis.entry[i][j]);
             Elimination<double, n> work, work_axis;
@@ -166,7 +166,7 @@ TEST_CASE("filter: an innovation covariance that is not positive definite is not
     const ContrastRows<Flat, double, int> rows{Flat(3), 0, coefficient.data()};
     for (const bool used : {true, false}) {
         Symmetric<double, 8> P = negative;
-        const auto ignored = [](int, const auto&) {};
+        const auto ignored = [](const auto&, int, const auto&) {};
         CHECK(condition(P, Flat(3), rows, 0.1, used, ignored).positive_definite == !used);
         if (!used) CHECK(trace(P, 8) == trace(negative, 8));
     }

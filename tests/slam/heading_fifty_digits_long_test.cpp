@@ -154,3 +154,21 @@ TEST_CASE("fifty digits: what steps of the heading filter spoil of NEES and NIS 
     CHECK(spoilt > 150);
     CHECK(exact > 300);
 }
+
+TEST_CASE("fifty digits: a sighting tells a lost heading, and loses what the condition takes, and no more") {
+    const auto lost = [](auto& random, double condition) {
+        FiftyMatrix P = conditioned(random, n, 10) / Fifty(condition);
+        P(0, 0) += 1;
+        return P;
+    };
+    int compared = 0;
+    each_condition(lost, [&](const Errors& errors) {
+        CAPTURE(errors.P, errors.mean, errors.nis, errors.allowed);
+        if (!(errors.allowed < 1)) return;
+        CHECK(errors.P <= errors.allowed);
+        CHECK(errors.mean <= errors.allowed);
+        CHECK(errors.nis <= errors.allowed);
+        ++compared;
+    });
+    CHECK(compared > 300);
+}

@@ -162,7 +162,7 @@ TEST_CASE("status: an innovation covariance that is not positive definite is not
 
 TEST_CASE("status: a covariance that is not positive definite has its own status") {
     // x and P are finite here; the NEES is not, and must not be taken for the trouble.
-    const DeformableSettings scenario = scenario_with({{"noise.odometry", "1e6"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
+    const DeformableSettings scenario = scenario_with({{"noise.odometry", "1e7"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
                                              {"model.process", "translation"}});
     const Run run = run_with(scenario, keyed_noise(scenario, 30, 0));
     REQUIRE(run.steps[1].covariance.allFinite());

@@ -87,7 +87,7 @@ TEST_CASE("fifty digits: a step of the filter loses what the condition takes, an
         CHECK(error <= bound);
         closest = std::max(closest, error / bound);
     });
-    CHECK(closest > 0.05);
+    CHECK(closest > 0.001);
 }
 
 TEST_CASE("fifty digits: what a step spoils of an ill-conditioned P is within the bound on the rounding of NEES") {
