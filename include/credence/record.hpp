@@ -76,7 +76,7 @@ struct RecordArray {
     enum class Type { real32, real64 };
 
     std::string path;                   ///< such as `error`, `group/NAME/covariance`
-    const void* data = nullptr;
+    const void* data = nullptr;         ///< aligned as its type
     Type type = Type::real64;
     std::vector<std::int64_t> extents, strides;  ///< strides in elements
     double epsilon = 0;                 ///< distance of 1 from the next number of the type in which it was computed

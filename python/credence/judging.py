@@ -70,7 +70,7 @@ def _array(given: object) -> tuple[Numbers, float]:
     precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
     if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
         array = array.astype(float)
-    if any(stride % array.itemsize for stride in array.strides):
+    if not array.flags.aligned or any(stride % array.itemsize for stride in array.strides):
         array = array.copy()
     return array, precision
 

@@ -84,6 +84,12 @@ def _unaligned(array):
     return pairs["value"]
 
 
+def test_numbers_at_an_odd_address_are_copied():
+    odd = np.frombuffer(bytes(8 * 6 + 1), offset=1).reshape(2, 3)
+    assert not odd.flags.aligned
+    assert credence.judging._array(odd)[0].flags.aligned
+
+
 def test_what_has_an_array_is_taken():
     class Wrapped:
         def __init__(self, array):

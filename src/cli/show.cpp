@@ -4,6 +4,8 @@
 #include <credence/error.hpp>
 #include <credence/worlds.hpp>
 
+#include <algorithm>
+
 namespace credence::cli {
 
 const Command& show_command() {
@@ -40,9 +42,11 @@ int show(const Parsed& parsed) {
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
     const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
-    for (const Setting& setting : scenario.settings)
-        for (const DescribedKey& key : keys)
-            if (key.key == setting.key) print("# " + key.help + "\n" + key.key + " = " + setting.value + "\n");
+    for (const Setting& setting : scenario.settings) {
+        const auto described = std::ranges::find(keys, setting.key, &DescribedKey::key);
+        if (described != keys.end()) print("# " + described->help + "\n");
+        print(setting.key + " = " + setting.value + "\n");
+    }
     return 0;
 }
 

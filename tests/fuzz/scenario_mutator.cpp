@@ -1,11 +1,13 @@
 #include "scenario_mutator.hpp"
 
 #include "worlds/deformable/keys.hpp"
+#include "worlds/landmarks/keys.hpp"
 #include <credence/text.hpp>
 
 #include <algorithm>
 #include <random>
 #include <string>
+#include <vector>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t room);
 
@@ -27,8 +29,19 @@ std::string any_number(Random& random) {
     return one_of(numbers, random);
 }
 
-/// Words of choices stand in a key's help; lists need more.
-std::string any_value(const DeformableKey& key, Random& random) {
+/// Keys of both worlds: a name, and a help that has the words of choices.
+const std::vector<DescribedKey>& all_keys() {
+    static const std::vector<DescribedKey> keys = [] {
+        std::vector<DescribedKey> found{{"scenario.world", "", "deformable, landmarks"}};
+        for (const DeformableKey& key : scenario_keys()) found.push_back({key.name, "", key.help});
+        for (const LandmarkKey& key : landmark_keys()) found.push_back({key.name, "", key.help});
+        return found;
+    }();
+    return keys;
+}
+
+/// Lists need more than the words of a help.
+std::string any_value(const DescribedKey& key, Random& random) {
     static const std::string values[] = {"default", "none", "chain", "all", "0-1", "0-1, 1-2", "1-0", "0-1, 0-1",
                                          "0-63", "0 0, 1 1", "1 2", "fixed", "greedy, fixed", "fixed, fixed", "ekf",
                                          "kf", "ekf, kf", "fixed.ekf 1", "greedy.kf 2, fixed.kf 3", "a.b 1", "run", "dm",
@@ -49,8 +62,8 @@ std::string any_value(const DeformableKey& key, Random& random) {
 std::size_t mutate_scenario(std::uint8_t* text, std::size_t size, std::size_t room, unsigned seed) {
     Random random(seed);
     if (random() % 2 == 0) return LLVMFuzzerMutate(text, size, room);
-    const DeformableKey& key = one_of(scenario_keys(), random);
-    const std::string more = override_separator + key.name + "=" + any_value(key, random);
+    const DescribedKey& key = one_of(all_keys(), random);
+    const std::string more = override_separator + key.key + "=" + any_value(key, random);
     // In the place of what was overridden before, now and then, so that texts do not only grow.
     const std::uint8_t* end = std::find(text, text + size, static_cast<std::uint8_t>(override_separator));
     if (random() % 2 == 0) size = static_cast<std::size_t>(end - text);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace credence {
 
@@ -33,7 +34,7 @@ std::vector<double> logarithmic_ticks(double low, double high, int about) {
     const int first = static_cast<int>(std::floor(std::log10(low))),
               last = static_cast<int>(std::ceil(std::log10(high)));
     std::vector<double> found;
-    const double decades = std::log10(high / low);
+    const double decades = std::log10(high) - std::log10(low);  // the ratio may be beyond doubles
     const int apart = std::max(1, static_cast<int>(std::ceil(decades / about)));
     for (int decade = first; decade <= last; decade += apart)
         for (const double factor : {1.0, 2.0, 5.0}) {
@@ -91,8 +92,9 @@ void Range::include(double value) {
 Scale Range::scale(double from, double to, double logarithmic_from) const {
     constexpr double margin = 0.04;
     if (known && low > 0 && high > logarithmic_from * low) {
-        const double more = std::pow(high / low, margin);
-        return {ScaleKind::logarithmic, low / more, high * more, from, to};
+        const double more = std::exp(margin * (std::log(high) - std::log(low)));
+        return {ScaleKind::logarithmic, std::max(low / more, std::numeric_limits<double>::min()),
+                std::min(high * more, std::numeric_limits<double>::max()), from, to};
     }
     const double spread = high > low ? high - low : std::max(1e-9, std::abs(low));
     return {ScaleKind::linear, low - margin * spread, high + margin * spread, from, to};
