@@ -1,8 +1,7 @@
 #include "scenario_mutator.hpp"
 
-#include "worlds/deformable/keys.hpp"
-#include "worlds/landmarks/keys.hpp"
 #include <credence/text.hpp>
+#include <credence/worlds.hpp>
 
 #include <algorithm>
 #include <random>
@@ -29,18 +28,22 @@ std::string any_number(Random& random) {
     return one_of(numbers, random);
 }
 
-/// Keys of both worlds: a name, and a help that has the words of choices.
+/// Keys of every world, and the key of the world itself.
 const std::vector<DescribedKey>& all_keys() {
     static const std::vector<DescribedKey> keys = [] {
-        std::vector<DescribedKey> found{{"scenario.world", "", "deformable, landmarks"}};
-        for (const DeformableKey& key : scenario_keys()) found.push_back({key.name, "", key.help});
-        for (const LandmarkKey& key : landmark_keys()) found.push_back({key.name, "", key.help});
+        std::vector<DescribedKey> found;
+        std::string names;
+        for (const World* world : all_worlds()) {
+            for (const DescribedKey& key : world->keys()) found.push_back(key);
+            names += (names.empty() ? "" : ", ") + world->name();
+        }
+        found.push_back({"scenario.world", "", names});
         return found;
     }();
     return keys;
 }
 
-/// Lists need more than the words of a help.
+/// Words of choices stand in a key's help; lists need more.
 std::string any_value(const DescribedKey& key, Random& random) {
     static const std::string values[] = {"default", "none", "chain", "all", "0-1", "0-1, 1-2", "1-0", "0-1, 0-1",
                                          "0-63", "0 0, 1 1", "1 2", "fixed", "greedy, fixed", "fixed, fixed", "ekf",
