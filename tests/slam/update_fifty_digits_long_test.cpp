@@ -80,14 +80,15 @@ TEST_CASE("fifty digits: a step of the filter loses what the condition takes, an
     double closest = 0;
     const auto any = [](std::mt19937_64& random, double condition) { return conditioned(random, n, condition); };
     each_condition(any, [&](const Step& step) {
-        // Each row changes P by n products that are rounded. The bound is one of small errors.
-        const double error = step.error(), bound = rows * n * epsilon * step.condition();
+        // Each row changes P by n products that are rounded, and errors of the rows hardly add. The bound is one of small
+        // errors.
+        const double error = step.error(), bound = n * epsilon * step.condition();
         CAPTURE(error, bound);
         if (bound > 1) return;
         CHECK(error <= bound);
         closest = std::max(closest, error / bound);
     });
-    CHECK(closest > 0.001);
+    CHECK(closest > 0.03);
 }
 
 TEST_CASE("fifty digits: what a step spoils of an ill-conditioned P is within the bound on the rounding of NEES") {
