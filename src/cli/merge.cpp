@@ -29,7 +29,7 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
     allow_open_files();
     for (const std::string& shard : parsed.arguments) check_kind(shard, {FileKind::results});
-    const Study study = merge_results(parsed.arguments);
+    const Study study = merge_results(parsed.arguments, most_totals_in_memory, made_by());
     if (!study.complete)
         throw Failure("blocks are missing: " + missing_text(study) +
                       ". Run or resume the shards that have them, then merge again.");

@@ -90,6 +90,16 @@ std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
 /// Equality bit for bit, where any NaN equals any other.
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
+/// What to add about a trial that differs where another release computed it, whose draws or columns may differ.
+std::string other_release(const Study& study, const ScenarioResults& results, std::int64_t trial) {
+    const auto scenario = static_cast<std::size_t>(&results - study.scenarios.data());
+    for (const ComputedBy& one : study.computed_by)
+        if (one.of(scenario).contains(trial / block_size) && !may_mix(one.release, made_by()))
+            return " " + one.release + " computed it, and this is " + made_by() +
+                   "; draws and columns may differ between them. Replay it with that release.";
+    return {};
+}
+
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     if (parsed.has("set"))
         throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
@@ -106,7 +116,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
         if (!same(stored, trajectory.column_values[c]))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
                           results.columns[c].name + " is " + to_text(trajectory.column_values[c]) + ", stored is " +
-                          to_text(stored) + ".");
+                          to_text(stored) + "." + other_release(study, results, trial));
     }
     return {std::move(trajectory)};
 }

@@ -54,6 +54,7 @@ class Bench:
         shutil.copy(HERE / "tiny.ini", self.root)
         self.at = self.root / "at"
         self.at.mkdir()
+        self.planted = {}  # of the library's environment, in every run
 
     def __enter__(self):
         return self
@@ -75,8 +76,9 @@ class Bench:
     def run(self, *command, environment=None, timeout=20, **more):
         """Runs the program in the folder; `environment` is the library's."""
         variables = dict(os.environ)
-        if environment is not None:
-            variables.update({k: str(v) for k, v in environment.items()}, LD_PRELOAD=self.shim)
+        if environment is not None or self.planted:
+            library = {**self.planted, **(environment or {})}
+            variables.update({k: str(v) for k, v in library.items()}, LD_PRELOAD=self.shim)
         more.setdefault("stdin", subprocess.DEVNULL)
         process = subprocess.Popen([self.credence, *command], cwd=self.at, env=variables, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, errors="replace", **more)

@@ -1,7 +1,8 @@
 """Journals of every version and results files of every schema version that were written, by the releases that wrote
 them (versions/, and of schema version 2 and of journals of a whole block the seeds of the fuzz targets): each is gone
 on with, and the file says whose blocks are whose; or it is refused, with the words expected of it, unchanged. So is a
-journal of a later version or schema, which is made here of this program's own.
+journal of a later version or schema, which is made here of this program's own. Releases 0.1 and 0.2 have the same
+schema and differ in the last digits of their columns.
 
 With --mutants journals of other versions say that they are this program's, and this program's that they are later ones:
 then each must fail."""
@@ -21,8 +22,10 @@ OWN = {"trials": 6, "aggregates": 7}  # versions of this program's journals
 SCHEMA = 3
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (0, 1), (2, 1))  # a journal's version and its schema's, over this program's
+RELEASE = "0.2"  # journals and results files of it are gone on with
 FINISH = "Finish the run with the release that began it."
 AGAIN = "Use the release that wrote it, or run the study again."
+ELSEWHERE = "; draws and columns may differ between them)."
 
 
 def stored(name):
@@ -46,7 +49,7 @@ class File:
     data: bytes
     keep: str = "trials"
     refused: str = ""
-    whole_blocks: int = 0  # that need not be computed again
+    merges: bool = True
 
     @property
     def name(self):
@@ -58,7 +61,7 @@ def later(keep, version, schema):
     version, schema = OWN[keep] + version, SCHEMA + schema
     words = (f"is a journal of version {version}, this program's is {OWN['trials']}. {FINISH}" if version != OWN[keep]
              else f"is of schema version {schema}, this program's is {SCHEMA}. {FINISH}")
-    data = labelled(stored(f"journal-{OWN[keep]}"), version, schema)
+    data = labelled(stored(f"journal-{OWN[keep]}-{RELEASE}"), version, schema)
     return File(f"journal {version} of schema {schema}", data, keep, words)
 
 
@@ -72,22 +75,26 @@ def foreign_journals():
             yield later(keep, version, schema)
 
 
-def own_journals():
+def journals_of_releases():
+    """Journals of this program's versions, of a block and a partial one."""
     for keep, version in OWN.items():
-        yield File(f"journal {version}", stored(f"journal-{version}"), keep)
-        yield File(f"journal {version} of two blocks", (SEEDS / "journal" / f"257-{keep}").read_bytes(), keep,
-                   whole_blocks=1)
+        yield File(f"journal {version}", stored(f"journal-{version}-{RELEASE}"), keep)
+        yield File(f"journal {version} of 0.1", stored(f"journal-{version}"), keep, ELSEWHERE)
+        yield File(f"journal {version} of 0.1, two blocks", (SEEDS / "journal" / f"257-{keep}").read_bytes(), keep,
+                   ELSEWHERE)
 
 
 def results_files():
     """Those of schema version 3 were written before there were checksums, and since."""
     words = f"it has schema version 2, this program writes {SCHEMA}). {AGAIN}"
-    yield File("results 2", (SEEDS / "results" / "schema-2.h5").read_bytes(), refused=words)
+    yield File("results 2", (SEEDS / "results" / "schema-2.h5").read_bytes(), refused=words, merges=False)
     yield File("results 2, aggregates", (SEEDS / "results" / "schema-2-aggregates.h5").read_bytes(), "aggregates",
-               words)
-    yield File("results 3", stored("results-3.h5"), whole_blocks=1)
-    yield File("results 3, checksums", stored("results-3-crc32.h5"), whole_blocks=1)
-    yield File("results 3, aggregates", stored("results-3-crc32-aggregates.h5"), "aggregates", whole_blocks=1)
+               words, merges=False)
+    yield File("results 3 of 0.1, no checksums", stored("results-3.h5"), refused=ELSEWHERE)
+    yield File("results 3 of 0.1", stored("results-3-crc32.h5"), refused=ELSEWHERE)
+    yield File("results 3 of 0.1, aggregates", stored("results-3-crc32-aggregates.h5"), "aggregates", ELSEWHERE)
+    yield File("results 3", stored(f"results-3-{RELEASE}.h5"))
+    yield File("results 3, aggregates", stored(f"results-3-{RELEASE}-aggregates.h5"), "aggregates")
 
 
 def growing(keep, output):
@@ -134,23 +141,37 @@ class Versions:
         self.check_releases(file)
 
     def check_readers(self, file):
-        """A file of any schema version is reported, and what can be gone on with can be merged."""
+        """A file of any schema version is reported. One of this version is merged, but with others that have its trials
+        only by a release that computes the same; a trial is replayed, or the release is named that computed it."""
         if self.run(file, "report", "x.h5").returncode != 0:
             raise Failed(f"{file.what}: it is not reported")
         merged = self.run(file, "merge", "x.h5", "-o", "y.h5", "--quiet")
-        if file.refused:
-            self.check_refused(file, merged)
-        elif merged.returncode != 0:
+        if not file.merges:
+            return self.check_refused(file, merged)
+        if merged.returncode != 0:
             raise Failed(f"{file.what}: it is not merged: {merged.stderr.strip()}")
+        twice = self.run(file, "merge", "x.h5", "x.h5", "-o", "y.h5", "--quiet")
+        if file.refused:
+            self.check_refused(file, twice)
+        elif twice.returncode != 0:
+            raise Failed(f"{file.what}: it is not merged with itself: {twice.stderr.strip()}")
+        self.check_replayed(file)
+
+    def check_replayed(self, file):
+        done = self.run(file, "replay", "x.h5", "--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3")
+        differs = bool(file.refused) and file.keep == "trials"  # aggregates have nothing to compare with
+        words = f"{release_in(file.data)} computed it, and this is {self.own_release()};"
+        if done.returncode != differs or (differs and words not in done.stderr):
+            raise Failed(f"{file.what}: replay ended with {done.returncode}: {done.stderr.strip()}")
 
     def check_releases(self, file):
         """Blocks that the older release computed are said to be its own."""
         said = subprocess.run(["h5dump", "-a", "/run/computed_by", "x.h5"], cwd=self.bench.at, capture_output=True,
                               text=True, check=True).stdout
         own = self.own_release()
-        parts, theirs = [own], release_in(file.data) if file.whole_blocks else own
+        parts, theirs = [own], release_in(file.data)
         if theirs != own:
-            parts = [f"{theirs}: tiny 0", f"{own}: tiny {file.whole_blocks}-2"]
+            parts = [f"{theirs}: tiny 0", f"{own}: tiny 1-2"]  # the first block was whole
         if re.findall(r"credence [^\"\n]*", said) != parts:
             raise Failed(f"{file.what}: it does not say whose blocks are whose, which are {parts}: {said}")
 
@@ -177,7 +198,7 @@ def mislabelled():
     """Journals under the other kind's label, but what is expected of them is what it was."""
     for file in foreign_journals():
         yield File(file.what, labelled(file.data, OWN[file.keep], SCHEMA), file.keep, file.refused)
-    for file in own_journals():
+    for file in journals_of_releases():
         yield File(file.what, later(file.keep, *LATER[0]).data, file.keep)
 
 
@@ -191,7 +212,7 @@ def main():
             return finish("versions, not looked at", {"journals": len(planted), "noticed": noticed},
                           [] if noticed == len(planted) else ["a journal under a wrong label was not noticed"])
         finish("versions", versions.counts,
-               failures_of([*foreign_journals(), *own_journals(), *results_files()], versions.check))
+               failures_of([*foreign_journals(), *journals_of_releases(), *results_files()], versions.check))
 
 
 if __name__ == "__main__":

@@ -115,20 +115,28 @@ std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
     return order;
 }
 
-Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_totals) {
+/// Merges files that share blocks, which may have to be computed again.
+Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_totals, const std::string& release) {
     Merger merger(paths);
-    for (const std::size_t file : by_size(paths)) merger.add(file, read_results_without_totals(paths[file]).study);
+    for (const std::size_t file : by_size(paths)) {
+        Study part = read_results_without_totals(paths[file]).study;
+        if (const std::string other = unmixable(part.computed_by, release); !other.empty())
+            throw InputError("cannot merge " + paths[file] + " (the files share trials, which may have to be computed "
+                             "again; " + other + " computed trials of it, and this is " + release +
+                             "; draws and columns may differ between them). Merge the files with that release.");
+        merger.add(file, std::move(part));
+    }
     return merger.merged(most_totals);
 }
 
 }  // namespace
 
-Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals) {
+Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals, const std::string& release) {
     Merger merger(paths);
     for (std::size_t file = 0; file < paths.size(); ++file) {
         Study part = read_results_without_totals(paths[file]).study;
         check_schema(part, paths[file], "merge");
-        if (merger.shares(part)) return merge_shared(paths, most_totals);
+        if (merger.shares(part)) return merge_shared(paths, most_totals, release);
         merger.add(file, std::move(part));
     }
     return merger.merged(most_totals);
