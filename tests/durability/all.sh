@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Runs everything here, and first that each harness notices the bugs that are planted for it. Prints a line for each.
+# Runs everything here, and that each harness notices the bugs that are planted for it. Prints a line for each.
 # usage: all.sh CREDENCE [DEPTH]
 #   sample   some of each, in minutes: the label durability
 #   evening  more of each, in about an hour
-#   full     every chain of 12 callers of an allocation, every byte of two small results files, every change of a file:
+#   full     every chain of 8 callers of an allocation, every byte of two small results files, every change of a file:
 #            hours
 # The last two run as many harnesses at a time as there are processors, and keep the lines in counts.txt, which
 # docs/durability.md shows.
@@ -23,20 +23,20 @@ case $depth in
     streams= bytes="--every 401" turns=1000
     ;;
   full)
-    sweep=1 kills=200 folders="--some 30" calls="--many 50 --callers 12"
+    sweep=1 kills=200 folders="--some 30" calls="--many 50 --callers 8"
     streams= bytes="--every 101" turns=4000
     ;;
   *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
 esac
 
-parts=(
+parts=(  # that with the most calls first, so that no processor waits for it at the end
+  "harness fail_once $calls"
   "harness interleave --mutants 1 --seed 2"
   "harness corruption --every 997 --mutants 1"
   "harness fail_once --mutants 1"
   "harness descriptors --mutants 1"
   "harness versions --mutants 1"
   "harness power_loss $folders"
-  "harness fail_once $calls"
   "harness descriptors $streams"
   "harness corruption $bytes"
   "harness interleave --schedules $turns"
@@ -48,11 +48,11 @@ parts=(
 long_tests=$(dirname "$credence")/tests/credence_long_tests
 if [ "$depth" != sample ]; then
   command -v valgrind >/dev/null || { echo "valgrind is not installed" >&2; exit 2; }
-  parts=("harness power_loss --mutants 1" "${parts[@]}" "harness memcheck")
+  parts+=("harness power_loss --mutants 1" "harness memcheck")
 fi
 if [ "$depth" = full ]; then
   [ -x "$long_tests" ] || { echo "$long_tests is not built" >&2; exit 2; }
-  parts+=(each_byte)
+  parts=(each_byte "${parts[@]}")
 fi
 
 harness() { python3 "$here/$1.py" "$credence" "${@:2}"; }
