@@ -27,14 +27,16 @@ namespace {
 constexpr int not_inflated = -1;
 
 /// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`; where
-/// it gets no memory, by the entry's number, and where zlib gets none to begin with, in the text again.
+/// it gets no memory, by the entry's number, and where zlib gets none to begin with, in the text again. Where it got none
+/// for one of its default properties, it does not say so, but misses the property later: nothing in a file can do that.
 herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
     int& error = *static_cast<int*>(to);
     if (const std::size_t at = said.rfind(number); at != std::string::npos)
         error = std::atoi(said.c_str() + at + number.size());
     else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE ||
-                            entry->min_num == H5E_CANTALLOC || said == "inflateInit() failed"))
+                            entry->min_num == H5E_CANTALLOC || said == "inflateInit() failed" ||
+                            (entry->maj_num == H5E_PLIST && entry->min_num == H5E_NOTFOUND)))
         error = ENOMEM;
     else if (error == 0 && said == "inflate() failed")
         error = not_inflated;
