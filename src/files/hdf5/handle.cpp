@@ -27,8 +27,9 @@ namespace {
 constexpr int not_inflated = -1;
 
 /// HDF5 reports the system's errors only in the text of its descriptions: `..., errno = 24, error message = ...`; where
-/// it gets no memory, by the entry's number, and where zlib gets none to begin with, in the text again. Where it got none
-/// for one of its default properties, it does not say so, but misses the property later: nothing in a file can do that.
+/// it gets no memory, by the entry's number, and where zlib gets none to begin with, in the text again. Where it got
+/// none for its default lists of properties, it does not say so, but misses a property or a list later, which nothing
+/// in a file can cause.
 herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
     const std::string said = entry->desc != nullptr ? entry->desc : "", number = "errno = ";
     int& error = *static_cast<int*>(to);
@@ -36,7 +37,8 @@ herr_t note_system_error(unsigned, const H5E_error2_t* entry, void* to) {
         error = std::atoi(said.c_str() + at + number.size());
     else if (error == 0 && (entry->maj_num == H5E_RESOURCE || entry->min_num == H5E_NOSPACE ||
                             entry->min_num == H5E_CANTALLOC || said == "inflateInit() failed" ||
-                            (entry->maj_num == H5E_PLIST && entry->min_num == H5E_NOTFOUND)))
+                            (entry->maj_num == H5E_PLIST && entry->min_num == H5E_NOTFOUND) ||
+                            said == "can't find object for ID"))
         error = ENOMEM;
     else if (error == 0 && said == "inflate() failed")
         error = not_inflated;
