@@ -95,8 +95,7 @@ std::string other_release(const Study& study, const ScenarioResults& results, st
     const auto scenario = static_cast<std::size_t>(&results - study.scenarios.data());
     for (const ComputedBy& one : study.computed_by)
         if (one.of(scenario).contains(trial / block_size) && !may_mix(one.release, made_by()))
-            return " " + one.release + " computed it, and this is " + made_by() +
-                   "; draws and columns may differ between them. Replay it with that release.";
+            return " " + why_unmixable(one.release, made_by()) + ". Replay it with that release.";
     return {};
 }
 

@@ -153,8 +153,8 @@ bool StoredRun::is_base_of(const JournalHeader& header) const {
 void StoredRun::check_releases() const {
     const std::string other = unmixable(study_.computed_by, release_);
     if (!other.empty())
-        throw InputError("cannot resume " + output_.path + " (" + other + " computed trials of it, and this is " + release_ +
-                         "; draws and columns may differ between them). Go on with that release, or name another output.");
+        throw InputError("cannot resume " + output_.path + " (" + why_unmixable(other, release_) +
+                         "). Go on with that release, or name another output.");
 }
 
 BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, const Shard& shard) {

@@ -107,6 +107,10 @@ std::string unmixable(const Provenance& provenance, const std::string& release) 
     return {};
 }
 
+std::string why_unmixable(const std::string& other, const std::string& release) {
+    return other + " computed trials of it, and this is " + release + "; draws and columns may differ between them";
+}
+
 std::string provenance_text(const Study& study) {
     if (study.computed_by.empty()) return {};
     const Provenance all = all_of(study);

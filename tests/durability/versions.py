@@ -160,7 +160,7 @@ class Versions:
     def check_replayed(self, file):
         done = self.run(file, "replay", "x.h5", "--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3")
         differs = bool(file.refused) and file.keep == "trials"  # aggregates have nothing to compare with
-        words = f"{release_in(file.data)} computed it, and this is {self.own_release()};"
+        words = f"{release_in(file.data)} computed trials of it, and this is {self.own_release()};"
         if done.returncode != differs or (differs and words not in done.stderr):
             raise Failed(f"{file.what}: replay ended with {done.returncode}: {done.stderr.strip()}")
 

@@ -39,6 +39,9 @@ bool may_mix(const std::string& release, const std::string& other);
 /// The first release in the list that may not be mixed with this one; empty where there is none.
 std::string unmixable(const Provenance& provenance, const std::string& release);
 
+/// Why trials that `other` computed may not be mixed with those of `release`, for a message about their file.
+std::string why_unmixable(const std::string& other, const std::string& release);
+
 /// Of the blocks that the study has: the release, where one computed them all; else a line for each release with its
 /// blocks by scenario, such as `credence 0.1.0, git revision 1a2b3c4: a 0-5 7; b 0-2`. Empty where nothing was noted.
 std::string provenance_text(const Study& study);

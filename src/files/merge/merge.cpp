@@ -122,8 +122,7 @@ Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_tota
         Study part = read_results_without_totals(paths[file]).study;
         if (const std::string other = unmixable(part.computed_by, release); !other.empty())
             throw InputError("cannot merge " + paths[file] + " (the files share trials, which may have to be computed "
-                             "again; " + other + " computed trials of it, and this is " + release +
-                             "; draws and columns may differ between them). Merge the files with that release.");
+                             "again; " + why_unmixable(other, release) + "). Merge the files with that release.");
         merger.add(file, std::move(part));
     }
     return merger.merged(most_totals);
