@@ -3,6 +3,7 @@
 import argparse
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -46,6 +47,7 @@ class Bench:
     """A folder with the library, the scenario and studies of it, undisturbed; `at` is the folder to work in."""
 
     def __init__(self, credence):
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that folders and mounts are removed then too
         self.credence = str(Path(credence).resolve())
         self.root = Path(tempfile.mkdtemp(prefix="credence-durability-"))
         self.shim = str(self.root / "shim.so")
