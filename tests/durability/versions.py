@@ -19,6 +19,7 @@ WORLD = HERE.parent / "fuzz" / "journal.ini"
 SEEDS = HERE.parent / "fuzz" / "seeds"
 KEPT = {1: "trials", 2: "trials", 3: "aggregates", 4: "trials", 5: "aggregates", 6: "trials", 7: "aggregates"}
 OWN = {"trials": 6, "aggregates": 7}  # versions of this program's journals
+OWN_VERSIONS = " and ".join(map(str, OWN.values()))
 SCHEMA = 3
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (0, 1), (2, 1))  # a journal's version and its schema's, over this program's
@@ -59,7 +60,7 @@ class File:
 def later(keep, version, schema):
     """A journal that is later by so many versions. Its layout is this program's, so that only its label is wrong."""
     version, schema = OWN[keep] + version, SCHEMA + schema
-    words = (f"is a journal of version {version}, this program's is {OWN['trials']}. {FINISH}" if version != OWN[keep]
+    words = (f"is a journal of version {version}, this program's are {OWN_VERSIONS}. {FINISH}" if version != OWN[keep]
              else f"is of schema version {schema}, this program's is {SCHEMA}. {FINISH}")
     data = labelled(stored(f"journal-{OWN[keep]}-{RELEASE}"), version, schema)
     return File(f"journal {version} of schema {schema}", data, keep, words)
@@ -69,7 +70,7 @@ def foreign_journals():
     for version, keep in KEPT.items():
         if version not in OWN.values():
             yield File(f"journal {version}", stored(f"journal-{version}"), keep,
-                       f"is a journal of version {version}, this program's is {OWN['trials']}. {FINISH}")
+                       f"is a journal of version {version}, this program's are {OWN_VERSIONS}. {FINISH}")
     for keep in OWN:
         for version, schema in LATER:
             yield later(keep, version, schema)

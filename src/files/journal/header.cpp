@@ -49,8 +49,9 @@ std::size_t header_size(const std::string& start, const std::string& path) {
     ByteReader from(start.data(), start.size());
     from.raw(magic.size());
     if (const auto version = from.get<std::uint32_t>(); version != journal_version && version != aggregates_version)
-        refuse(path, "is a journal of version " + std::to_string(version) + ", this program's is " +
-                         std::to_string(journal_version), "Finish the run with the release that began it");
+        refuse(path, "is a journal of version " + std::to_string(version) + ", this program's are " +
+                         std::to_string(journal_version) + " and " + std::to_string(aggregates_version),
+               "Finish the run with the release that began it");
     const auto body = from.get<std::uint32_t>();
     if (body > largest_header) refuse(path, "is damaged: its header is too long", another);
     return header_prefix + body + sizeof(std::uint32_t);
