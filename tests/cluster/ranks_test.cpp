@@ -6,6 +6,7 @@
 #include "cluster/rank_message.hpp"
 #include "journal_support.hpp"
 
+#include <atomic>
 #include <deque>
 #include <mutex>
 #include <thread>
@@ -76,6 +77,7 @@ struct Job {
     std::function<bool()> stop{};
     Signal signal = no_signal;
     RankLeader::Sending sending = RankLeader::Sending::now_and_then;
+    std::function<void(const Progress&)> progress{};
 };
 
 /// Runs the missing blocks of `asked` on the ranks of the job; all of its threads compute, rank 0's too.
@@ -87,6 +89,7 @@ void compute_together(StoredRun& run, const Asked& asked, const Job& job) {
     leader.begin(definition_of(run.study()), asked.threads, job.sending);
     RunOptions options{asked.trials, asked.threads, {}, asked.shard, {}, &run.begin(asked.trials, 1), &leader};
     options.stop = [&] { return leader.asked_to_stop() || (job.stop && job.stop()); };
+    options.progress = job.progress;
     run_study(run.study(), options);
 }
 
@@ -157,21 +160,22 @@ TEST_CASE("ranks: what they sent is in the journal, and the run goes on with it 
 TEST_CASE("ranks: a stop keeps finished blocks, whichever rank got the signal, and can be resumed") {
     const TemporaryFolder folder;
     Asked asked = some();
-    asked.trials = 200000;
+    asked.trials = 2000000;
     asked.scenarios = {tiny("a"), scenario("b")};
-    using Clock = std::chrono::steady_clock;
-    const Problem first(asked.scenarios.front());
-    const auto begin = Clock::now();
-    run_block(first, asked.root_seed, 0, trials_in_block(asked.trials, 0));
-    const auto wait = std::chrono::milliseconds(60) + 5 * (Clock::now() - begin);  // some blocks of some hundred
-    const auto soon = [&] { return [end = Clock::now() + wait] { return Clock::now() > end; }; };
-    run_together(folder / "own.h5", asked, {3, soon()});
-    run_together(folder / "other.h5", asked, {3, {}, [late = soon()] { return std::string(late() ? "SIGTERM" : ""); }});
+    // They stop after some of some thousand blocks.
+    std::atomic<bool> begun = false;
+    const auto enough = [&] { return begun.load(); };
+    const auto progress = [&](const Progress& now) { begun = now.done >= 10 * block_size; };
+    const auto at_once = RankLeader::Sending::at_once;
+    run_together(folder / "own.h5", asked, {3, enough, no_signal, at_once, progress});
+    begun = false;
+    const Signal signal = [&] { return std::string(begun ? "SIGTERM" : ""); };
+    run_together(folder / "other.h5", asked, {3, {}, signal, RankLeader::Sending::now_and_then, progress});
     for (const char* name : {"own.h5", "other.h5"}) {
         const Study study = read_results(folder / name).study;
         CAPTURE(name, blocks_in(study));
         CHECK_FALSE(study.complete);
-        CHECK(blocks_in(study) > 0);
+        REQUIRE(blocks_in(study) >= 10);
         Study again = asked.study();
         for (std::size_t s = 0; s < study.scenarios.size(); ++s)
             for (std::size_t a = 0; a < study.scenarios[s].arms.size(); ++a)
