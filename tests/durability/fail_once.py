@@ -1,6 +1,6 @@
 """Every resource fails once: the n-th call of each kind of every command (shim/fail.c). The command does its work all
-the same, or ends with 1 or 2 and one line that says what the system said; nothing is lost: every file is what it was
-before, is not there, or is whole, and the same command without the failure ends as it always does. A read or write of
+the same, or ends with 1 or 2 and one line that says what the system said, and does not speak of writing where it writes
+no file; nothing is lost: every file is what it was before, is not there, or is whole, and the same command without the failure ends as it always does. A read or write of
 half the bytes, one that is interrupted, and a file system without the flags of renameat2 must make no difference. Where
 memory is refused, libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no
 memory to start with, it prints what it always prints of an error.
@@ -140,6 +140,8 @@ class Failing:
         threads = words == "memory" and "Thread creation failed: Resource temporarily unavailable" in lines[0]
         if words not in lines[0].lower() and not threads:
             raise Failed(f"ended with {done.returncode}, but did not say {words}: {lines[0]}")
+        if "-o" not in self.command.command and "cannot write" in lines[0].replace("cannot write to the standard", ""):
+            raise Failed(f"ended with {done.returncode}, but it writes no file: {lines[0]}")
 
     def keep_made(self):
         """Keeps what the undisturbed command made, beside the folder."""

@@ -1,5 +1,7 @@
 #include "files/system/system_file.hpp"
 
+#include "base/readable_file.hpp"
+
 #include <credence/error.hpp>
 
 #include <fcntl.h>
@@ -45,13 +47,18 @@ bool leads_nowhere(int error) {
     return error == ENOENT || error == ENOTDIR || error == ELOOP || error == EACCES || error == ENAMETOOLONG;
 }
 
+/// The file may be one to read or one to write.
+[[noreturn]] void fail_to_access(const std::string& path, int error) {
+    throw Failure("cannot access " + path + " (" + words_for(error) + "). " + remedy_for_reading(error) + ".");
+}
+
 }  // namespace
 
 std::optional<struct stat> status_of(const std::string& path, const std::string& target, Links links) {
     struct stat status {};
     const int follow = links == Links::followed ? 0 : AT_SYMLINK_NOFOLLOW;
     if (fstatat(AT_FDCWD, path.c_str(), &status, follow) == 0) return status;
-    if (!leads_nowhere(errno)) fail_to_write(target, errno);
+    if (!leads_nowhere(errno)) fail_to_access(target, errno);
     return std::nullopt;
 }
 
@@ -59,7 +66,7 @@ namespace {
 
 struct stat status_of(const Descriptor& file, const std::string& target) {
     struct stat status {};
-    if (fstat(file.get(), &status) != 0) fail_to_write(target, errno);
+    if (fstat(file.get(), &status) != 0) fail_to_access(target, errno);
     return status;
 }
 
