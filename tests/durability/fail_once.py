@@ -1,9 +1,9 @@
 """Every resource fails once: the n-th call of each kind of every command (shim/fail.c). The command does its work all
 the same, or ends with 1 or 2 and one line that says what the system said, and does not speak of writing where it writes
-no file; nothing is lost: every file is what it was before, is not there, or is whole, and the same command without the failure ends as it always does. A read or write of
-half the bytes, one that is interrupted, and a file system without the flags of renameat2 must make no difference. Where
-memory is refused, libhdf5 1.10 may end the process itself, and so do constants made before main(); where it gets no
-memory to start with, it prints what it always prints of an error.
+no file; nothing is lost: every file is what it was before, is not there, or is whole, and the same command without the
+failure ends as it always does. A read or write of half the bytes, one that is interrupted, and a file system without
+the flags of renameat2 must make no difference. Where memory is refused, libhdf5 1.10 may end the process itself, and so
+do constants made before main(); where it gets no memory to start with, it prints what it always prints of an error.
 
 With --most N at most N of the calls of a kind fail, at random, and --many N of the kinds that have thousands; 0: each.
 With --every N only each N-th of the kinds, others from command to command. With --callers D, one allocation and one
