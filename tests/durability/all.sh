@@ -5,16 +5,14 @@
 #   evening  more of each, in about an hour
 #   full     every chain of 8 callers of an allocation, every byte of two small results files, every change of a file:
 #            hours
-# The last two run as many harnesses at a time as there are processors, and keep the lines in counts.txt, which
+# As many harnesses run at a time as there are processors. The last two depths keep the lines in counts.txt, which
 # docs/durability.md shows.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")
 depth=${2:-full}
-at_a_time=$(nproc)
 case $depth in
   sample)
-    at_a_time=1
     sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1 --many 1 --every 4"
     streams="--every 7" bytes="--every 20011" turns=62
     ;;
@@ -74,7 +72,7 @@ run_part() {
 kept=$(mktemp -d)
 trap 'rm -rf "$kept"' EXIT
 for number in "${!parts[@]}"; do
-  while [ "$(jobs -pr | wc -l)" -ge "$at_a_time" ]; do wait -n || true; done
+  while [ "$(jobs -pr | wc -l)" -ge "$(nproc)" ]; do wait -n || true; done
   run_part "$(printf %02d "$number")" "${parts[number]}" &
 done
 wait
