@@ -41,32 +41,32 @@ struct SquaredError {
     Mask<Real> positive_definite{};
 };
 
-/// The inverse of a symmetric 2 x 2 matrix, zero where it is not `used`, and whether it is positive definite.
+/// S = L D L' of two rows, L = [1 0; slope 1]: the second row less `slope` times the first is not correlated with the
+/// first, so that the two can be taken one after the other. Rounding then costs what the condition of S takes;
+/// multiplying by S^-1, whose entries nearly cancel, would cost its square [Higham 2002, 10.1 and 14.1].
 template <class Real>
-struct Inverse2 {
-    Real xx{}, xy{}, yy{};
+struct Decorrelation {
+    Real slope{};
+    Vector2<Real> precision{};  ///< D^-1, zero where masked
     Mask<Real> positive_definite{};
+
+    /// L^-1 pair
+    Vector2<Real> operator()(const Vector2<Real>& pair) const { return {pair.x, fnma(slope, pair.x, pair.y)}; }
+
+    /// D^-1 L^-1 pair, of L^-1 pair
+    Vector2<Real> weighted(const Vector2<Real>& pair) const { return {precision.x * pair.x, precision.y * pair.y}; }
+
+    /// nu' S^-1 nu, of L^-1 nu
+    Real squared(const Vector2<Real>& nu) const {
+        return fma(precision.y * nu.y, nu.y, precision.x * nu.x * nu.x);
+    }
 };
 
 template <class Real>
-Inverse2<Real> inverse(Real xx, Real xy, Real yy, Mask<Real> used) {
-    const Real determinant = fnma(xy, xy, xx * yy);
-    const Real weight = select(used, Real(1) / determinant, Real(0));
-    return {yy * weight, -(xy * weight), xx * weight,
-            either(both(xx > Real(0), determinant > Real(0)), negated(used))};
-}
-
-/// S^-1 b
-template <class Real>
-Vector2<Real> times(const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
-    return {fma(S_inverse.xy, b.y, S_inverse.xx * b.x), fma(S_inverse.yy, b.y, S_inverse.xy * b.x)};
-}
-
-/// a' S^-1 b
-template <class Real>
-Real between(const Vector2<Real>& a, const Inverse2<Real>& S_inverse, const Vector2<Real>& b) {
-    const Vector2<Real> weighted = times(S_inverse, b);
-    return fma(weighted.y, a.y, weighted.x * a.x);
+Decorrelation<Real> decorrelation(Real xx, Real xy, Real yy, Mask<Real> used) {
+    const Real x = select(used, Real(1) / xx, Real(0)), slope = x * xy, rest = fnma(slope, xy, yy);
+    return {slope, {x, select(used, Real(1) / rest, Real(0))},
+            either(both(xx > Real(0), rest > Real(0)), negated(used))};
 }
 
 /// A matrix and a vector that are being eliminated, from the last row up.
@@ -96,12 +96,12 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
                                                   First first, Index i, Elimination<Real, capacity>& left) {
     const auto& A = matrix.entry;
     const Real xy = by_axis ? Real(0) : A[i][i + one], yy = by_axis ? A[i][i] : A[i + one][i + one];
-    const Inverse2<Real> pivot = inverse(A[i][i], xy, yy, all_lanes<Real>());
-    const Vector2<Real> e{vector[i], vector[i + one]};
+    const Decorrelation<Real> pivot = decorrelation(A[i][i], xy, yy, all_lanes<Real>());
+    const Vector2<Real> e = pivot({vector[i], vector[i + one]});
     if constexpr (by_axis) {
         each(zero, half(i - first), [&](auto point) {
             const auto k = first + two * point;
-            const Real scaled = pivot.xx * A[k][i];
+            const Real scaled = pivot.precision.x * A[k][i];
             left.e[k] = fnma(scaled, e.x, vector[k]);
             left.e[k + one] = fnma(scaled, e.y, vector[k + one]);
             each(zero, point + one, [&](auto other) {
@@ -110,15 +110,17 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
             });
         });
     } else {
+        Vector2<Real> W[capacity];
         each(first, i, [&](auto k) {
-            const Vector2<Real> scaled = times(pivot, Vector2<Real>{A[k][i], A[k][i + one]});
+            W[k] = pivot({A[k][i], A[k][i + one]});
+            const Vector2<Real> scaled = pivot.weighted(W[k]);
             left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
             each(first, k + one, [&](auto m) {
-                left.A.entry[m][k] = fnma(scaled.y, A[m][i + one], fnma(scaled.x, A[m][i], A[m][k]));
+                left.A.entry[m][k] = fnma(scaled.y, W[m].y, fnma(scaled.x, W[m].x, A[m][k]));
             });
         });
     }
-    return {between(e, pivot, e), pivot.positive_definite};
+    return {pivot.squared(e), pivot.positive_definite};
 }
 
 template <bool by_axis, class Real, int capacity, class First, class Index>

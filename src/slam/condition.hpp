@@ -100,31 +100,6 @@ struct Update {
     Elimination<Real, capacity> alone;  ///< workspace for nis_edges
 };
 
-/// S = L D L' of two rows, L = [1 0; slope 1]: the second row less `slope` times the first is not correlated with the
-/// first, so that the two can be taken in one after the other. Rounding then costs P what the condition of S takes;
-/// multiplying by S^-1, whose entries nearly cancel, would cost its square [Higham 2002, 10.1 and 14.1].
-template <class Real>
-struct Decorrelation {
-    Real slope{};
-    Vector2<Real> precision{};  ///< D^-1, zero where masked
-    Mask<Real> positive_definite{};
-
-    /// L^-1 pair
-    Vector2<Real> operator()(const Vector2<Real>& pair) const { return {pair.x, fnma(slope, pair.x, pair.y)}; }
-
-    /// nu' S^-1 nu, of L^-1 nu
-    Real squared(const Vector2<Real>& nu) const {
-        return fma(precision.y * nu.y, nu.y, precision.x * nu.x * nu.x);
-    }
-};
-
-template <class Real>
-Decorrelation<Real> decorrelation(Real xx, Real xy, Real yy, Mask<Real> used) {
-    const Real x = select(used, Real(1) / xx, Real(0)), slope = x * xy, rest = fnma(slope, xy, yy);
-    return {slope, {x, select(used, Real(1) / rest, Real(0))},
-            either(both(xx > Real(0), rest > Real(0)), negated(used))};
-}
-
 /// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(S, i, K_i)`
 /// receives the gain of each component for the decorrelated rows. Returns S.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
@@ -143,7 +118,7 @@ Decorrelation<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layo
     each(zero, n, [&](auto i) CREDENCE_INLINE_LAMBDA { W[i] = S(W[i]); });
     auto& entry = read_anew(P).entry;
     const auto update_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
-        const Vector2<Real> K{S.precision.x * W[i].x, S.precision.y * W[i].y};
+        const Vector2<Real> K = S.weighted(W[i]);
         gained(S, i, K);
         each(i, n, [&](auto j) { entry[i][j] = fnma(K.y, W[j].y, fnma(K.x, W[j].x, entry[i][j])); });
     };

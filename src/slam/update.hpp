@@ -18,8 +18,8 @@ void gate_sightings(const Belief<Real, capacity>& belief, const FilterParameters
         const auto W = [&](auto s) { return rows([&](auto t) { return belief.covariance.at(s, t); }); };
         const Vector2<Real> x = rows([&](auto s) { return W(s).x; }), y = rows([&](auto s) { return W(s).y; });
         const Real N = believed_variance(filter, sightings[j].sigma);
-        const Inverse2<Real> S_inverse = inverse(x.x + N, x.y, y.y + N, all_lanes<Real>());
-        const Real distance = between(expected.innovation, S_inverse, expected.innovation);
+        const Decorrelation<Real> S = decorrelation(x.x + N, x.y, y.y + N, all_lanes<Real>());
+        const Real distance = S.squared(S(expected.innovation));
         sightings[j].seen = both(sightings[j].seen, distance <= Real(filter.gate));
     });
 }

@@ -1,7 +1,7 @@
 """Journals of every version and results files of every schema version that were written, by the releases that wrote
 them (versions/, and of schema version 2 and of journals of a whole block the seeds of the fuzz targets): each is gone
 on with, and the file says whose blocks are whose; or it is refused, with the words expected of it, unchanged. So is a
-journal of a later version or schema, which is made here of this program's own. Releases 0.1 and 0.2 have the same
+journal of a later version or schema, which is made here of this program's own. Releases 0.1, 0.2 and 0.3 have the same
 schema and differ in the last digits of their columns.
 
 With --mutants journals of other versions say that they are this program's, and this program's that they are later ones:
@@ -23,7 +23,8 @@ OWN_VERSIONS = " and ".join(map(str, OWN.values()))
 SCHEMA = 3
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (0, 1), (2, 1))  # a journal's version and its schema's, over this program's
-RELEASE = "0.2"  # journals and results files of it are gone on with
+RELEASE = "0.3"  # journals and results files of it are gone on with
+BEFORE = "0.2"  # those of it are refused
 FINISH = "Finish the run with the release that began it."
 AGAIN = "Use the release that wrote it, or run the study again."
 ELSEWHERE = "; draws and columns may differ between them)."
@@ -80,7 +81,7 @@ def journals_of_releases():
     """Journals of this program's versions, of a block and a partial one."""
     for keep, version in OWN.items():
         yield File(f"journal {version}", stored(f"journal-{version}-{RELEASE}"), keep)
-        yield File(f"journal {version} of 0.1", stored(f"journal-{version}"), keep, ELSEWHERE)
+        yield File(f"journal {version} of {BEFORE}", stored(f"journal-{version}-{BEFORE}"), keep, ELSEWHERE)
         yield File(f"journal {version} of 0.1, two blocks", (SEEDS / "journal" / f"257-{keep}").read_bytes(), keep,
                    ELSEWHERE)
 
@@ -92,8 +93,8 @@ def results_files():
     yield File("results 2, aggregates", (SEEDS / "results" / "schema-2-aggregates.h5").read_bytes(), "aggregates",
                words, merges=False)
     yield File("results 3 of 0.1, no checksums", stored("results-3.h5"), refused=ELSEWHERE)
-    yield File("results 3 of 0.1", stored("results-3-crc32.h5"), refused=ELSEWHERE)
-    yield File("results 3 of 0.1, aggregates", stored("results-3-crc32-aggregates.h5"), "aggregates", ELSEWHERE)
+    yield File(f"results 3 of {BEFORE}", stored(f"results-3-{BEFORE}.h5"), refused=ELSEWHERE)
+    yield File(f"results 3 of {BEFORE}, aggregates", stored(f"results-3-{BEFORE}-aggregates.h5"), "aggregates", ELSEWHERE)
     yield File("results 3", stored(f"results-3-{RELEASE}.h5"))
     yield File("results 3, aggregates", stored(f"results-3-{RELEASE}-aggregates.h5"), "aggregates")
 

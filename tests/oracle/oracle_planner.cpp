@@ -172,9 +172,11 @@ Eigen::Vector2d along_waypoints(const DeformableSettings& scenario, double lengt
     return at;
 }
 
-/// Control for a move (2, world) of a robot with a heading: it turns into the direction of the move; none for no move.
-Control control_for(const DeformableSettings& scenario, const Eigen::Vector2d& move, double heading) {
-    if (scenario.process == Process::translation || move.norm() == 0) return {0, {move[0], move[1]}};
+/// Control for a move (2, world) of a robot with a heading: it turns into the direction of the move. A move of at most
+/// 10^-9 of the longest is none.
+Control control_for(const DeformableSettings& scenario, const Eigen::Vector2d& move, double heading, double longest) {
+    if (move.norm() <= 1e-9 * longest) return {0, {0, 0}};
+    if (scenario.process == Process::translation) return {0, {move[0], move[1]}};
     const Eigen::Vector2d v = rotation(heading).transpose() * move;
     return {std::atan2(v[1], v[0]), {v[0], v[1]}};
 }
@@ -186,7 +188,7 @@ Control towards(const DeformableSettings& scenario, const Belief& belief, const 
     const double heading = scenario.process == Process::heading ? belief.x[0] : 0;
     Eigen::Vector2d move = place - belief.x.segment<2>(row_of_position(scenario));
     if (move.norm() > reach) move *= reach / move.norm();
-    return control_for(scenario, move, heading);
+    return control_for(scenario, move, heading, reach);
 }
 
 /// Control from pose k-1 to k on the way along the waypoints. The heading without noise is that of the last move.
@@ -196,9 +198,9 @@ Control waypoint_control(const DeformableSettings& scenario, int k) {
     for (int before = 1; before < k; ++before) {
         const Eigen::Vector2d move =
             along_waypoints(scenario, before * d) - along_waypoints(scenario, (before - 1) * d);
-        if (move.norm() > 0) heading = std::atan2(move[1], move[0]);
+        if (move.norm() > 1e-9 * d) heading = std::atan2(move[1], move[0]);
     }
-    return control_for(scenario, along_waypoints(scenario, k * d) - along_waypoints(scenario, (k - 1) * d), heading);
+    return control_for(scenario, along_waypoints(scenario, k * d) - along_waypoints(scenario, (k - 1) * d), heading, d);
 }
 
 }  // namespace
@@ -208,15 +210,17 @@ Control baseline_control(const DeformableSettings& scenario, Controller controll
                          const Noise& noise) {
     const Eigen::VectorXd x = predicted_mean(scenario, belief.x, {}, k);
     const int M = number_of_features(scenario);
-    int least_known = 0;
     Eigen::Vector2d centre(0, 0);
     const auto variance = [&](int j) {
         return belief.P.diagonal().segment<2>(row_of_feature(scenario, j)).sum();
     };
+    double largest = 0;
     for (int j = 0; j < M; ++j) {
         centre += x.segment<2>(row_of_feature(scenario, j)) / M;
-        if (variance(j) > (1 + 1e-12) * variance(least_known)) least_known = j;
+        largest = std::max(largest, variance(j));
     }
+    int least_known = 0;
+    while (variance(least_known) < (1 - 1e-12) * largest) ++least_known;
     switch (controller) {
         case Controller::random: {
             const std::vector<Control> list = candidates(scenario);

@@ -92,6 +92,34 @@ TEST_CASE("baselines: nearest goes to the feature with the largest variance") {
     CHECK(apart(run.steps[1].control, {M_PI / 2, {0, 1.5}}) < 1e-14);  // the farthest was measured worst
 }
 
+TEST_CASE("baselines: a robot that is where it is steered to does not turn by rounding") {
+    // Between two uses of the sensor the robot is at the features' centre, and they sway about places that stay.
+    const DeformableSettings scenario = steered({{"features.sway_amplitude", "0.8"}, {"features.path", "static"},
+                                                 {"sensor.every", "10"}, {"scenario.poses", "10"},
+                                                 {"control.waypoints", "0.1 0, 0.3 0, 0.3 0.3"},
+                                                 {"features.step", "0.1"}});
+    for (const Controller controller : {Controller::follow, Controller::nearest, Controller::waypoints})
+        for (std::uint64_t trial = 0; trial < 20; ++trial) {
+            const Run run = run_arm(scenario, controller, keyed_noise(scenario, 5, trial));
+            for (std::size_t k = 1; k < run.steps.size(); ++k) {
+                const Control& control = run.steps[k].control;
+                CAPTURE(static_cast<int>(controller), trial, k, control.turn, control.move.x, control.move.y);
+                const double way = std::hypot(control.move.x, control.move.y);
+                CHECK((way == 0 ? control.turn == 0 : way > 1e-9));
+            }
+        }
+}
+
+TEST_CASE("baselines: nearest goes to the first of the features whose variances are the largest but for 1e-12") {
+    // Each is 0.9e-12 above the one before: the first is not among the equals of the last.
+    const auto sigma = [](double excess) { return to_text(0.05 * std::sqrt(1 + excess)); };
+    const DeformableSettings scenario =
+        steered({{"model.process", "translation"}, {"features.path", "static"}, {"sensor.noise", "ranged"},
+                 {"sensor.sigma_near", sigma(0)}, {"sensor.sigma_far", sigma(1.9e-12)},
+                 {"features.positions", "0.1 0, 0 1.05, 2 0"}});
+    CHECK(run_arm(scenario, Controller::nearest, silent_noise()).steps[1].control.move.y > 1);
+}
+
 TEST_CASE("baselines: without noise waypoints lead along their path at the step length, and end at the last") {
     for (const char* process : {"heading", "translation"}) {
         const DeformableSettings scenario = steered({{"model.process", process}, {"control.waypoints", "3 0, 3 3"}});

@@ -56,6 +56,27 @@ TEST_CASE("status: a draw that is no number is noticed at its pose, for good") {
     }
 }
 
+TEST_CASE("status: a heading that is lost by 10^4 times the sensor's sigma does not make an exact filter fail") {
+    for (const char* sigma : {"1e-9", "5e-9"})
+        for (const char* estimator : {"ekf", "iekf", "fej", "riekf", "ideal"}) {
+            const DeformableSettings scenario = scenario_with(
+                {{"features.path", "static"}, {"features.positions", "6 8, -8 6, 3 -9"}, {"sensor.range_min", "0"},
+                 {"sensor.range_max", "inf"}, {"sensor.sigma", sigma}, {"noise.heading", "1e-6"},
+                 {"noise.odometry", "1e-4"}, {"noise.walk", "1e-4"}, {"noise.deformation", "0"},
+                 {"edges.graph", "none"}, {"scenario.poses", "2"}, {"arms.estimators", estimator}});
+            constexpr int trials = 200;
+            double nees = 0;
+            for (std::uint64_t trial = 0; trial < trials; ++trial) {
+                const Run run = run_arm(scenario, scenario.arms.front(), keyed_noise(scenario, 1, trial));
+                CAPTURE(sigma, estimator, trial);
+                check_status(run, completed, -1);
+                nees += run.columns[column_nees_ratio] / trials;
+            }
+            // 9 components: 4.5 standard deviations, a false alarm once in 150,000.
+            CHECK(std::abs(nees - 1) < 4.5 * std::sqrt(2.0 / 9 / trials));
+        }
+}
+
 TEST_CASE("status: a feature whose truth is no number is not seen, and the trial fails all the same") {
     const DeformableSettings scenario = scenario_with({{"edges.graph", "none"}});
     const Run run = run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::deformation, 5, 1, {not_a_number, 0}));

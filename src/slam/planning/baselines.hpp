@@ -7,16 +7,18 @@ namespace credence {
 inline namespace CREDENCE_TARGET {
 
 /// Moves the robot to a place in the world, or towards it as far as the longest candidate moves. In the heading model
-/// the robot turns into the direction of its move.
+/// the robot turns into the direction of its move. The robot stays as it is if the place is closer than rounding.
 template <class Layout, class Real, int capacity>
 Command<Real> towards(const Vector2<Real>& place, const Belief<Real, capacity>& belief, double squared_reach) {
     Vector2<Real> move = place - point_at(belief.mean, Layout::position);
     const Real squared = squared_norm(move);
-    const Mask<Real> far = squared > Real(squared_reach);
-    move = scaled(select(far, sqrt(Real(squared_reach) / squared), Real(1)), move);
+    const Mask<Real> far = squared > Real(squared_reach),
+                     away = squared > Real(least_move * least_move * squared_reach);
+    const Real share = select(far, sqrt(Real(squared_reach) / squared), Real(1));
+    move = scaled(select(away, share, Real(0)), move);
     if constexpr (Layout::has_heading) {
         move = rotate_back(rotation(belief.mean[Layout::heading]), move);
-        return {select(squared > Real(0), atan2(move.y, move.x), Real(0)), move};
+        return {select(away, atan2(move.y, move.x), Real(0)), move};
     }
     return {Real(0), move};
 }
@@ -37,20 +39,24 @@ Vector2<Real> centre_of_features(const Belief<Real, capacity>& belief, const Fil
     return scaled(Real(1.0 / layout.features()), sum);
 }
 
-/// The predicted place of the feature whose variance is largest; the first of those that are equal but for rounding.
+/// The predicted place of the first feature whose variance is the largest of all, but for 10^-12 of it.
 template <class Layout, class Real, int capacity>
 Vector2<Real> least_known_feature(const Belief<Real, capacity>& belief, const FilterParameters& filter,
                                   const Layout& layout, int k) {
-    const auto& P = belief.covariance.entry;
-    Real largest = Real(0);
-    Vector2<Real> place = point_at(belief.mean, Layout::position);
-    for (int j = 0; j < layout.features(); ++j) {
+    const auto variance = [&](int j) {
+        const auto& P = belief.covariance.entry;
         const int f = Layout::feature(j);
-        const Real variance = P[f][f] + P[f + 1][f + 1];
-        const Mask<Real> larger = variance > largest * Real(1 + 1e-12);
+        return P[f][f] + P[f + 1][f + 1];
+    };
+    Real largest = variance(0);
+    for (int j = 1; j < layout.features(); ++j) largest = select(variance(j) > largest, variance(j), largest);
+    const Real enough = largest * Real(1 - 1e-12);
+    Vector2<Real> place = predicted_place<Layout>(belief, filter, k, 0);
+    Mask<Real> found = variance(0) >= enough;
+    for (int j = 1; j < layout.features(); ++j) {
         const Vector2<Real> here = predicted_place<Layout>(belief, filter, k, j);
-        largest = select(larger, variance, largest);
-        place = {select(larger, here.x, place.x), select(larger, here.y, place.y)};
+        place = {select(found, place.x, here.x), select(found, place.y, here.y)};
+        found = either(found, variance(j) >= enough);
     }
     return place;
 }

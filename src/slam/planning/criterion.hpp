@@ -15,6 +15,10 @@ struct Weights {
     double heading = 1, position = 1, features = 1;
 };
 
+/// A robot that is steered to a place stays where it is if the way there is at most this share of its longest move: its
+/// direction would be one of rounding.
+inline constexpr double least_move = 1e-9;
+
 struct ControlParameters {
     const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
     const Control* waypoints = nullptr;   ///< [K - 1] the same along control.waypoints

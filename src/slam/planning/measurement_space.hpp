@@ -38,21 +38,36 @@ Matrix2<Real> less_product(const Matrix2<Real>& m, const Matrix2<Real>& a, const
 template <class Real>
 Matrix2<Real> transposed(const Matrix2<Real>& m) { return {m.xx, m.yx, m.xy, m.yy}; }
 
-/// s' S^-1
 template <class Real>
-Matrix2<Real> divided(const Matrix2<Real>& s, const Inverse2<Real>& S_inverse) {
-    const Vector2<Real> x = times(S_inverse, Vector2<Real>{s.xx, s.yx}),
-                        y = times(S_inverse, Vector2<Real>{s.xy, s.yy});
+Decorrelation<Real> pivot_of(const Matrix2<Real>& S, Mask<Real> used) {
+    return decorrelation(S.xx, S.xy, S.yy, used);
+}
+
+/// L^-1 m
+template <class Real>
+Matrix2<Real> decorrelated(const Decorrelation<Real>& S, const Matrix2<Real>& m) {
+    const Vector2<Real> x = S({m.xx, m.yx}), y = S({m.xy, m.yy});
+    return {x.x, y.x, x.y, y.y};
+}
+
+/// L^-1 C L'^-1, C symmetric
+template <class Real>
+Matrix2<Real> decorrelated_both(const Decorrelation<Real>& S, const Matrix2<Real>& C) {
+    const Real xy = fnma(S.slope, C.xx, C.xy);
+    return {C.xx, xy, xy, fnma(S.slope, C.xy + xy, C.yy)};
+}
+
+/// m' D^-1
+template <class Real>
+Matrix2<Real> divided(const Matrix2<Real>& m, const Decorrelation<Real>& S) {
+    const Vector2<Real> x = S.weighted({m.xx, m.yx}), y = S.weighted({m.xy, m.yy});
     return {x.x, x.y, y.x, y.y};
 }
 
+/// trace(D^-1 C)
 template <class Real>
-Inverse2<Real> inverse_block(const Matrix2<Real>& S, Mask<Real> used) { return inverse(S.xx, S.xy, S.yy, used); }
-
-/// trace(S^-1 C), C symmetric
-template <class Real>
-Real trace_of_product(const Inverse2<Real>& S_inverse, const Matrix2<Real>& C) {
-    return fma(C.xx, S_inverse.xx, fma(Real(2) * C.xy, S_inverse.xy, C.yy * S_inverse.yy));
+Real trace_of_quotient(const Decorrelation<Real>& S, const Matrix2<Real>& C) {
+    return fma(C.xx, S.precision.x, C.yy * S.precision.y);
 }
 
 template <class Real>
@@ -70,11 +85,15 @@ Real less_product(Real m, Real a, Real b) { return fnma(a, b, m); }
 template <class Real>
 Real transposed(Real m) { return m; }
 template <class Real>
-Real divided(Real s, Real S_inverse) { return s * S_inverse; }
+Real pivot_of(Real S, Mask<Real> used) { return select(used, Real(1) / S, Real(0)); }
 template <class Real>
-Real inverse_block(Real S, Mask<Real> used) { return select(used, Real(1) / S, Real(0)); }
+Real decorrelated(Real, Real m) { return m; }
 template <class Real>
-Real trace_of_product(Real S_inverse, Real C) { return Real(2) * C * S_inverse; }
+Real decorrelated_both(Real, Real C) { return C; }
+template <class Real>
+Real divided(Real m, Real S_inverse) { return m * S_inverse; }
+template <class Real>
+Real trace_of_quotient(Real S_inverse, Real C) { return Real(2) * C * S_inverse; }
 template <class Real>
 Real halved(Real m) { return Real(0.5) * m; }
 template <class Real>
@@ -185,18 +204,19 @@ CREDENCE_INLINE void form_candidate(const MeasurementSpace<Layout, Real>& space,
     });
 }
 
-/// Eliminates sighting j from S and C; returns its contribution to trace(S^-1 C).
+/// Eliminates sighting j from S and C, its two rows decorrelated; returns its contribution to trace(S^-1 C).
 template <class Layout, class Real, class Index>
 CREDENCE_INLINE Real take_out(const Layout& layout, Index j, MeasurementElimination<Layout, Real>& work) {
     auto &S = work.S, &C = work.C;
-    const auto pivot = inverse_block(S[j][j], work.seen[j]);
-    const auto half = halved(C[j][j]);
-    const Real part = trace_of_product(pivot, C[j][j]);
+    const auto pivot = pivot_of(S[j][j], work.seen[j]);
+    const auto C_jj = decorrelated_both(pivot, C[j][j]), half = halved(C_jj);
+    const Real part = trace_of_quotient(pivot, C_jj);
     Block2<Layout, Real> L[Layout::feature_capacity];
     each(j + one, layout.features(), [&](auto l) {
+        S[j][l] = decorrelated(pivot, S[j][l]);
         L[l] = divided(S[j][l], pivot);
         // C_jl less half of C_jj L_l': each of the two products below then takes its half of L_l C_jj L_m'.
-        C[j][l] = less_product(C[j][l], half, transposed(L[l]));
+        C[j][l] = less_product(decorrelated(pivot, C[j][l]), half, transposed(L[l]));
     });
     each(j + one, layout.features(), [&](auto l) {
         each(l, layout.features(), [&](auto m) {

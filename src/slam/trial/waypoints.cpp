@@ -30,7 +30,10 @@ std::vector<Control> waypoint_controls(const DeformableSettings& s) {
         const Point here = place_at(k * s.features.step, s.waypoints),
                     next = place_at((k + 1) * s.features.step, s.waypoints);
         Control control{0, {next.x - here.x, next.y - here.y}};
-        if (s.process == Process::heading && control.move != Point{}) {
+        const Point& way = control.move;
+        if (way.x * way.x + way.y * way.y <= least_move * least_move * s.features.step * s.features.step) {
+            control.move = {};
+        } else if (s.process == Process::heading) {
             const Vector2<double> move = rotate_back(rotation(heading), {control.move.x, control.move.y});
             control = {atan2(move.y, move.x), {move.x, move.y}};
             heading += control.turn;
