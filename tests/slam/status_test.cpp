@@ -67,7 +67,7 @@ TEST_CASE("status: a heading that is lost by 10^4 times the sensor's sigma does 
             constexpr int trials = 200;
             double nees = 0;
             for (std::uint64_t trial = 0; trial < trials; ++trial) {
-                const Run run = run_arm(scenario, scenario.arms.front(), keyed_noise(scenario, 1, trial));
+                const Run run = run_arm(scenario, arms_of(scenario).front(), keyed_noise(scenario, 1, trial));
                 CAPTURE(sigma, estimator, trial);
                 check_status(run, completed, -1);
                 nees += run.columns[column_nees_ratio] / trials;
