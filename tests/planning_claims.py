@@ -2,8 +2,8 @@
 
     python3 planning_claims.py docs/planning.md
 
-Every mean of the cells below lies where the page has it, up to 4.5 standard errors of the difference; and two claims that
-the page makes of them hold by as much.
+Every mean of the cells below lies where the page has it, up to 4.5 standard errors of the difference; and three claims
+that the page makes of them hold by as much.
 """
 
 import math
@@ -49,6 +49,9 @@ def main(path):
         (low, se_low), (high, se_high) = found[a][column], found[b][column]
         require(low + WIDE * math.hypot(se_low, factor * se_high) < factor * high, what)
 
+    rows = sum(line.count("|") == 10 and " ± " in line for line in page.partition("\n\nThe next table")[0].splitlines())
+    said = f"finds the same means in {len(CELLS)} of these {rows} rows"
+    require(said in page, f"the page says: {said}")
     less("0.1:follow", "0.1:trace", "trace_P", 1, "following is better than planning by the trace at 0.1")
     less("0.01:pose_trace", "0.01:trace", "pose_error", 0.4, "planning for the pose lowers its error by more than 60 %")
     less("0.01:trace", "0.01:log_det", "trace_P", 1, "the determinant's planner ends with a larger trace")

@@ -62,20 +62,22 @@ difference() {
 }
 
 head="world | controller | trace(P) | unseen | pose error | NEES/n"
-printf '\nEach controller by itself (%s trials each)\n\n| %s | log det P | path (dm) | verdict |\n' "$trials" "$head"
-echo '|---|---|---|---|---|---|---|---|---|'
-for i in "${!stems[@]}"; do
-  for controller in $baselines; do row "${labels[i]}" "$controller" "${stems[i]}-baselines" "$controller.ekf"; done
-  for criterion in $criteria; do row "${labels[i]}" "greedy, $criterion" "${stems[i]}-$criterion" greedy.ekf; done
-done
-printf '\nLess the planner by trace, trial by trial\n\n| %s |\n|---|---|---|---|---|---|\n' "$head"
-for i in "${!stems[@]}"; do
-  stem=${stems[i]}
-  for controller in $baselines; do difference "${labels[i]}" "$controller" "$stem" "$stem-baselines.h5" "$controller"; done
-  for criterion in ${criteria#trace }; do
-    difference "${labels[i]}" "greedy, $criterion" "$stem" "$stem-$criterion.h5" greedy
+{
+  printf '\nEach controller by itself (%s trials each)\n\n| %s | log det P | path (dm) | verdict |\n' "$trials" "$head"
+  echo '|---|---|---|---|---|---|---|---|---|'
+  for i in "${!stems[@]}"; do
+    for controller in $baselines; do row "${labels[i]}" "$controller" "${stems[i]}-baselines" "$controller.ekf"; done
+    for criterion in $criteria; do row "${labels[i]}" "greedy, $criterion" "${stems[i]}-$criterion" greedy.ekf; done
   done
-done
+  printf '\nLess the planner by trace, trial by trial\n\n| %s |\n|---|---|---|---|---|---|\n' "$head"
+  for i in "${!stems[@]}"; do
+    stem=${stems[i]}
+    for controller in $baselines; do difference "${labels[i]}" "$controller" "$stem" "$stem-baselines.h5" "$controller"; done
+    for criterion in ${criteria#trace }; do
+      difference "${labels[i]}" "greedy, $criterion" "$stem" "$stem-$criterion.h5" greedy
+    done
+  done
+} | check_claims 20000
 if [ -n "${PICTURE:-}" ]; then
   PYTHONPATH=python "${PYTHON:-python3}" experiments/planning/picture.py "$out" "$PICTURE"
 fi

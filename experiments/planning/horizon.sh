@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Does looking further ahead pay? The document's eight cells, and two with more heading noise: fixed path, greedy
+# Does looking further ahead pay? The document's eight cells, and three with more heading noise: fixed path, greedy
 # planner and a horizon of two steps on 20,000 trials each, or as many as the first argument says. Then the eight with
 # three steps: as many trials on the straight path, a fortieth on the circle, where there are two million sequences.
 # Some minutes on 2 cores. Writes results/planning/horizon-*.h5 and prints the tables of docs/planning.md.
@@ -34,7 +34,7 @@ cells() {
   done
 }
 cells 2
-for sigma in 0.01 0.05; do
+for sigma in 0.01 0.05 0.1; do
   cell "ekf, circle, ranged, σ_head $sigma" "ekf-circle-ranged-$sigma" 2 "$trials" experiments/seed/ekf-circle-ranged.ini \
     "noise.heading=$sigma"
 done
@@ -48,12 +48,14 @@ gains() {
   for figure in unseen pose_error; do printf '| %s ' "$(interval "$1" "$3 - $2" $figure)"; done
 }
 
-table "What a longer horizon gains (horizon − greedy is by trial)" \
-  "cell | steps | trials | trace(P) greedy | horizon − greedy | mean trace(P) over the steps, greedy | horizon − greedy | unseen, horizon − greedy | pose error, horizon − greedy" \
-  gains greedy horizon
-table "What it does to consistency" \
-  "cell | steps | trials | greedy: NEES/dim all | pose | RMSE/σ | horizon: NEES/dim all | pose | RMSE/σ | verdict greedy | horizon" \
-  credibility greedy horizon
+{
+  table "What a longer horizon gains (horizon − greedy is by trial)" \
+    "cell | steps | trials | trace(P) greedy | horizon − greedy | mean trace(P) over the steps, greedy | horizon − greedy | unseen, horizon − greedy | pose error, horizon − greedy" \
+    gains greedy horizon
+  table "What it does to consistency" \
+    "cell | steps | trials | greedy: NEES/dim all | pose | RMSE/σ | horizon: NEES/dim all | pose | RMSE/σ | verdict greedy | horizon" \
+    credibility greedy horizon
+} | check_claims 20000
 if [ "${2:-}" != --no-costs ]; then
   install_missing libbenchmark-dev >&2
   build build-bench credence_bench_planning -DCMAKE_BUILD_TYPE=Release -DCREDENCE_BENCH=ON -DCREDENCE_TESTS=OFF >&2
