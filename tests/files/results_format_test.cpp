@@ -2,6 +2,7 @@
 
 #include "slam_steps.hpp"
 #include "worlds/deformable/deformable.hpp"
+#include "worlds/values.hpp"
 #include "slam/trial/problem.hpp"
 
 #include "results_format_page.hpp"
@@ -10,6 +11,8 @@
 #include <credence/ini.hpp>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 
 using namespace credence;
 using namespace credence::test;
@@ -83,6 +86,58 @@ TEST_CASE("results format: the documentation names the schema version and every 
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
     CHECK(page.find("schema version " + std::to_string(schema_version) + " of the two files") != std::string::npos);
     for (const std::string& status : status_names()) CHECK(page.find(status) != std::string::npos);
+}
+
+TEST_CASE("results format: candidates and their costs are there for the controllers that plan, and only for these") {
+    const std::string page = bytes_of(CREDENCE_SOURCE "/docs/results-format.md");
+    const std::string row = matches(page, R"(\n(\| `candidate` [^\n]*))").at(0);
+    for (std::size_t c = 0; c < controller_names().size(); ++c) {
+        const auto controller = static_cast<Controller>(c);
+        CAPTURE(controller_names()[c]);
+        DeformableSettings settings = scenario("one");
+        settings.arms.controllers = {controller};
+        if (controller == Controller::waypoints) settings.waypoints = {{2, 0}};
+        const Trajectory trajectory = replay_trial(Problem(settings), {controller}, 1, 0);
+        CHECK(std::any_of(trajectory.dimensions.begin(), trajectory.dimensions.end(), [](const auto& dimension) {
+                  return dimension.name == "candidate";
+              }) == plans(controller));
+        CHECK((row.find("`" + controller_names()[c] + "`") == std::string::npos) == plans(controller));
+    }
+}
+
+TEST_CASE("results format: the costs of candidates are in the unit of their criterion") {
+    const std::map<Criterion, std::string> units{
+        {Criterion::trace, "dm^2 + rad^2"}, {Criterion::max_eigenvalue, "dm^2 + rad^2"},
+        {Criterion::pose_trace, "dm^2 + rad^2"}, {Criterion::features_trace, "dm^2"},
+        {Criterion::log_det, "1"}, {Criterion::pose_log_det, "1"}};
+    for (const auto& [criterion, unit] : units) {
+        DeformableSettings settings = scenario("one");
+        settings.planner.criterion = criterion;
+        const Trajectory trajectory = replay_trial(Problem(settings), {Controller::greedy}, 1, 0);
+        CHECK(std::find_if(trajectory.variables.begin(), trajectory.variables.end(), [](const auto& variable) {
+                  return variable.name == "candidate_cost";
+              })->unit == unit);
+    }
+}
+
+TEST_CASE("results format: the moments of a trial begin with its mean NEES of the whole state") {
+    const TemporaryFolder folder;
+    Study study = new_study({scenario("first")}, 1);
+    run_study(study, {3, 1, {}});
+    write_results(folder / "study.h5", study, {});
+    const hdf5::Handle root = hdf5::open_file(folder / "study.h5");
+    const hdf5::Handle scenario_group = hdf5::open_group(root, "first");
+    const hdf5::Handle arm = hdf5::open_group(scenario_group, hdf5::link_names(scenario_group).front());
+    const std::vector<double> moments = hdf5::Dataset(arm, "detailed_moments").read<double>();
+    const std::vector<float> nees = hdf5::Dataset(arm, "detailed_nees").read<float>();
+    const std::size_t each = moments.size() / 3, steps = nees.size() / 3;
+    for (std::size_t trial = 0; trial < 3; ++trial) {
+        const auto first = nees.begin() + static_cast<std::ptrdiff_t>(trial * steps);
+        // The file keeps each step's NEES as a float.
+        CHECK(moments[trial * each] ==
+              Approx(std::accumulate(first, first + static_cast<std::ptrdiff_t>(steps), 0.0) / static_cast<double>(steps))
+                  .epsilon(1e-6));
+    }
 }
 
 TEST_CASE("store: every variable has a long name, units and dimension scales in its own group") {

@@ -22,7 +22,10 @@ TrajectoryVariable candidate_costs(const DeformableSettings& settings) {
                            : criterion == Criterion::features_trace                                   ? "features' "
                                                                                                       : "";
     return {"candidate_cost", what + " of the " + of + "covariance that the candidate promised",
-            logarithm ? "1" : trace_unit(settings), {"pose", "candidate"}};
+            logarithm                                ? "1"
+            : criterion == Criterion::features_trace ? settings.length_unit + "^2"
+                                                     : trace_unit(settings),
+            {"pose", "candidate"}};
 }
 
 /// The planner's candidates, which are the same at every pose. Returns the place of their costs.
