@@ -21,9 +21,9 @@ def percent(part, whole):
     return round(100 * part / whole)
 
 
-def lower(world, controller, column, than=TRACE):
-    """By how many percent a mean is lower than another controller's."""
-    whole = getattr(mean[world, than], column)
+def lower(world, controller, column):
+    """By how many percent a mean is lower than that of the planner by trace."""
+    whole = getattr(mean[world, TRACE], column)
     return percent(whole - getattr(mean[world, controller], column), whole)
 
 
