@@ -5,7 +5,8 @@
 CLAIMS.py has the dictionary CLAIMS, of sentences and their conditions, and TABLES, which gives the tables' cells names.
 Conditions are checked on the tables of the standard input (-, which is passed on), of the reports of `credence report
 --format csv`, and of the page. With a page every table must be there, every sentence must stand in the page, and every
-number in its bullets must stand in one of the sentences. Without one, what needs another script's table is left out.
+number of its bullets and pictures must stand in one of the sentences. Without one, what needs another script's table is
+left out.
 """
 
 import csv
@@ -78,7 +79,7 @@ def in_one_line(text):
 
 def check_page(page, claims):
     """What is wrong between the page and the sentences."""
-    bullets = re.findall(r"^- .*(?:\n  .*)*", page.partition("\n## References\n")[0], re.M)
+    bullets = re.findall(r"^(?:- |!\[).*(?:\n  .*)*", page.partition("\n## References\n")[0], re.M)
     rest = "\n".join(map(in_one_line, bullets))
     for sentence in sorted(claims, key=len, reverse=True):
         if sentence not in in_one_line(page):

@@ -2,8 +2,8 @@
 # The gallery: builds the program of this folder on an installed credence, runs each world's study and prints its
 # verdicts: results/NAME.h5. The first argument is the number of trials (4,000). With PICTURES=FOLDER it also draws
 # there the pictures of docs/gallery.md, NAME.png (needs python3-h5py, python3-scipy and python3-matplotlib). GALLERY is
-# the program, where it is built already. In a checkout it checks what docs/gallery.md says of 4,000 trials, and of
-# 200,000 of the coordinated turn.
+# the program, where it is built already. In a checkout it checks what docs/gallery.md says of 4,000 trials, and of two
+# studies more.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 if [ -z "${GALLERY:-}" ]; then
@@ -23,8 +23,10 @@ for scenario in "$here"/*.ini; do
 done
 if [ "${1:-4000}" -eq 4000 ] && [ -f "$here/../claims.py" ]; then
   "$GALLERY" run "$here/coordinated_turn.ini" --set scenario.name=long --trials 200000 --quiet --overwrite -o results/long.h5
+  "$GALLERY" run "$here/attitude.ini" --set scenario.name=sure --set start.attitude=0.1 --trials 4000 --quiet --overwrite \
+    -o results/sure.h5
   reports=()
-  for file in long $(basename -s .ini "$here"/*.ini); do
+  for file in long sure $(basename -s .ini "$here"/*.ini); do
     "$GALLERY" report "results/$file.h5" --format csv >"results/$file.csv"
     reports+=("results/$file.csv")
   done
