@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -198,6 +199,14 @@ class TestNpz:
         assert sorted(arguments) == ["covariance", "error", "groups"]
         assert credence.judge(**arguments).json == credence.judge(error, covariance, groups="first 0, second 1").json
 
+    def test_groups_as_an_array_of_texts(self, tmp_path: Path) -> None:
+        error, covariance = np.random.default_rng(9).normal(size=(40, 3, 2)), np.broadcast_to(np.eye(2), (40, 3, 2, 2))
+        texts = {"groups": ["both 0:2", "second 1"], "component_names": ["x", "y"]}
+        np.savez(tmp_path / "a.npz", error=error, covariance=covariance, **texts)
+        verdict = credence.judge(**adapters.from_npz(tmp_path / "a.npz"))
+        groups = {"both": [0, 1], "second": [1]}
+        assert verdict.json == credence.judge(error, covariance, groups=groups, component_names=["x", "y"]).json
+
     def test_groups_of_their_own(self, tmp_path: Path) -> None:
         own = np.broadcast_to(np.eye(2), (40, 3, 2, 2))
         arrays = {"error": np.zeros((40, 3, 2)), "group/pose/covariance": own}
@@ -245,6 +254,10 @@ class TestGtsam:
         P = np.diag([1.0, 4, 9])
         arguments = adapters.from_gtsam_poses([[pose(0, 0, np.pi / 2)]] * 2, [[pose(0, 1, np.pi / 2)]] * 2, [[P]] * 2)
         assert nees(arguments) == pytest.approx([1.0])  # one to the front, where the variance is 1
+        runs = [[pose(0, 0, 0)] * 2, [pose(0, 0, 0)]]
+        assert adapters.from_gtsam_poses(runs, runs, [[P, P], [P]])["steps"].tolist() == [2, 1]
+        with pytest.raises(credence.InputError, match="do not have the same steps"):
+            adapters.from_gtsam_poses(runs, runs, [[P, P], [P, P]])
         with pytest.raises(ValueError, match="a pose has 3 components"):
             adapters.from_gtsam_poses([[pose(0, 0, 0)]], [[pose(0, 0, 0)]], [[np.eye(6)]])
 
@@ -255,5 +268,38 @@ def test_stonesoup_states() -> None:
     arguments = adapters.from_stonesoup([truth], [track])
     assert arguments["error"].tolist() == [[[0.5, 0]]]
     assert arguments["covariance"].tolist() == [[[[2, 1], [1, 3]]]]
-    with pytest.raises(ValueError, match="zip"):
+    with pytest.raises(credence.InputError, match="run 0: its track has 1 states without times, and its truth 2"):
         adapters.from_stonesoup([truth * 2], [track])
+
+
+class TestStoneSoupTimes:
+    """The truth is at 0 ... 5 s, and its state is its time. The track lags behind it by 0.1."""
+
+    @staticmethod
+    def state(second: float, value: float, variance: float = 1) -> SimpleNamespace:
+        start = datetime(2026, 11, 26)
+        at = start + timedelta(seconds=second)
+        return SimpleNamespace(timestamp=at, state_vector=np.array([[value]]), covar=[[variance]])
+
+    def test_states_are_compared_at_the_same_times(self) -> None:
+        truth = [self.state(second, second) for second in range(6)]
+        late = [self.state(second, second - 0.1) for second in (2, 3, 4, 5)]
+        between = [self.state(second, second - 0.1) for second in (0, 1, 1.5, 2)]
+        arguments = adapters.from_stonesoup([truth, truth], [late, between])
+        assert arguments["steps"].tolist() == [4, 3]
+        assert arguments["error"][0].ravel() == pytest.approx(-0.1 * np.ones(4))
+        assert arguments["error"][1, :3].ravel() == pytest.approx(-0.1 * np.ones(3))
+        assert credence.judge(**arguments)["failed_trials"] == 0
+
+    def test_of_a_prediction_and_its_update_the_update_counts(self) -> None:
+        track = [self.state(1, 2, 9), self.state(1, 1.5, 4)]
+        arguments = adapters.from_stonesoup([[self.state(1, 1)]], [track])
+        assert arguments["error"].tolist() == [[[0.5]]]
+        assert arguments["covariance"].tolist() == [[[[4]]]]
+
+    def test_times_that_do_not_meet_are_refused(self) -> None:
+        with pytest.raises(credence.InputError, match="run 1: no state of its track has the time of one of its truth"):
+            adapters.from_stonesoup([[self.state(1, 1)]] * 2, [[self.state(1, 1)], [self.state(2, 2)]])
+        untimed = SimpleNamespace(state_vector=np.array([[1.0]]), covar=[[1]])
+        with pytest.raises(credence.InputError, match="run 0: some of its states have a timestamp, and some have none"):
+            adapters.from_stonesoup([[untimed]], [[self.state(1, 1)]])
