@@ -154,7 +154,9 @@ SweepAxis parse_axis(const std::string& text) {
         throw invalid_sweep(text, axis.key + " changes nothing that is computed", "Sweep another key");
     const std::string items = text.substr(equals + 1);
     const char separator = items.find('|') == std::string::npos ? ',' : '|';
-    for (const std::string& item : split_list(items, separator)) {
+    std::vector<std::string> listed = split_list(items, separator);
+    if (separator == '|' && listed.size() > 1 && listed.back().empty()) listed.pop_back();  // `0, 0.3|`: one value
+    for (const std::string& item : listed) {
         if (item.empty()) throw invalid_sweep(text, "a value is empty", "Write --sweep section.key=a,b,c");
         if (item.find(':') == std::string::npos) {
             axis.values.push_back(written_alike(item));

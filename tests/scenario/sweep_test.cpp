@@ -49,6 +49,11 @@ TEST_CASE("sweep: values are parted by commas, or by bars where they hold commas
     CHECK(values_of("filter.covariance=1") == Texts{"1"});
 }
 
+TEST_CASE("sweep: a bar behind a list makes it one value") {
+    CHECK(values_of("planner.turns=-0.3, 0, 0.3|") == Texts{"-0.3, 0, 0.3"});
+    CHECK_THROWS_WITH(parse_axis("planner.turns=|"), Contains("a value is empty"));
+}
+
 TEST_CASE("sweep: a range has its ends as given and round numbers between them") {
     CHECK(values_of("a.b=0:1:6") == Texts{"0", "0.2", "0.4", "0.6", "0.8", "1"});
     CHECK(values_of("a.b=0.1:0.9:9") == Texts{"0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9"});
