@@ -87,6 +87,8 @@ struct RecordArrays {
     std::vector<RecordArray> arrays;
     std::map<std::string, std::string> texts;       ///< the root's attributes, lists as texts with commas
     std::map<std::string, int> dimensions;          ///< the attribute `dimension` of a NEES, by its path
+    /// Attributes in place of such texts: each entry is a name, and behind it the members of a group.
+    std::map<std::string, std::vector<std::vector<std::string>>> lists{};
 };
 
 /// Reads a record in memory as if it were in a file, a part at a time; the arrays are only read. `name` names the

@@ -82,7 +82,7 @@ const std::vector<Damage> shape_damages{
     {"/innovation_covariance: is missing, but /innovation is there",
      [](auto& r) { remove(r, "innovation_covariance"); }},
     {"/covariance: has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is "
-     "[2, 2, 4, 3] and /error [2, 4, 3], but h5dump must show the trials first. Before you write them, turn them "
+     "[2, 2, 4, 3] and /error [2, 4, 3]. h5dump must show the trials first. Before you write them, turn them "
      "round: permute(error, [3 2 1]) and permute(covariance, [4 3 2 1]), and",
      extents("error", {2, 4, 3}, "covariance", {2, 2, 4, 3})},
     {"permute(error, [2 1]) and permute(covariance, [3 2 1]), and",

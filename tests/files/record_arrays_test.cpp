@@ -85,6 +85,30 @@ TEST_CASE("record: arrays of singles, and of NEES with their dimension, are read
           })));
 }
 
+TEST_CASE("record: what a list in memory holds is taken as it is: a name has its spaces, and a comma parts nothing") {
+    const DrawnRecord drawn(300, 4, 3);
+    const Laid<double> error("error", extents_of(drawn, {3}), flat(drawn.error)),
+        covariance("covariance", extents_of(drawn, {3, 3}), flat(drawn.covariance));
+    RecordArrays arrays{{error.array, covariance.array}, {{"groups", "pose 0 2, speed 1"}}, {}};
+    const std::string text = said(read_record(arrays, "record"));
+    arrays.texts.clear();
+    const auto with = [&](const std::string& name, const std::vector<std::vector<std::string>>& list) {
+        arrays.lists = {{name, list}};
+        return said(read_record(arrays, "record"));
+    };
+    CHECK(with("groups", {{"pose", "0", "2"}, {"speed", "1"}}) == text);
+    CHECK_THROWS_WITH(with("groups", {{"speed 1", "2"}}), Contains("`speed 1` is no name for a group"));
+    CHECK_THROWS_WITH(with("groups", {{"pose 0:3, x", "2"}}), Contains("`pose 0:3, x` is no name for a group"));
+    CHECK_THROWS_WITH(with("component_names", {{"x, y"}, {"z"}}), Contains("has 2 entries, and the state has 3"));
+}
+
+TEST_CASE("record: what is refused of arrays is mended by arrays") {
+    const Laid<double> error("error", {2, 4, 3}, std::vector<double>(24)),
+        covariance("covariance", {2, 2, 4, 3}, std::vector<double>(48));
+    CHECK_THROWS_WITH(read_record({{error.array, covariance.array}, {}, {}}, "record"),
+                      Contains("Give the trials first: error.transpose() and covariance.transpose(), and"));
+}
+
 TEST_CASE("record: arrays that do not fit are refused by their names") {
     const DrawnRecord drawn(2, 4, 3);
     const Laid<double> error("error", extents_of(drawn, {3}), flat(drawn.error)),

@@ -15,13 +15,15 @@ namespace credence::hdf5 {
 /// An error of HDF5 or of a file's content, as `place: problem`. The store translates it to an InputError or a Failure.
 class Error : public std::runtime_error {
 public:
-    Error(const std::string& place, const std::string& problem, std::string remedy = {})
-        : std::runtime_error(place + ": " + problem), remedy_(std::move(remedy)) {}
+    Error(const std::string& place, const std::string& problem, std::string remedy = {}, std::string of_arrays = {})
+        : std::runtime_error(place + ": " + problem), remedy_(std::move(remedy)), of_arrays_(std::move(of_arrays)) {}
     /// The remedy; empty where only the usual one helps.
     const std::string& remedy() const { return remedy_; }
+    /// The remedy of a caller in Python, who gives arrays in memory.
+    const std::string& remedy_of_arrays() const { return of_arrays_.empty() ? remedy_ : of_arrays_; }
 
 private:
-    std::string remedy_;
+    std::string remedy_, of_arrays_;
 };
 
 /// Stops HDF5 from printing its error stack while the object exists; if the scope is left by an exception, for good,

@@ -81,11 +81,16 @@ std::vector<std::string> ArraySource::names_in(const std::string& group) const {
 }
 
 bool ArraySource::has_attribute(const std::string& name, const std::string& path) const {
-    return path.empty() ? name == "record_version" || record_.texts.contains(name)
+    return path.empty() ? name == "record_version" || record_.texts.contains(name) || record_.lists.contains(name)
                         : name == "dimension" && record_.dimensions.contains(path);
 }
 
 std::string ArraySource::text(const std::string& name) const { return record_.texts.at(name); }
+
+ListEntries ArraySource::list(const std::string& name) const {
+    const auto found = record_.lists.find(name);
+    return found != record_.lists.end() ? found->second : RecordSource::list(name);
+}
 
 std::optional<double> ArraySource::number(const std::string&, const std::string& path) const {
     constexpr double version = 2;

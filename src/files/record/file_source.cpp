@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <credence/error.hpp>
+#include <credence/text.hpp>
 
 #include "files/record/source.hpp"
 
@@ -57,6 +58,16 @@ std::string record_place(const std::string& path) {
 
 std::string record_attribute_place(const std::string& name, const std::string& path) {
     return printable("/" + path) + "@" + printable(name);
+}
+
+ListEntries list_entries(const std::string& text) {
+    ListEntries entries;
+    for (const std::string& entry : split_list(text)) {
+        std::vector<std::string>& words = entries.emplace_back();
+        for (std::string& word : split_list(entry, ' '))
+            if (!word.empty()) words.push_back(std::move(word));
+    }
+    return entries;
 }
 
 bool FileSource::has(const std::string& path) const {

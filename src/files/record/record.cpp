@@ -88,7 +88,7 @@ Record read_arrays_in_chart(const RecordArrays& arrays, const std::string& name,
         return read_in_chart(RecordReader(ArraySource(arrays), part_numbers), name, progress, other,
                              [&arrays, name](bool again) { return read_arrays_in_chart(arrays, name, {}, again); });
     } catch (const hdf5::Error& error) {
-        throw InputError(error.what() + (". " + error.remedy()) + ".");
+        throw InputError(error.what() + (". " + error.remedy_of_arrays()) + ".");
     }
 }
 

@@ -40,6 +40,11 @@ private:
 };
 using DatasetPointer = std::unique_ptr<RecordDataset>;
 
+/// The entries of a list, each of words: a name, and behind it the members of a group.
+using ListEntries = std::vector<std::vector<std::string>>;
+/// Those between the commas of a text.
+ListEntries list_entries(const std::string& text);
+
 /// The datasets and attributes of a record. Paths are such as `error` and `group/pose/nees`, and the empty one is that
 /// of the root. All functions throw hdf5::Error.
 class RecordSource {
@@ -56,6 +61,8 @@ public:
     virtual bool has_attribute(const std::string& name, const std::string& path = "") const = 0;
     /// A text attribute of the root; the entries of a list joined by commas.
     virtual std::string text(const std::string& name) const = 0;
+    /// A list attribute of the root.
+    virtual ListEntries list(const std::string& name) const { return list_entries(text(name)); }
     /// The number in an attribute, of any type; nothing where it holds anything else.
     virtual std::optional<double> number(const std::string& name, const std::string& path = "") const = 0;
 };
@@ -88,6 +95,7 @@ public:
     std::vector<std::string> names_in(const std::string& group) const override;
     bool has_attribute(const std::string& name, const std::string& path) const override;
     std::string text(const std::string& name) const override;
+    ListEntries list(const std::string& name) const override;
     std::optional<double> number(const std::string& name, const std::string& path) const override;
 
 private:

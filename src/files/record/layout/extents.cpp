@@ -38,10 +38,12 @@ void require_squares(const PlacedExtents& vectors, const RecordDataset& matrices
     const std::string both = extents_text(M) + " and " + vectors.place + " " + extents_text(v);
     if (are_reversed_squares(M, v))
         throw Error(matrices.place(),
-                    "has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is " + both +
-                        ", but h5dump must show the trials first",
-                    "Before you write them, turn them round: " + permuted(vector_name, v.size()) + " and " +
-                        permuted(matrix_name, M.size()) + ", and what else the record holds likewise");
+                    "has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is " + both,
+                    "h5dump must show the trials first. Before you write them, turn them round: " +
+                        permuted(vector_name, v.size()) + " and " + permuted(matrix_name, M.size()) +
+                        ", and what else the record holds likewise",
+                    "Give the trials first: " + vector_name + ".transpose() and " + matrix_name +
+                        ".transpose(), and the other arrays likewise");
     throw Error(matrices.place(), "does not fit: it is " + both,
                 "Write " + vector_name + " as [trial, step, size] and " + matrix_name +
                     " as [trial, step, size, size], with all four even where one of them is 1");

@@ -43,7 +43,7 @@ ComponentGroup parse_block(const std::string& entry, int n, const std::string& p
 struct Listed {
     std::string one, whole;  ///< `component`, `the state`
     int size;                ///< how many there are
-    std::string example;
+    std::string example, arrays;  ///< remedies, for a file and for arrays
 };
 
 struct NamedList {
@@ -54,15 +54,10 @@ struct NamedList {
 const std::string group_example = "Write the groups as NAME and its components, counted from 0, such as "
                                   "`position 0 2, velocity 1 3, heading 4`, or as a range with its end not included, "
                                   "such as `pose 0:3`";
+const std::string dictionary = "Give a dict of their names, each with indices counted from 0, such as "
+                               "{\"pose\": [0, 1, 2]}, or a text such as `pose 0:3`, the end of a range not included";
 const std::string row_example = "Write the groups as NAME and its rows, counted from 0, such as `gps 0:3, baro 3`, the "
                                 "end of a range not included";
-
-std::vector<std::string> words_of(const std::string& text) {
-    std::vector<std::string> words;
-    for (const std::string& word : split_list(text, ' '))
-        if (!word.empty()) words.push_back(word);
-    return words;
-}
 
 /// Adds `4`, or `0:3`.
 void add_members(const std::string& word, const std::string& entry, const Listed& of, const std::string& place,
@@ -70,12 +65,13 @@ void add_members(const std::string& word, const std::string& entry, const Listed
     const std::size_t colon = word.find(':');
     const auto first = to_integer(word.substr(0, colon));
     const auto end = colon == std::string::npos ? first : to_integer(word.substr(colon + 1));
-    if (!first || !end) throw Error(place, "broken entry " + quoted(entry), of.example);
+    if (!first || !end) throw Error(place, "broken entry " + quoted(entry), of.example, of.arrays);
     const std::int64_t last = colon == std::string::npos ? *first : *end - 1;
-    if (*first < 0 || last < *first) throw Error(place, quoted(entry) + " has no " + of.one + " " + quoted(word), of.example);
+    if (*first < 0 || last < *first)
+        throw Error(place, quoted(entry) + " has no " + of.one + " " + quoted(word), of.example, of.arrays);
     if (last >= of.size)
         throw Error(place, quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
-                    of.example);
+                    of.example, of.arrays);
     for (std::int64_t member = *first; member <= last; ++member) {
         if (std::ranges::find(members, static_cast<int>(member)) != members.end())
             throw Error(place, quoted(entry) + " names " + of.one + " " + std::to_string(member) + " twice",
@@ -84,11 +80,11 @@ void add_members(const std::string& word, const std::string& entry, const Listed
     }
 }
 
-std::vector<NamedList> parse_lists(const std::string& text, const Listed& of, const std::string& place) {
+std::vector<NamedList> parse_lists(const ListEntries& entries, const Listed& of, const std::string& place) {
     std::vector<NamedList> lists;
-    for (const std::string& entry : split_list(text)) {
-        const std::vector<std::string> words = words_of(entry);
-        if (words.size() < 2) throw Error(place, "broken entry " + quoted(entry), of.example);
+    for (const std::vector<std::string>& words : entries) {
+        const std::string entry = joined(words, " ");
+        if (words.size() < 2) throw Error(place, "broken entry " + quoted(entry), of.example, of.arrays);
         require_group_name(words.front(), "group", place);
         NamedList list{words.front(), {}};
         for (std::size_t i = 1; i < words.size(); ++i) add_members(words[i], entry, of, place, list.members);
@@ -114,12 +110,14 @@ ComponentGroup as_group(NamedList list) {
 /// The texts of a list, of which there must be one for each component.
 std::vector<std::string> read_list(const RecordSource& source, const std::string& name, int n) {
     if (!source.has_attribute(name)) return {};
-    std::vector<std::string> texts = split_list(source.text(name));
+    std::vector<std::string> texts;
+    for (const std::vector<std::string>& words : source.list(name)) texts.push_back(joined(words, " "));
     if (texts.size() != static_cast<std::size_t>(n))
         throw Error(record_attribute_place(name),
                     "has " + std::to_string(texts.size()) + " entries, and the state has " + std::to_string(n) +
                         " components",
-                    "Write one for each component, with commas between them");
+                    "Write one for each component, with commas between them",
+                    "Give a list with one for each component");
     return texts;
 }
 
@@ -146,16 +144,16 @@ void require_group_name(const std::string& name, const std::string& what, const 
                     "Leave that " + what + " out: the whole is judged anyway");
 }
 
-std::vector<ComponentGroup> parse_groups(const std::string& text, int n, const std::string& place) {
+std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place) {
     std::vector<ComponentGroup> groups{{"all", 0, n}};
-    for (NamedList& list : parse_lists(text, {"component", "the state", n, group_example}, place))
+    for (NamedList& list : parse_lists(entries, {"component", "the state", n, group_example, dictionary}, place))
         groups.push_back(as_group(std::move(list)));
     return groups;
 }
 
-std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std::string& place) {
+std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const std::string& place) {
     std::vector<RowGroup> groups;
-    for (NamedList& list : parse_lists(text, {"row", "the innovation", m, row_example}, place)) {
+    for (NamedList& list : parse_lists(entries, {"row", "the innovation", m, row_example, dictionary}, place)) {
         if (list.name == "rows" || list.name.starts_with("rows_"))
             throw Error(place, quoted(list.name) + " cannot name a group of rows, because series begin so",
                         "Use another name");
@@ -178,7 +176,7 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
     if (groups && blocks) throw Error(place, "is there, and `blocks` too", "Write one of them");
     if (source.has("groups") && !groups)
         throw Error(place, "is missing, but there is a `groups` elsewhere", "Make it an attribute of the root, `/`");
-    return parse_groups(groups || blocks ? source.text(groups ? "groups" : "blocks") : "", n, place);
+    return parse_groups(groups || blocks ? source.list(groups ? "groups" : "blocks") : ListEntries(), n, place);
 }
 
 std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults) {

@@ -14,10 +14,10 @@ namespace credence {
 std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
 
 /// The same for version 2: `position 0 2, velocity 1 3, heading 4`, with ranges such as `0:3` between them.
-std::vector<ComponentGroup> parse_groups(const std::string& text, int n, const std::string& place);
+std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place);
 
 /// Groups of the m rows of an innovation, such as `gps 0:3, baro 3`.
-std::vector<RowGroup> parse_row_groups(const std::string& text, int m, const std::string& place);
+std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const std::string& place);
 
 /// The component groups of a record: of the attribute `groups`, or of `blocks` as earlier records call it.
 std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);

@@ -62,7 +62,7 @@ void add_innovations(const RecordSource& source, const PlacedExtents& leading, R
     shape.innovation_epsilon = data.innovation_covariance->epsilon();
     const std::string name = "row_groups";
     if (shape.version == 2 && source.has_attribute(name))
-        shape.row_groups = parse_row_groups(source.text(name), shape.m, record_attribute_place(name));
+        shape.row_groups = parse_row_groups(source.list(name), shape.m, record_attribute_place(name));
 }
 
 RecordLayout open_version_1(const RecordSource& source) {

@@ -90,7 +90,8 @@ void open_group(const RecordSource& source, const PlacedExtents& error, const st
     const std::string path = "group/" + name, place = record_place(path);
     const std::size_t b = find_group(layout.shape, name);
     if (b == 0 || b == layout.shape.groups.size())
-        throw Error(place, "is no group of components", "Name its components in the root's attribute `groups`");
+        throw Error(place, "is no group of components", "Name its components in the root's attribute `groups`",
+                    "Name its components in groups");
     const bool covariance = source.has(path + "/covariance"), nees = source.has(path + "/nees");
     if (covariance == nees)
         throw Error(place, covariance ? "has a covariance and a NEES" : "has neither `covariance` nor `nees`",
@@ -105,11 +106,14 @@ void require_something(const RecordShape& shape) {
     for (std::size_t b = 1; b < shape.groups.size(); ++b)
         if (shape.sources[b] == GroupSource::nothing)
             throw Error(record_attribute_place("groups"), "nothing to judge `" + shape.groups[b].name + "` by",
-                        "Write /covariance, or /group/" + shape.groups[b].name + "/covariance or nees");
+                        "Write /covariance, or /group/" + shape.groups[b].name + "/covariance or nees",
+                        "Give covariance, or the group's own in group_covariance or group_nees");
     if (shape.groups.size() == 1 && shape.sources[0] == GroupSource::nothing)
         throw Error(record_place("covariance"), "is missing",
                     "Write it as [trial, step, n, n], or as [trial, step, n] where there are variances only, or write "
-                    "covariances of groups, /group/NAME/covariance");
+                    "covariances of groups, /group/NAME/covariance",
+                    "Give it as [trial, step, n, n], or as [trial, step, n] if there are variances only, or give "
+                    "group_covariance, the covariances of groups by their names");
 }
 
 }  // namespace
