@@ -7,6 +7,7 @@
 #include "cli/file_kind.hpp"
 #include "cli/version.hpp"
 
+#include <credence/error.hpp>
 #include <credence/record.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
@@ -16,6 +17,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <filesystem>
 #include <map>
@@ -26,6 +28,7 @@ namespace {
 
 using Array = nb::ndarray<nb::ro, nb::device::cpu>;
 using Options = std::map<std::string, std::string>;
+using Lists = std::map<std::string, std::vector<std::vector<std::string>>>;
 
 /// A report and the name of its source.
 struct Judgement {
@@ -71,19 +74,26 @@ Judgement judgement(const std::string& name, const Options& options, const Liste
 }
 
 Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
-                const std::map<std::string, std::string>& texts, const std::map<std::string, int>& dimensions,
-                const Options& options, const std::string& name, const Listener& listener) {
-    RecordArrays record{{}, texts, dimensions};
+                const std::map<std::string, std::string>& texts, const Lists& lists,
+                const std::map<std::string, int>& dimensions, const Options& options, const std::string& name,
+                const Listener& listener) {
+    RecordArrays record{{}, texts, dimensions, lists};
     for (const auto& [path, array] : arrays) record.arrays.push_back(described(path, array.first, array.second));
     return judgement(name, options, listener,
                      [&](const auto& progress) { return read_record(record, name, progress); });
 }
 
-Judgement judge_file(const std::string& path, const Options& options, const Listener& listener) {
-    return judgement(path, options, listener, [&](const auto& progress) {
-        cli::check_kind(path, {cli::FileKind::record});
-        return read_record(path, progress);
-    });
+/// The path in the bytes of the file system, which need not be UTF-8.
+Judgement judge_file(const nb::bytes& file, const Options& options, const Listener& listener) {
+    const std::string path(file.c_str(), file.size());
+    try {
+        return judgement(path, options, listener, [&](const auto& progress) {
+            cli::check_kind(path, {cli::FileKind::record});
+            return read_record(path, progress);
+        });
+    } catch (const InputError& error) {
+        throw InputError(shown(error.what()));  // Python takes no other text than UTF-8
+    }
 }
 
 }  // namespace
@@ -93,8 +103,8 @@ void bind_judge(nb::module_& module) {
         .def_prop_ro("text", [](const Judgement& judgement) { return alone([&] { return judgement.text(); }); })
         .def_prop_ro("json", [](const Judgement& judgement) { return alone([&] { return judgement.json(); }); })
         .def_prop_ro("html", [](const Judgement& judgement) { return alone([&] { return judgement.html(); }); });
-    module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("dimensions"), nb::arg("options"),
-               nb::arg("name"), nb::arg("progress").none());
+    module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"),
+               nb::arg("options"), nb::arg("name"), nb::arg("progress").none());
     module.def("judge_file", judge_file, nb::arg("path"), nb::arg("options"), nb::arg("progress").none());
 }
 

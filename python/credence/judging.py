@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ParamSpec
+from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec
 
 from credence import _core
 from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
@@ -15,7 +15,15 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     Numbers = npt.NDArray[np.floating[Any]]
-    Groups = str | Mapping[str, int | Sequence[int]]
+    Groups = str | Mapping[str, int | Sequence[int]] | Sequence[str]
+
+
+class _Printed(NamedTuple):
+    """What a judgement says, without what it was computed from."""
+
+    text: str
+    json: str
+    html: str
 
 
 class Verdict:
@@ -32,10 +40,13 @@ class Verdict:
         What ``credence judge --format json`` prints, the same bits; it has one entry, that of the record.
     """
 
-    def __init__(self, judgement: _core.Judgement) -> None:
+    def __init__(self, judgement: _core.Judgement | _Printed) -> None:
         self._judgement = judgement
         self.json: list[dict[str, Any]] = json.loads(judgement.json)
         self.verdict: str = self["verdict"]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Verdict, (_Printed(self._judgement.text, self._judgement.json, self._judgement.html),)
 
     def __getitem__(self, name: str) -> Any:
         return self.json[0][name]
@@ -60,13 +71,10 @@ class Verdict:
         return self.verdict == "consistent"
 
 
-def _array(given: object) -> tuple[Numbers, float]:
+def _array(array: npt.NDArray[Any]) -> tuple[Numbers, float]:
     """Doubles and singles as they are; anything else as doubles. With the precision of the type."""
     import numpy as np
 
-    array = np.asarray(given)
-    if array.dtype.kind not in "fiub":
-        raise TypeError(f"an array of {array.dtype} does not hold numbers. Give floating-point numbers.")
     precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
     if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
         array = array.astype(float)
@@ -75,35 +83,12 @@ def _array(given: object) -> tuple[Numbers, float]:
     return array, precision
 
 
-def _list_text(names: str | Sequence[str] | None) -> str | None:
-    return names if names is None or isinstance(names, str) else ", ".join(names)
-
-
-def _groups_text(groups: Groups | None) -> str | None:
-    """Groups as the record's attribute has them, such as ``pose 0 1 2, feature 3``."""
-    if groups is None or isinstance(groups, str):
-        return groups
-    import numpy as np
-
-    return ", ".join(" ".join([name, *(str(int(i)) for i in np.ravel(members))]) for name, members in groups.items())
-
-
-def _dimensions(
-    given: int | Mapping[str, int] | None, groups: Groups | None, nees: bool, group_nees: Mapping[str, object]
-) -> dict[str, int]:
-    """The dimension of each NEES, by its place in a record."""
-    dimensions = {}
-    if nees and isinstance(given, int):
-        dimensions["nees"] = given
-    for name in group_nees:
-        if isinstance(given, Mapping) and name in given:
-            dimensions[f"group/{name}/nees"] = int(given[name])
-        elif isinstance(groups, Mapping) and name in groups:
-            members = groups[name]
-            dimensions[f"group/{name}/nees"] = 1 if isinstance(members, int) else len(members)
-    if nees and isinstance(given, Mapping) and "all" in given:
-        dimensions["nees"] = int(given["all"])
-    return dimensions
+def _refuse_what_is_not_used(given: Mapping[str, object]) -> None:
+    """Refuse what says nothing without another argument, so that it is not ignored."""
+    for names, other in ((("row_groups",), "innovation"), (("manifold", "chart", "quaternion"), "estimate")):
+        for name in names:
+            if name in given and other not in given:
+                raise _core.InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
 
 
 def judge(
@@ -122,6 +107,7 @@ def judge(
     component_units: str | Sequence[str] | None = None,
     steps: object = None,
     time: object = None,
+    runs: object = None,
     truth: object = None,
     estimate: object = None,
     manifold: str | None = None,
@@ -137,8 +123,9 @@ def judge(
     """Say whether a filter's covariance can be believed, by its errors in many independent runs.
 
     `error` and `covariance` are enough for most filters; the other forms are those of a record [docs/judge.md]. Arrays
-    are anything that NumPy takes (xarray, pandas, lists). Doubles and singles of any strides are read in place, a part
-    at a time; other types are converted first. A single run may leave out the first dimension.
+    are anything that NumPy takes (xarray, pandas, lists); docs/python.md says what becomes of masks, units and names of
+    dimensions. Doubles and singles of any strides are read in place, a part at a time; other types are converted first.
+    A single run may leave out the first dimension, and a list may hold runs of different lengths.
 
     Parameters
     ----------
@@ -149,9 +136,9 @@ def judge(
         Joint covariances, or variances alone, in the square of the units of `error`.
     innovation, innovation_covariance : arrays [trial, step, m] and [trial, step, m, m]
         Both or neither; NaN in rows that were not observed.
-    groups : dict or str
+    groups : dict, str or list of str
         Parts of the state that are judged by themselves: ``{"pose": [0, 1, 2]}`` or ``"pose 0:3"``.
-    row_groups : dict or str
+    row_groups : dict, str or list of str
         The same of the rows of the innovation.
     margin, margin_direction : float or str
         NEES/n within 1 -+ `margin` is consistent, ``0.05`` or ``"5%"``; so is the squared error of every combination of
@@ -166,6 +153,9 @@ def judge(
         How many steps each run has, where they differ.
     time : array [step] or [trial, step]
         Times of the steps (s), which must increase.
+    runs : array [row], or name of a column
+        Which run each row is of, where runs lie below each other in flat tables: all arrays are then [row, ...], each
+        run's steps in their order. A name is that of a column of the tables, or of a level of their index.
     truth, estimate : arrays [trial, step, q]
         In place of `error`: states on a `manifold`, such as ``"SE3 x R6"``, whose error is taken in the `chart`
         ``"local"`` or ``"global"``; `quaternion` is ``"wxyz"`` or ``"xyzw"``.
@@ -205,10 +195,10 @@ def judge(
         **{f"group/{group}/{what}": array for what, each in own.items() for group, array in each.items()},
     }
     texts = {
-        "groups": _groups_text(groups),
-        "row_groups": _groups_text(row_groups),
-        "component_names": _list_text(component_names),
-        "component_units": _list_text(component_units),
+        "groups": groups,
+        "row_groups": row_groups,
+        "component_names": component_names,
+        "component_units": component_units,
         "manifold": manifold,
         "chart": chart,
         "quaternion": quaternion,
@@ -216,14 +206,18 @@ def judge(
     given_arrays = {path: array for path, array in arrays.items() if array is not None}
     given_texts = {key: text for key, text in texts.items() if text is not None}
     if isinstance(error, (str, os.PathLike)):
-        if len(given_arrays) > 1 or given_texts:
+        if len(given_arrays) > 1 or given_texts or runs is not None:
             raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
         with errors_of_arguments(), progress_bar(progress) as bar:
-            return Verdict(_core.judge_file(os.fspath(error), given_options, bar))
-    taken = {path: _array(array) for path, array in given_arrays.items()}
-    dimensions = _dimensions(dimension, groups, nees is not None, own["nees"])
+            return Verdict(_core.judge_file(os.fsencode(error), given_options, bar))
+    from credence import _arrays, _names
+
+    _refuse_what_is_not_used({**given_arrays, **given_texts})
+    plain, lists = _names.texts_and_lists(given_texts)
+    dimensions = _names.dimensions(dimension, groups, nees is not None, own["nees"])
+    taken = {path: _array(array) for path, array in _arrays.prepared(given_arrays, runs).items()}
     with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
-        return Verdict(_core.judge(taken, given_texts, dimensions, given_options, name, bar))
+        return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, name, bar))
 
 
 P = ParamSpec("P")

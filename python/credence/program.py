@@ -50,7 +50,7 @@ def _command(words: Sequence[str], progress: bool | None = False) -> tuple[int, 
 
 def _value_text(value: object) -> str:
     """A value of a scenario's key, a list with commas."""
-    if isinstance(value, str) or not isinstance(value, Sequence):
+    if isinstance(value, str) or not isinstance(value, Iterable):
         return str(value)
     return ", ".join(str(one) for one in value)
 
@@ -60,7 +60,10 @@ def _axis_text(values: str | Iterable[object]) -> str:
     if isinstance(values, str):
         return values
     texts = [_value_text(one) for one in values]
-    return "|".join(texts) if any("," in text for text in texts) else ",".join(texts)
+    for text in texts:
+        if "|" in text:
+            raise _core.InputError(f"invalid sweep ({text!r} has a bar, which parts values). Give values without bars.")
+    return "|".join([*texts, ""]) if any("," in text for text in texts) else ",".join(texts)
 
 
 def _option_words(**options: object) -> list[str]:

@@ -24,7 +24,7 @@ def _first(value):
 CORPUS = {name: _first(record) for name, record in records.corpus().items()}
 ARRAYS = ["error", "covariance", "innovation", "innovation_covariance", "steps", "time", "truth", "estimate", "nees"]
 TEXTS = ["groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion", "name"]
-OPTIONS = ["margin", "margin_direction", "bias", "failed", "dimension", "group_covariance", "group_nees"]
+OPTIONS = ["margin", "margin_direction", "bias", "failed", "dimension", "group_covariance", "group_nees", "runs"]
 # fmt: off
 THINGS = [
     None, "", "\0", "é", "\ud800", "a\nb", ",", "pose 0:3", "pose 0:99999999999", "all 0", "a -1", "a 0 0", "a 0, a 1",

@@ -1,0 +1,86 @@
+"""Names, groups and dimensions of what is judged, as lists of entries: a name, and behind it its components."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from numbers import Integral, Real
+from typing import Any
+
+from credence import InputError
+
+Entries = list[list[str]]
+_example = '{"pose": [0, 1, 2]}'
+
+
+def printable(given: object) -> str:
+    """What was given, fit for a message of one line."""
+    text = given if isinstance(given, str) else repr(given)
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)[:100]
+
+
+def _whole(given: object) -> int | None:
+    if isinstance(given, bool) or not isinstance(given, Real):
+        return None
+    return int(given) if isinstance(given, Integral) else int(float(given)) if float(given).is_integer() else None
+
+
+def _name(argument: str, given: object) -> str:
+    if not isinstance(given, str):
+        raise InputError(f"invalid {argument} ({printable(given)} is not a text). Give one.")
+    return given
+
+
+def _members(argument: str, name: str, given: Any) -> list[str]:
+    members = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else [given]
+    indices = [_whole(one) for one in members]
+    for member, index in zip(members, indices):
+        if index is None:
+            why = f"{printable(member)} of {printable(name)} is not the index of a component"
+            remedy = f"Give indices, such as {_example}; those of a mask are numpy.flatnonzero(mask)"
+            raise InputError(f"invalid {argument} ({why}). {remedy}.")
+    return [str(index) for index in indices]
+
+
+def _groups(argument: str, given: Any) -> Entries:
+    """Groups as a dictionary of their members, or as a list of texts such as ``pose 0:3``."""
+    if isinstance(given, Mapping):
+        return [[_name(argument, name), *_members(argument, name, members)] for name, members in given.items()]
+    if not isinstance(given, Iterable):
+        raise InputError(f"invalid {argument} ({printable(given)} is no dict). Give one, such as {_example}.")
+    return [_name(argument, one).split() for one in given]
+
+
+def _names(argument: str, given: Any) -> Entries:
+    if not isinstance(given, Iterable):
+        raise InputError(
+            f"invalid {argument} ({printable(given)} is no list). Give a list of texts, one for each component."
+        )
+    return [[_name(argument, one)] for one in given]
+
+
+def texts_and_lists(given: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, Entries]]:
+    """The attributes of a record that are texts, and those that are lists."""
+    texts = {argument: text for argument, text in given.items() if isinstance(text, str)}
+    lists = {}
+    for argument in given.keys() - texts.keys():
+        if argument in ("manifold", "chart", "quaternion"):
+            texts[argument] = _name(argument, given[argument])
+        else:
+            entries = _groups if argument.endswith("groups") else _names
+            lists[argument] = entries(argument, given[argument])
+    return texts, lists
+
+
+def dimensions(given: Any, groups: Any, nees: bool, group_nees: Iterable[str]) -> dict[str, int]:
+    """The dimension of each NEES, by its place in a record."""
+    by_name = dict(given) if isinstance(given, Mapping) else {} if given is None else {"all": given}
+    known = [*group_nees, *(["all"] if nees else [])]
+    for name, dimension in by_name.items():
+        if name not in known or _whole(dimension) is None:
+            unknown = name not in known
+            why = f"{printable(name)} has no NEES" if unknown else f"{printable(dimension)} is not a whole number"
+            raise InputError(f"invalid dimension ({why}). Give the number of components of each NEES, by its name.")
+    if isinstance(groups, Mapping):
+        by_name = {name: len(_members("groups", name, groups[name])) for name in group_nees if name in groups} | by_name
+    place = {name: "nees" if name == "all" else f"group/{name}/nees" for name in by_name}
+    return {place[name]: int(dimension) for name, dimension in by_name.items()}
