@@ -42,6 +42,9 @@ struct Judgement {
     }
 };
 
+/// A path, or a name that may be one, in the bytes of the file system, which need not be UTF-8.
+std::string bytes_of(const nb::bytes& text) { return {text.c_str(), text.size()}; }
+
 RecordArray described(const std::string& path, const Array& array, double epsilon) {
     RecordArray described{path, array.data(), RecordArray::Type::real64, {}, {}, epsilon};
     if (array.dtype() == nb::dtype<float>()) described.type = RecordArray::Type::real32;
@@ -75,17 +78,17 @@ Judgement judgement(const std::string& name, const Options& options, const Liste
 
 Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
                 const std::map<std::string, std::string>& texts, const Lists& lists,
-                const std::map<std::string, int>& dimensions, const Options& options, const std::string& name,
+                const std::map<std::string, int>& dimensions, const Options& options, const nb::bytes& called,
                 const Listener& listener) {
+    const std::string name = bytes_of(called);
     RecordArrays record{{}, texts, dimensions, lists};
     for (const auto& [path, array] : arrays) record.arrays.push_back(described(path, array.first, array.second));
     return judgement(name, options, listener,
                      [&](const auto& progress) { return read_record(record, name, progress); });
 }
 
-/// The path in the bytes of the file system, which need not be UTF-8.
 Judgement judge_file(const nb::bytes& file, const Options& options, const Listener& listener) {
-    const std::string path(file.c_str(), file.size());
+    const std::string path = bytes_of(file);
     try {
         return judgement(path, options, listener, [&](const auto& progress) {
             cli::check_kind(path, {cli::FileKind::record});

@@ -21,7 +21,7 @@ def judge(
     lists: Mapping[str, Sequence[Sequence[str]]],
     dimensions: Mapping[str, int],
     options: Mapping[str, str],
-    name: str,
+    name: bytes,
     progress: Callable[[int, int], object] | None,
 ) -> Judgement: ...
 def judge_file(path: bytes, options: Mapping[str, str], progress: Callable[[int, int], object] | None) -> Judgement: ...

@@ -217,7 +217,7 @@ def judge(
     dimensions = _names.dimensions(dimension, groups, nees is not None, own["nees"])
     taken = {path: _array(array) for path, array in _arrays.prepared(given_arrays, runs).items()}
     with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
-        return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, name, bar))
+        return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 
 
 P = ParamSpec("P")

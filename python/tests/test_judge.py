@@ -181,4 +181,4 @@ def test_an_error_in_progress_ends_the_call():
 
     array = judging._array(np.zeros((3, 2, 2)))
     with pytest.raises(Stop):
-        _core.judge({"error": array, "covariance": judging._array(np.ones((3, 2, 2)))}, {}, {}, {}, {}, "record", stop)
+        _core.judge({"error": array, "covariance": judging._array(np.ones((3, 2, 2)))}, {}, {}, {}, {}, b"record", stop)

@@ -204,6 +204,7 @@ def foreign_paths(tmp_path):
     path = pathlib.Path(named).rename(tmp_path / "\udcff.h5")
     verdict = credence.judge(path)
     assert verdict["groups"] == PLAIN["groups"]
+    assert credence.judge(ERROR, COVARIANCE, name=str(path)).json == verdict.json
     assert "\udcff" not in str(verdict) + verdict.html
     with pytest.raises(credence.InputError, match=r"xfe.h5: the file: cannot be found"):
         credence.judge(tmp_path / "\udcfe.h5")
