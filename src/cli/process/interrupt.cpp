@@ -9,13 +9,11 @@ namespace credence::cli {
 
 namespace {
 
-constexpr int caught[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr int exit_at_once = 130;
 
 std::atomic<int> signal_that_came = 0;
 std::atomic<bool> ends_process = true;  ///< at the second signal
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch nothing else");
-struct sigaction before[3];
 
 extern "C" void note_signal(int signal) {
     if (signal_that_came.exchange(signal) != 0 && ends_process) _exit(exit_at_once);
@@ -25,20 +23,17 @@ extern "C" void note_signal(int signal) {
 
 Interrupt::Interrupt() {
     signal_that_came = 0;
-    for (int i = 0; i < 3; ++i) {
-        struct sigaction action {};
-        action.sa_handler = note_signal;
-        action.sa_flags = SA_RESTART;
-        sigaction(caught[i], &action, &before[i]);
-        if (caught[i] == SIGHUP && before[i].sa_handler == SIG_IGN) sigaction(SIGHUP, &before[i], nullptr);
-    }
-}
-
-Interrupt::~Interrupt() {
-    for (int i = 0; i < 3; ++i) sigaction(caught[i], &before[i], nullptr);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (signal != SIGHUP || !SignalHandler::ignored(SIGHUP))
+            handlers_.emplace_back(signal, note_signal, SA_RESTART);
 }
 
 void Interrupt::keep_process() { ends_process = false; }
+
+void Interrupt::ask() {
+    int none = 0;
+    signal_that_came.compare_exchange_strong(none, SIGTERM);
+}
 
 bool Interrupt::came() { return signal_that_came != 0; }
 

@@ -1,6 +1,9 @@
 #pragma once
 // Stopping a run by a signal.
 
+#include "base/signal_handler.hpp"
+
+#include <list>
 #include <string>
 
 namespace credence::cli {
@@ -10,16 +13,18 @@ namespace credence::cli {
 class Interrupt {
 public:
     Interrupt();
-    ~Interrupt();
-    Interrupt(const Interrupt&) = delete;
-    Interrupt& operator=(const Interrupt&) = delete;
 
     /// Whether a signal was received. Can be called from any thread.
     static bool came();
+    /// Asks the run to stop, as SIGTERM does.
+    static void ask();
     /// From now on a second signal only asks again: the process is not the program's own.
     static void keep_process();
     /// Its name, such as SIGINT.
     static std::string name();
+
+private:
+    std::list<SignalHandler> handlers_;
 };
 
 }  // namespace credence::cli

@@ -79,10 +79,20 @@ void lock_for_writing(const Descriptor& file, const std::string& target) {
 
 }  // namespace
 
+namespace {
+
+bool same_file(const std::optional<struct stat>& one, const std::optional<struct stat>& other) {
+    return one && other && one->st_ino == other->st_ino && one->st_dev == other->st_dev;
+}
+
+}  // namespace
+
 bool same_file(const Descriptor& opened, const std::string& path, const std::string& target) {
-    const struct stat own = status_of(opened, target);
-    const std::optional<struct stat> named = status_of(path, target);
-    return named && own.st_ino == named->st_ino && own.st_dev == named->st_dev;
+    return same_file(status_of(opened, target), status_of(path, target));
+}
+
+bool same_file(const std::string& one, const std::string& other) {
+    return same_file(status_of(one, one), status_of(other, other));
 }
 
 Descriptor open_locked(const std::string& path, const std::string& target, mode_t mode) {

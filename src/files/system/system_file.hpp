@@ -2,11 +2,11 @@
 // The system's file operations, and messages for its errors.
 
 #include "base/descriptor.hpp"
+#include "base/signal_handler.hpp"
 
 #include <sys/stat.h>
 #include <sys/types.h>
 
-#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,17 +18,9 @@ namespace credence {
 [[noreturn]] void fail_to_write(const std::string& path, int error);
 
 /// Ignores SIGXFSZ: beyond a limit on file sizes the system would kill the process, but now write() fails with EFBIG.
-class FileSizeSignalIgnored {
+class FileSizeSignalIgnored : SignalHandler {
 public:
-    FileSizeSignalIgnored() {
-        struct sigaction ignore {};
-        ignore.sa_handler = SIG_IGN;
-        sigaction(SIGXFSZ, &ignore, &before_);
-    }
-    ~FileSizeSignalIgnored() { sigaction(SIGXFSZ, &before_, nullptr); }
-
-private:
-    struct sigaction before_ {};
+    FileSizeSignalIgnored() : SignalHandler(SIGXFSZ, SIG_IGN) {}
 };
 
 enum class Links { followed, themselves };
@@ -40,6 +32,9 @@ std::optional<struct stat> status_of(const std::string& path, const std::string&
 
 /// Whether the name still leads to the file that was opened. Throws likewise.
 bool same_file(const Descriptor& opened, const std::string& path, const std::string& target);
+
+/// Whether two names lead to one file, by whatever links. Throws likewise.
+bool same_file(const std::string& one, const std::string& other);
 
 /// Opens or creates a regular file for reading and writing, `mode` being its permissions if it is created, locked
 /// against a second writer, which may have renamed or removed it between our opening and locking. Throws Failure about
