@@ -1,5 +1,8 @@
 #include "cli/command.hpp"
 
+#include "base/program_name.hpp"
+#include "files/system/durable_file.hpp"
+
 #include <credence/error.hpp>
 #include <credence/store.hpp>
 #include <credence/text.hpp>
@@ -52,7 +55,8 @@ std::string help_text(const po::options_description& description) {
     const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
     throw InputError(
         "unknown option " + printable(given) + ". " +
-        (meant.empty() ? "`credence " + command.name + " --help` lists them." : "Did you mean --" + meant + "?"));
+        (meant.empty() ? "`" + program_name() + " " + command.name + " --help` lists them."
+                       : "Did you mean --" + meant + "?"));
 }
 
 void check_repeats(const Command& command, const Parsed& parsed) {
@@ -162,10 +166,10 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     } catch (const po::unknown_option& error) {
         refuse_unknown(command, error.get_option_name());
     } catch (const po::error& error) {
-        throw InputError(printable(error.what()) + ". `credence " + command.name + " --help` shows how.");
+        throw InputError(printable(error.what()) + ". `" + program_name() + " " + command.name + " --help` shows how.");
     }
     if (parsed.has("help")) {
-        std::cout << "usage: credence " << command.name << " " << command.arguments << "\n\n"
+        std::cout << "usage: " << shown(program_name()) << " " << command.name << " " << command.arguments << "\n\n"
                   << command.summary << "\n\n"
                   << help_text(description) << command.details;
         return std::nullopt;
@@ -208,15 +212,17 @@ double parse_failed(const Parsed& parsed) {
     return share;
 }
 
+std::vector<std::string> inputs_of(const Parsed& parsed) {
+    std::vector<std::string> inputs = parsed.arguments;
+    if (const std::optional<std::string> noise = parsed.text("noise")) inputs.push_back(*noise);
+    return inputs;
+}
+
 std::optional<Output> check_output_option(const Parsed& parsed) {
     const std::optional<std::string> path = parsed.text("output");
     if (!path) return std::nullopt;
-    const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
-    std::vector<std::string> inputs = parsed.arguments;
-    if (const std::optional<std::string> noise = parsed.text("noise")) inputs.push_back(*noise);
-    for (const std::string& input : inputs)
-        if (output.there && identity_of(input) == output.there)
-            throw InputError("cannot write " + *path + " (it is the file to read). Give another name.");
+    Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
+    check_not_read(output, inputs_of(parsed));
     return output;
 }
 

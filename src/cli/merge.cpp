@@ -24,9 +24,8 @@ const Command& merge_command() {
 
 int merge(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
-    const std::optional<std::string> path = parsed.text("output");
-    if (!path) throw InputError("no -o given. Name the results file to write.");
-    const Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
+    const std::optional<Output> output = check_output_option(parsed);
+    if (!output) throw InputError("no -o given. Name the results file to write.");
     allow_open_files();
     for (const std::string& shard : parsed.arguments) check_kind(shard, {FileKind::results});
     const Study study = merge_results(parsed.arguments, most_totals_in_memory, made_by());
@@ -36,11 +35,10 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     RunFacts facts = build_facts();
     facts.emplace_back("merged_files", std::to_string(parsed.arguments.size()));
     facts.emplace_back("command_line", command_line);
-    write_results(output, study, facts);
+    write_results(*output, study, facts);
     if (!parsed.has("quiet"))
-        print(printable(*path) + ": " + std::to_string(study.trials) + " trials of each scenario from " +
-              std::to_string(parsed.arguments.size()) + " files, " +
-              file_size_text(*path) + "\n");
+        print(printable(output->path) + ": " + std::to_string(study.trials) + " trials of each scenario from " +
+              std::to_string(parsed.arguments.size()) + " files, " + file_size_text(output->path) + "\n");
     return 0;
 }
 

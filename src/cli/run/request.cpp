@@ -2,6 +2,7 @@
 
 #include "cli/version.hpp"
 #include "cli/file_kind.hpp"
+#include "files/system/durable_file.hpp"
 
 #include <credence/error.hpp>
 #include "cluster/launcher.hpp"
@@ -74,6 +75,7 @@ RunRequest read_request(const Parsed& parsed) {
     RunRequest request;
     request.options.shard = shard_of(parsed);
     request.output = output_of(parsed, request.options.shard);
+    check_not_read(Output(request.output), parsed.arguments);
     if (const auto until = parsed.values.find("until"); until != parsed.values.end())
         for (const std::string& goal : until->second) request.goals.push_back(parse_goal(goal));
     request.options.trials =

@@ -57,6 +57,12 @@ void write_and_rename(const Output& output, const std::function<int(int descript
 
 }  // namespace
 
+void check_not_read(const Output& output, const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs)
+        if (same_file(input, output.target) || same_file(input, output.target + suffix))
+            refuse(output.path, "it would replace " + input + ", which is read", "Give another name");
+}
+
 std::optional<FileIdentity> identity_of(const std::string& path) {
     const std::optional<struct stat> status = status_of(path, path);
     if (!status || !S_ISREG(status->st_mode)) return std::nullopt;

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace credence {
 
@@ -15,5 +16,8 @@ namespace credence {
 /// exists there than may be replaced, and whatever `write` throws; the old file is then unchanged and the temporary one
 /// removed.
 void write_durably(const Output& output, const std::function<int(int descriptor)>& write);
+
+/// Throws InputError where writing the output would replace or remove a file that is read, by whatever name.
+void check_not_read(const Output& output, const std::vector<std::string>& inputs);
 
 }  // namespace credence
