@@ -1,6 +1,7 @@
 #include "cli/file_kind.hpp"
 
 #include "files/hdf5/read.hpp"
+#include "base/program_name.hpp"
 #include "base/readable_file.hpp"
 #include "base/text_stream.hpp"
 #include "files/results/format.hpp"
@@ -42,14 +43,16 @@ struct Words {
     std::string name, advice;
 };
 
+std::string command(const std::string& words) { return "`" + program_name() + " " + words + "`"; }
+
 const Words& words_of(FileKind kind) {
     static const Words words[] = {
-        {"a scenario", "`credence run` and `credence show` read it"},
-        {"a results file", "`credence report` reads it"},
+        {"a scenario", command("run") + " and " + command("show") + " read it"},
+        {"a results file", command("report") + " reads it"},
         {"the trajectory file of a replay", "`python -m credence.pictures` and whatever opens HDF5 read it"},
-        {"a record", "`credence judge` reads it"},
-        {"a noise record", "`credence replay SCENARIO.ini --noise` reads it"},
-        {"the journal of a run", "`credence watch` follows it, and `credence run --resume` goes on with it"},
+        {"a record", command("judge") + " reads it"},
+        {"a noise record", command("replay SCENARIO.ini --noise") + " reads it"},
+        {"the journal of a run", command("watch") + " follows it, and " + command("run --resume") + " goes on with it"},
     };
     return words[static_cast<std::size_t>(kind)];
 }

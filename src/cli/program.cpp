@@ -1,12 +1,14 @@
 // Runs a command line: selects the subcommand and reports errors.
 
 #include "cli/command.hpp"
+#include "cli/process/exit_guard.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
 #include "cli/run/ranks.hpp"
 #include "cli/process/streams.hpp"
 #include "cli/version.hpp"
 
+#include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/program.hpp>
 #include "worlds/simulate.hpp"
@@ -48,8 +50,9 @@ const std::vector<Subcommand>& subcommands() {
 }
 
 int help() {
-    std::cout << "credence: can a filter's covariance be believed, and does planning a path pay?\n\n"
-                 "usage: credence COMMAND ... (`credence COMMAND --help` says more)\n\n";
+    const std::string name = program_name();
+    cli::print(name + ": can a filter's covariance be believed, and does planning a path pay?\n\nusage: " + name +
+               " COMMAND ... (`" + name + " COMMAND --help` says more)\n\n");
     for (const Subcommand& subcommand : subcommands()) {
         const cli::Command& command = subcommand.command();
         std::cout << "  " << command.name << std::string(12 - command.name.size(), ' ') << command.summary << "\n";
@@ -63,7 +66,7 @@ int help() {
 
 /// The command line as given, quoted where a shell needs it.
 std::string command_line(const std::vector<std::string>& words) {
-    std::vector<std::string> quoted{"credence"};
+    std::vector<std::string> quoted{shell_word(program_word())};
     for (const std::string& word : words) quoted.push_back(shell_word(word));
     return joined(quoted, " ");
 }
@@ -94,7 +97,7 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
     }
     const std::string meant = closest(name, names);
     throw InputError("unknown command " + printable(name) + ". " +
-                     (meant.empty() ? "`credence --help` lists them." : "Did you mean " + meant + "?"));
+                     (meant.empty() ? "`" + program_name() + " --help` lists them." : "Did you mean " + meant + "?"));
 }
 
 }  // namespace
@@ -115,7 +118,10 @@ int cli::obey(const std::vector<std::string>& words) {
         print(version_text());
         return 0;
     }
-    if (name != "help" && name != "--help" && name != "-h") return dispatch(name, arguments, command_line(words));
+    if (name != "help" && name != "--help" && name != "-h") {
+        const ExitGuard guard(program_name() + " " + name);
+        return dispatch(name, arguments, command_line(words));
+    }
     return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, "");
 }
 
@@ -127,7 +133,7 @@ namespace {
 
 int obey_or_complain(const std::vector<std::string>& words) {
     const std::string name = names_command(words) ? words.front() : "";
-    const std::string prefix = "credence" + (name.empty() ? "" : " " + name) + ": ";
+    const std::string prefix = program_name() + (name.empty() ? "" : " " + name) + ": ";
     try {
         cli::check_process(words);
     } catch (const InputError& error) {
@@ -156,9 +162,10 @@ int program(int argc, char** argv) {
     // from being closed. Files that credence writes are closed, and checked, long before.
     H5dont_atexit();
     try {
+        if (argc > 0 && *argv[0] != '\0') program_word() = argv[0];
         return obey_or_complain({argv + std::min(argc, 1), argv + argc});
     } catch (const std::bad_alloc&) {  // of the command line or of a message
-        std::cerr << "credence: out of memory.\n";
+        std::cerr << program_name() << ": out of memory.\n";
         return 1;
     }
 }

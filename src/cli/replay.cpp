@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/nan.hpp"
+#include "base/program_name.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -206,7 +207,8 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
 
 int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1)
-        throw InputError("replay takes one results file or one scenario. `credence replay --help` shows how.");
+        throw InputError("replay takes one results file or one scenario. `" + program_name() +
+                         " replay --help` shows how.");
     const std::string format = parsed.choice("format");
     const std::optional<std::string> noise = parsed.text("noise");
     const std::optional<Output> output = check_output_option(parsed);

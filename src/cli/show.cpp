@@ -2,6 +2,7 @@
 #include "cli/file_kind.hpp"
 
 #include <credence/error.hpp>
+#include <credence/text.hpp>
 #include <credence/worlds.hpp>
 
 #include <algorithm>
@@ -29,6 +30,14 @@ void show_scenarios(const std::vector<Scenario>& scenarios) {
     }
 }
 
+/// The line of the world, with the names of all: each has keys of its own. The settings have it of all but the first.
+std::string world_text(const Scenario& scenario) {
+    std::vector<std::string> names;
+    for (const World* world : all_worlds()) names.push_back(world->name());
+    return "# the world: " + joined(names) + "; each has keys of its own, --set " + world_key + "=" + names.back() +
+           " shows them\n" + (scenario.world == first_world ? world_key + (" = " + scenario.world) + "\n" : "");
+}
+
 }  // namespace
 
 int show(const Parsed& parsed) {
@@ -42,6 +51,7 @@ int show(const Parsed& parsed) {
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
     const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
+    print(world_text(scenario));
     for (const Setting& setting : scenario.settings) {
         const auto described = std::ranges::find(keys, setting.key, &DescribedKey::key);
         if (described != keys.end()) print("# " + described->help + "\n");

@@ -3,6 +3,7 @@
 #include "cli/process/interrupt.hpp"
 #include "cli/process/screen.hpp"
 
+#include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 #include "report/watch/watch.hpp"
@@ -21,7 +22,7 @@ const Command& watch_command() {
         "\nReads FILE.h5.journal while the run goes on and FILE.h5 when it is done; the run does not notice. On a\n"
         "terminal the table is drawn again until the run ends (exit code 0) or Ctrl-C ends the watching (3); the run\n"
         "goes on then. When output is not a terminal, one snapshot is printed. To watch and stop when an interval is\n"
-        "narrow enough is not `credence run --until`, whose intervals allow for its interim analyses.\n",
+        "narrow enough is not `" + program_name() + " run --until`, whose intervals allow for its interim analyses.\n",
         {{"every", "SECONDS", "seconds between two snapshots on a terminal (default 2)"},
          {"once", "", "one snapshot, on a terminal too"},
          format_option({"text", "json"})}};

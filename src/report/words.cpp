@@ -225,7 +225,7 @@ std::vector<std::string> warnings_of(const Report& report) {
                         (not_run == 0 ? "." : ", and " + std::to_string(not_run) + " of " +
                                                   std::to_string(report.arms.size()) + " arms are not run yet."));
     }
-    if (report.keep == Keep::aggregates) lines.push_back(std::string("note: ") + no_trials_note);
+    if (report.keep == Keep::aggregates) lines.push_back("note: " + no_trials_note());
     return lines;
 }
 

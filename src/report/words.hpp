@@ -3,6 +3,7 @@
 
 #include <credence/report.hpp>
 
+#include "base/program_name.hpp"
 #include "report/table.hpp"
 
 #include <string>
@@ -36,8 +37,10 @@ bool has_run(const Report& report, const std::string& scenario);
 std::string trials_text(const Report& report);
 
 /// The note on what is missing where no trial is kept.
-inline const char* const no_trials_note =
-    "only totals are kept: medians and distributions need the trials (credence run --keep trials).";
+inline std::string no_trials_note() {
+    return "only totals are kept: medians and distributions need the trials (" + program_name() +
+           " run --keep trials).";
+}
 
 /// An arm's trials, and how many of them failed.
 struct FailureCounts {

@@ -1,5 +1,7 @@
 #include "worlds/values.hpp"
 
+#include "base/program_name.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -211,7 +213,7 @@ void refuse_unknown_key(const std::string& key, const std::vector<std::string>& 
     const std::string meant = closest(key, known);
     throw InputError("unknown key " + printable(key) + ". " +
                          (!meant.empty()           ? "Did you mean " + meant + "?"
-                          : known.size() > a_line ? "`credence show` prints every key."
+                          : known.size() > a_line ? "`" + program_name() + " show` prints every key."
                                                    : "The keys are " + joined(known) + "."),
                      key);
 }

@@ -217,9 +217,80 @@ TEST_CASE("cli: a report or a trajectory replaces a file only with --overwrite, 
         CHECK(here.read("there") != "precious");
         here.write("there", "precious");
         const std::string input = command.find("record") == std::string::npos ? "small.h5" : "record.h5", before = here.read(input);
-        check_refused(here.credence(command + " --overwrite -o ./" + input), "it is the file to read");
+        check_refused(here.credence(command + " --overwrite -o ./" + input),
+                      "it would replace " + input + ", which is read");
         CHECK(here.read(input) == before);
     }
+}
+
+TEST_CASE("cli: no command replaces a file that it reads, by whatever name") {
+    const Workplace here;
+    add_results(here);
+    write_plain_record(here.path("record.h5"));
+    REQUIRE(here.credence("run small.ini --trials 20 --shard 0/2 --quiet -o shard.h5").exit_code == 0);
+    const std::vector<std::pair<std::string, std::string>> commands{
+        {"run small.ini --trials 20 --quiet", "small.ini"},
+        {"report small.h5", "small.h5"},
+        {"judge record.h5 --quiet", "record.h5"},
+        {"compare shard.h5 small.h5", "small.h5"},
+        {"merge shard.h5 small.h5", "small.h5"},
+        {"replay small.h5 --scenario small --arm fixed --trial 0", "small.h5"},
+        {"replay small.ini --noise record.h5", "small.ini"},
+        {"replay small.ini --noise record.h5", "record.h5"}};
+    for (const auto& [command, input] : commands) {
+        const std::string before = here.read(input);
+        const auto check_output = [&, command = command, input = input](const std::string& way,
+                                                                        const std::string& output) {
+            CAPTURE(command, way, input);
+            here.shell("cp " + input + " kept; " + way);
+            check_refused(here.credence(command + " --overwrite -o " + output), "it would replace ");
+            CHECK(here.read(input) == before);
+            here.shell("mv kept " + input + "; rm -f link");
+        };
+        check_output("true", "./" + input);
+        check_output("ln -s " + input + " link", "link");
+        check_output("ln " + input + " link", "link");
+        // Writing goes by a temporary file, and one that is there is removed first.
+        check_output("ln " + input + " link.credence-partial", "link");
+        here.shell("rm -f link.credence-partial");
+    }
+    check_refused(here.credence("run small.ini --resume --quiet -o small.ini"),
+                  "it would replace small.ini, which is read");
+}
+
+TEST_CASE("cli: a program of another name says its own in messages, help, completion and the command to resume") {
+    const Workplace here;
+    add_results(here);
+    const auto own = [&](const std::string& words) { return here.shell("./tracker " + words); };
+    here.shell("ln -s " CREDENCE_PROGRAM " tracker");
+    check_refused(own("report missing.h5"), "tracker report: missing.h5");
+    check_refused(own("report small.ini"), "`tracker run` and `tracker show` read it");
+    check_refused(own("reprot"), "tracker reprot: unknown command");
+    check_refused(own("run --zzzzz"), "`tracker run --help` lists them");
+    check_refused(own("watch missing.h5"), "begin with `tracker run SCENARIO.ini");
+    CHECK_THAT(own("").out, Contains("usage: tracker COMMAND") && !Contains("credence COMMAND"));
+    CHECK_THAT(own("run --help").out, Contains("usage: tracker run SCENARIO.ini") && Contains("`tracker merge`"));
+    for (const std::string command :
+         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion", "manual"})
+        CHECK_THAT(own(command + " --help").out, !Contains("credence " + command));
+    CHECK_THAT(own("completion bash").out, Contains("complete -F _tracker tracker\n") && !Contains("_credence"));
+    CHECK_THAT(own("manual").out, Contains(".TH TRACKER 1") && Contains("tracker watch") && !Contains("credence run "));
+    REQUIRE(own("run small.ini --trials 20 --quiet -o own.h5").exit_code == 0);
+    CHECK_THAT(own("report own.h5 --format html").out,
+               Contains("./tracker run small.ini") && !Contains("credence run "));
+    const Outcome stopped =
+        here.shell("./tracker run small.ini --trials 1e8 --force --quiet -o x.h5 --commit-every 1 & run=$!\n"
+                   "until [ -s x.h5.journal ]; do sleep 0.01; done; kill -INT $run; wait $run");
+    CHECK_THAT(stopped.err, Contains("tracker run: stopped by SIGINT") && Contains("\n  ./tracker run small.ini"));
+}
+
+TEST_CASE("cli: show without a scenario names the worlds of the program") {
+    const Workplace here;
+    CHECK_THAT(here.credence("show").out,
+               Contains("# the world: deformable, landmarks; each has keys of its own, --set scenario.world=landmarks "
+                        "shows them\nscenario.world = deformable\n"));
+    const std::string landmarks = here.credence("show --set scenario.world=landmarks").out;
+    CHECK(landmarks.find("scenario.world = landmarks") == landmarks.rfind("scenario.world = "));
 }
 
 TEST_CASE("cli: a file of another kind is refused with the command that reads it") {

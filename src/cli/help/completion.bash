@@ -60,4 +60,4 @@ _credence_files() {
     _credence_words "${left[@]}"
 }
 
-complete -F _credence credence
+complete -F _credence @PROGRAM@

@@ -4,18 +4,21 @@
 #include "cli/version.hpp"
 #include "embedded/completion.hpp"
 
+#include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 #include <credence/worlds.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <iostream>
 
 namespace credence::cli {
 
 const Command& completion_command() {
     static const Command command{"completion", "bash", "print the script that completes command lines in bash",
-                                 "\nFor this shell alone: source <(credence completion bash). `cmake --install` puts it\n"
+                                 "\nFor this shell alone: source <(" + program_name() +
+                                     " completion bash). `cmake --install` puts it\n"
                                  "where bash-completion finds it.\n",
                                  {}};
     return command;
@@ -114,6 +117,16 @@ std::string filled(std::string script, const std::string& place, const std::stri
     return script.replace(script.find(place), place.size(), text);
 }
 
+/// The script with this program's name, also in those of its functions: a shell may have scripts of several programs.
+std::string of_program(std::string script) {
+    std::string identifier = "_";
+    for (const char c : program_name()) identifier += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    const std::string usual = "_credence";
+    for (std::size_t at = 0; (at = script.find(usual, at)) != std::string::npos; at += identifier.size())
+        script.replace(at, usual.size(), identifier);
+    return filled(std::move(script), "@PROGRAM@", shell_word(program_name()));
+}
+
 std::string script() {
     std::vector<std::string> names{"--help", "--version"};
     std::string cases;
@@ -125,7 +138,8 @@ std::string script() {
     std::string text = filled(embedded::completion, "@KEYS@", keys_text());
     text = filled(text, "@NAMES@", joined(names, " "));
     return "# Completion of command lines for bash: " + version.substr(0, version.find('\n')) +
-           ", made by `credence completion bash`.\n\n" + filled(text, "@COMMANDS@", cases);
+           ", made by `" + program_name() + " completion bash`.\n\n" +
+           of_program(filled(text, "@COMMANDS@", cases));
 }
 
 }  // namespace

@@ -5,17 +5,21 @@
 
 #include "build_info.hpp"  // made by CMake
 
+#include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include "worlds/simulate.hpp"
 #include <credence/worlds.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <iostream>
 
 namespace credence::cli {
 
 const Command& manual_command() {
     static const Command command{"manual", "", "print the manual page",
-                                 "\nTo read it: credence manual | man -l -. `cmake --install` puts it where man finds\n"
+                                 "\nTo read it: " + program_name() +
+                                     " manual | man -l -. `cmake --install` puts it where man finds\n"
                                  "it.\n",
                                  {}};
     return command;
@@ -29,21 +33,21 @@ struct Example {
 
 const std::vector<Example>& examples() {
     static const std::vector<Example> all{
-        {"credence run circle.ini -o study.h5 --trials 1e5 --set noise.heading=0.01",
+        {"run circle.ini -o study.h5 --trials 1e5 --set noise.heading=0.01",
          "Runs 100,000 trials of a scenario under all its arms, one key changed."},
-        {"credence watch study.h5", "In another terminal: how far it is, and what it says so far."},
-        {"credence report study.h5 --margin 5% --require consistent",
+        {"watch study.h5", "In another terminal: how far it is, and what it says so far."},
+        {"report study.h5 --margin 5% --require consistent",
          "Says what the file proves; the exit code is 1 unless every arm is consistent."},
-        {"credence run circle.ini -o study.h5 --trials 1e6 --resume",
+        {"run circle.ini -o study.h5 --trials 1e6 --resume",
          "Goes on after a crash, or grows the study: the same results as if run at once."},
-        {"credence run circle.ini -o study.h5 --overwrite --until trace_P=0.5%",
+        {"run circle.ini -o study.h5 --overwrite --until trace_P=0.5%",
          "Runs until every mean of trace(P) is known to half a percent."},
-        {"credence compare study.h5 --arms greedy,fixed", "What planning gains, trial by trial."},
-        {"credence run circle.ini -o part2.h5 --shard 2/8", "One of eight parts, on any machine."},
-        {"credence merge part0.h5 part1.h5 part2.h5 -o whole.h5", "The parts made whole."},
-        {"credence replay study.h5 --scenario circle --arm greedy.ekf --trial 17 -o trial.h5",
+        {"compare study.h5 --arms greedy,fixed", "What planning gains, trial by trial."},
+        {"run circle.ini -o part2.h5 --shard 2/8", "One of eight parts, on any machine."},
+        {"merge part0.h5 part1.h5 part2.h5 -o whole.h5", "The parts made whole."},
+        {"replay study.h5 --scenario circle --arm greedy.ekf --trial 17 -o trial.h5",
          "One trial again, with everything that happened in it."},
-        {"credence judge record.h5", "The verdict on a filter of your own."}};
+        {"judge record.h5", "The verdict on a filter of your own."}};
     return all;
 }
 
@@ -54,7 +58,7 @@ std::string tag_of(const Option& option) {
 }
 
 std::string text_of(const Command& command) {
-    std::string text = roff::subsection("credence " + command.name + " " + command.arguments) +
+    std::string text = roff::subsection(program_name() + " " + command.name + " " + command.arguments) +
                        roff::filled(command.summary + ".");
     for (const Option& option : command.options) text += roff::tagged(tag_of(option), option.help);
     return text + (command.details.empty() ? "" : roff::paragraph + roff::filled(command.details));
@@ -82,12 +86,16 @@ std::string files_text() {
 
 std::string head() {
     const std::string version = std::string("credence ") + build_info::version;
-    std::string text = std::string(".TH CREDENCE 1 \"") + build_info::release_date + "\" \"" + version +
+    const std::string name = program_name();
+    std::string title = name;
+    std::transform(name.begin(), name.end(), title.begin(), [](unsigned char c) { return std::toupper(c); });
+    std::string text = ".TH " + roff::plain(title) + " 1 \"" + build_info::release_date + "\" \"" + version +
                        "\" \"User Commands\"\n" + roff::section("NAME") +
-                       "credence \\- consistency of EKF-SLAM filters, and what planning gains, by Monte Carlo\n" +
+                       roff::plain(name) +
+                       " \\- consistency of EKF-SLAM filters, and what planning gains, by Monte Carlo\n" +
                        roff::section("SYNOPSIS");
     for (const Command* command : all_commands())
-        text += (command == all_commands().front() ? "" : ".br\n") + roff::bold("credence " + command->name) +
+        text += (command == all_commands().front() ? "" : ".br\n") + roff::bold(program_name() + " " + command->name) +
                 (command->arguments.empty() ? "" : " " + roff::italic(command->arguments)) + "\n";
     return text + roff::section("DESCRIPTION") +
            roff::filled("Can a filter's covariance be believed, and does planning a path pay? credence runs thousands\n"
@@ -110,7 +118,7 @@ std::string page() {
             roff::section("FILES") + files_text() + roff::section("EXAMPLES");
     for (const Example& example : examples())
         text += (&example == &examples().front() ? "" : roff::paragraph) + roff::filled(example.what) +
-                roff::example(example.line);
+                roff::example(program_name() + " " + example.line);
     return text + roff::section("SEE ALSO") +
            roff::bold("h5dump") + "(1), " + roff::bold("ncdump") +
            "(1), and what is installed in share/doc/credence: the model, the statistics, the results file.\n";

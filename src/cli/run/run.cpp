@@ -5,6 +5,7 @@
 #include "cli/run/until.hpp"
 #include "cli/version.hpp"
 
+#include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/store.hpp>
@@ -36,8 +37,8 @@ const Command& run_command() {
           "all must be met",
           true},
          {"shard", "I/N",
-          "run block b of 256 trials where b mod N = I only; `credence merge` joins the files; auto: the shard that the "
-          "Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
+          "run block b of 256 trials where b mod N = I only; `" + program_name() + " merge` joins the files; auto: the "
+          "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
          {"mpi", "WHEN", "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off",
           false, {"auto", "on", "off"}},
          {"resume", "",
@@ -134,7 +135,7 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
             const std::string& command_line) {
     std::int64_t done = 0;
     for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
-    say("credence run: stopped by " + signal + " with " + std::to_string(done) + " trials kept in " +
+    say(program_name() + " run: stopped by " + signal + " with " + std::to_string(done) + " trials kept in " +
         printable(request.output) + " (complete = 0). This goes on with them:\n  " +
         resuming(command_line, request.options.shard) + "\n");
     return 3;
@@ -180,7 +181,7 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const std::string signal = stopped_by(ranks.get());
     if (!signal.empty() && !stored.study().complete) return stopped(stored, request, signal, command_line);
     if (work.last_analysis && !work.last_analysis->met)
-        say("credence run: " + imprecision_text(*work.last_analysis, request.rule()) + "\n");
+        say(program_name() + " run: " + imprecision_text(*work.last_analysis, request.rule()) + "\n");
     if (!request.quiet) print_table(stored.study(), request, work);
     return 0;
 }

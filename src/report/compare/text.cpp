@@ -5,6 +5,7 @@
 #include <credence/compare.hpp>
 #include <credence/text.hpp>
 
+#include "base/program_name.hpp"
 #include "report/compare/choice.hpp"
 #include "report/compare/words.hpp"
 #include "report/format.hpp"
@@ -104,7 +105,8 @@ std::string compare_head(const CompareReport& report) {
                               : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
     return text + ". Intervals are two-sided 95 %" +
            (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
-                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: credence run --keep trials") +
+                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: " + program_name() +
+                         " run --keep trials") +
            (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
 }
 

@@ -2,6 +2,7 @@
 
 #include <credence/text.hpp>
 
+#include "base/program_name.hpp"
 #include "embedded/terms.hpp"
 #include "report/html/page.hpp"
 #include "report/sweep.hpp"
@@ -34,7 +35,7 @@ std::string limits_options(const Limits& limits) {
 
 /// The command that makes the study's file from the scenarios on this page.
 std::string run_again(const Report& report) {
-    std::string line = "credence run";
+    std::string line = program_name() + " run";
     for (const Scenario& scenario : report.scenarios) line += " " + scenario.name + ".ini";
     return line + " --trials " + std::to_string(report.trials) + " --seed " + std::to_string(*report.root_seed) +
            (report.keep == Keep::trials ? "" : " --keep " + keep_name(report.keep)) + " -o again.h5";
@@ -80,8 +81,8 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
-                command("credence judge " + file + limits + " --format html -o page.html") +
-                command("credence judge " + file + limits + " --format json");
+                command(program_name() + " judge " + file + limits + " --format html -o page.html") +
+                command(program_name() + " judge " + file + limits + " --format json");
         return html + "</section>\n"_html;
     }
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
@@ -96,8 +97,8 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
                   "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
     html +=
         "<p>This page, and the same with every digit:</p>\n"_html +
-        command("credence report " + file + limits + " --format html -o page.html") +
-        command("credence report " + file + limits + " --format json");
+        command(program_name() + " report " + file + limits + " --format html -o page.html") +
+        command(program_name() + " report " + file + limits + " --format json");
     return html + "</section>\n"_html;
 }
 

@@ -3,6 +3,7 @@
 #include <credence/error.hpp>
 #include "files/stored_run.hpp"
 
+#include "base/program_name.hpp"
 #include "report/watch/follower.hpp"
 
 #include <algorithm>
@@ -83,7 +84,8 @@ Snapshot RunWatch::results_snapshot() const {
     std::error_code trouble;
     if (!std::filesystem::exists(path_, trouble) && !trouble)
         throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
-                         " is there. Check the name, or begin with `credence run SCENARIO.ini -o " + path_ + "`.");
+                         " is there. Check the name, or begin with `" + program_name() + " run SCENARIO.ini -o " +
+                         path_ + "`.");
     const Study study = read_results(path_, 0).study;
     Snapshot snapshot{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
     if (!study.complete && !study.scenarios.empty()) snapshot.shard = shard_of(study.scenarios.front(), study.trials);

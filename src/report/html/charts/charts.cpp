@@ -93,7 +93,7 @@ Html chart_group(const std::string& head, const std::string& text, const Html& d
 
 Html no_distributions(Keep keep) {
     if (keep == Keep::trials) return {};
-    return element("p", escaped(std::string("No chart of how trials and pairs are spread: ") + no_trials_note)) + "\n"_html;
+    return element("p", escaped("No chart of how trials and pairs are spread: " + no_trials_note())) + "\n"_html;
 }
 
 Html legend(const std::vector<std::string>& names) {
