@@ -5,8 +5,6 @@
 
 #include <nanobind/nanobind.h>
 
-#include <functional>
-#include <mutex>
 #include <optional>
 
 namespace credence::python {
@@ -16,15 +14,30 @@ namespace nb = nanobind;
 /// What Python's `progress(done, total)` is called with; None: nothing is called.
 using Listener = std::optional<nb::callable>;
 
-/// The result of `work`, without Python's lock. One call at a time: HDF5 allows one thread, and signals, streams and
-/// progress belong to the process.
+/// The turn of a call: HDF5 allows one thread, and signals, streams and progress belong to the process. It is taken and
+/// given back with Python's lock. Throws Failure in a thread that has it already, as a signal handler may find it, and
+/// when Python ends; nb::python_error if a signal handler raises while the main thread waits.
+class Turn {
+public:
+    Turn();
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+};
+
+/// The result of `work`, in a turn of its own, without Python's lock.
 template <class Work>
 auto alone(const Work& work) {
-    static std::mutex& mutex = *new std::mutex;
+    const Turn turn;
     const nb::gil_scoped_release released;
-    const std::lock_guard locked(mutex);
     return work();
 }
+
+/// Whether Python is ending, and long work is to stop.
+bool is_ending();
+
+/// Lets a fork wait for the turn, so that the child finds nothing half done, and the end of Python for the last one.
+void bind_turns(nb::module_& module);
 
 /// Whether Python is to hear of progress: ten times a second, and of the end. Its lock may take a while to get.
 class Due {

@@ -9,6 +9,7 @@
 
 #include <credence/error.hpp>
 #include <credence/program.hpp>
+#include <credence/text.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -69,6 +70,25 @@ std::tuple<int, std::string, std::string> command(const std::vector<std::string>
     });
 }
 
+/// What `report` or `compare` says: it is computed when it is asked, and its formats are written later.
+class Said {
+public:
+    explicit Said(const std::vector<std::string>& words)
+        : rendering_(alone([&] {
+              const bool report = words.front() == "report";
+              const std::vector<std::string> arguments(words.begin() + 1, words.end());
+              const auto parsed = cli::parse(report ? cli::report_command() : cli::compare_command(), arguments);
+              return report ? cli::reported(parsed.value()) : cli::compared(parsed.value());
+          })) {}
+
+    std::string in(const std::string& format) const {
+        return alone([&] { return shown(rendering_(format)); });
+    }
+
+private:
+    cli::Rendering rendering_;
+};
+
 /// The program: the process is its own.
 int run_program(const std::vector<nb::bytes>& arguments) {
     std::vector<std::string> words{"credence"};
@@ -81,11 +101,16 @@ int run_program(const std::vector<nb::bytes>& arguments) {
 }  // namespace
 
 NB_MODULE(_core, module) {
+    nb::set_leak_warnings(false);  // a forked process and a daemon thread leave things behind
     nb::exception<InputError>(module, "InputError", PyExc_ValueError);
     nb::exception<Failure>(module, "Failure", PyExc_RuntimeError);
     module.def("command", command, nb::arg("words"), nb::arg("progress").none());
     module.def("program", run_program, nb::arg("arguments"));
+    nb::class_<Said>(module, "Said")
+        .def(nb::init<const std::vector<std::string>&>(), nb::arg("words"))
+        .def("in_format", &Said::in, nb::arg("format"));
     bind_judge(module);
+    bind_turns(module);
 }
 
 }  // namespace credence::python

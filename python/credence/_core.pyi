@@ -15,6 +15,10 @@ class Judgement:
     @property
     def html(self) -> str: ...
 
+class Said:
+    def __init__(self, words: Sequence[str]) -> None: ...
+    def in_format(self, format: str) -> str: ...
+
 def judge(
     arrays: Mapping[str, tuple[npt.NDArray[np.floating[Any]], float]],
     texts: Mapping[str, str],

@@ -22,7 +22,8 @@ RESULTS, TRAJECTORIES = "credence results", "credence trajectories"
 def open_hdf5(source: Source) -> tuple[h5py.File, str]:
     """The open file and its format; ValueError where credence did not write it, or in another schema version."""
     try:
-        file = h5py.File(source if hasattr(source, "read") else os.fspath(source), "r")
+        # A relative path would lead elsewhere in another folder.
+        file = h5py.File(source if hasattr(source, "read") else os.path.abspath(os.fspath(source)), "r")
     except FileNotFoundError:
         raise FileNotFoundError(f"{source}: the file: cannot be found. Check the path.") from None
     except OSError as problem:
@@ -38,6 +39,31 @@ def open_hdf5(source: Source) -> tuple[h5py.File, str]:
                          "Give a file that `credence run` or `credence replay` wrote.")
     raise ValueError(f"{source}: schema_version: invalid schema_version={version} (this package reads "
                      f"{', '.join(map(str, SCHEMA_VERSIONS))}). Take the package of the release that wrote it.")
+
+
+def still_open(thing: Any) -> Any:
+    """The h5py object, unless its file is closed."""
+    if not thing:
+        raise ValueError("cannot read a file that is closed. Open it again.")
+    return thing
+
+
+class Identity(NamedTuple):
+    """A file and its contents: of two that differ, they are other files, or one was changed."""
+
+    device: int
+    inode: int
+    size: int
+    written: int
+
+    @classmethod
+    def of(cls, file: str | int) -> Identity | None:
+        """That of a path or a descriptor; None where there is no such file."""
+        try:
+            status = os.stat(file)
+        except OSError:
+            return None
+        return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
 
 
 def text(thing: Any, name: str) -> str:
@@ -72,9 +98,13 @@ class Variables:
     """A group of a file whose variables are read when they are asked for, by key or as attributes."""
 
     def __init__(self, group: h5py.Group) -> None:
-        #: The plain h5py group.
-        self.group = group
+        self._group = group
         self.name = stem(group)
+
+    @property
+    def group(self) -> h5py.Group:
+        """The plain h5py group."""
+        return still_open(self._group)
 
     def read(self, name: str, selection: Any = ()) -> Array:
         """Reads a variable, or a part of it.
@@ -126,7 +156,7 @@ class Variables:
         return self.read(name)
 
     def __getattr__(self, name: str) -> Array:
-        if name.startswith("_") or name == "group":
+        if name.startswith("_"):
             raise AttributeError(name)
         try:
             return self[name]

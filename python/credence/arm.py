@@ -196,5 +196,7 @@ class Arm(Variables):
         yield from self.group
 
     def __repr__(self) -> str:
+        if not self._group:
+            return "<credence.Arm, closed>"
         kept = "" if self.keeps_trials else ", aggregates"
         return f"<credence.Arm {self.group.name[1:]}: {self.trials:,} trials, {self.failed_trials:,} failed{kept}>"

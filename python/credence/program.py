@@ -107,8 +107,24 @@ def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
 
 
 def _path_of(study: Study | File) -> str:
-    """The path of a results file, of which a study may be open."""
-    return os.fspath(study) if isinstance(study, (str, os.PathLike)) else os.fspath(study.path)
+    """The path of a results file. That of a study still leads to the file that it has open."""
+    if isinstance(study, (str, os.PathLike)):
+        return os.fspath(study)
+    from credence._file import Identity
+
+    if study.identity is None:
+        raise _core.InputError("cannot use a study in memory here (it has no path). Give the path of its file.")
+    if Identity.of(study.path) != study.identity:
+        raise _core.InputError(
+            f"cannot use {study.path} (it was changed, replaced or removed since the study was opened). Open it again."
+        )
+    return study.path
+
+
+def _remove(folder: str, owner: int) -> None:
+    """Remove a temporary folder, unless this process is a fork of its owner."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _finish(words: list[str], output: str, progress: bool | None, folder: str | None = None) -> Study:
@@ -119,12 +135,13 @@ def _finish(words: list[str], output: str, progress: bool | None, folder: str | 
     try:
         code, _, err = _command(words, progress)
         study = open_study(output)
-    except _core.InputError:  # nothing was run; after a failure the folder has what was done
-        if folder is not None:
+    except BaseException as error:
+        has_work = isinstance(error, _core.Failure) and folder is not None and os.listdir(folder)
+        if folder is not None and not has_work:
             shutil.rmtree(folder)
         raise
     if folder is not None:
-        weakref.finalize(study, shutil.rmtree, folder, ignore_errors=True)
+        weakref.finalize(study, _remove, folder, os.getpid())
     if code == STOPPED:
         raise Interrupted(said(err.split(" This goes on")[0].strip()), study)
     if err:
@@ -289,7 +306,7 @@ def replay(
 
 
 class Printed:
-    """What a command says of files: ``str()`` is the text that it prints, and a notebook shows its page.
+    """What a command says of files as they were: ``str()`` is the text that it prints, and a notebook shows its page.
 
     Attributes
     ----------
@@ -298,20 +315,17 @@ class Printed:
     """
 
     def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
-        self._studies = studies  # temporary files live as long as their studies
-        self._words = [command, *map(_path_of, studies), *words]
-        self.json: list[dict[str, Any]] = json.loads(self._format("json"))
-
-    def _format(self, name: str) -> str:
-        return _command([*self._words, f"--format={name}"])[1]
+        with errors_of_arguments():
+            self._said = _core.Said([command, *map(_path_of, studies), *words])
+        self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
 
     def __str__(self) -> str:
-        return self._format("text")
+        return self._said.in_format("text")
 
     @property
     def html(self) -> str:
         """The page that the command writes with ``--format html``; it loads nothing and runs no script."""
-        return self._format("html")
+        return self._said.in_format("html")
 
     def _repr_html_(self) -> str:
         return framed(self.html)

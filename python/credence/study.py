@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import h5py
 
-from ._file import TRAJECTORIES, Source, open_hdf5, stem, text
+from ._file import TRAJECTORIES, Identity, Source, open_hdf5, stem, still_open, text
 from .arm import Arm
 from .means import Means
 
@@ -37,9 +37,13 @@ class Scenario:
     """A scenario of a study: its arms by name, in the study's order."""
 
     def __init__(self, group: h5py.Group) -> None:
-        #: The plain h5py group.
-        self.group = group
+        self._group = group
         self.name = stem(group)
+
+    @property
+    def group(self) -> h5py.Group:
+        """The plain h5py group."""
+        return still_open(self._group)
 
     @property
     def arms(self) -> dict[str, Arm]:
@@ -84,6 +88,8 @@ class Scenario:
         return len(self.group)
 
     def __repr__(self) -> str:
+        if not self._group:
+            return "<credence.Scenario, closed>"
         return "\n".join([f"<credence.Scenario {self.name}>", *(f"  {arm!r}" for arm in self.arms.values())])
 
 
@@ -92,8 +98,14 @@ class Study:
     scenario ``study["arm"]`` is an Arm, too. Close it, or use it in a `with` statement, to let go of the file."""
 
     def __init__(self, file: h5py.File) -> None:
-        #: The plain h5py file.
-        self.file = file
+        self._file = file
+        #: Which file is open, to be compared with what its path leads to later; None of one in memory.
+        self.identity = Identity.of(file.id.get_vfd_handle()) if file.driver == "sec2" else None
+
+    @property
+    def file(self) -> h5py.File:
+        """The plain h5py file."""
+        return still_open(self._file)
 
     @property
     def scenarios(self) -> dict[str, Scenario]:
@@ -121,6 +133,7 @@ class Study:
 
     @property
     def path(self) -> str:
+        """The absolute path that it was opened by."""
         return str(self.file.filename)
 
     @property
@@ -138,7 +151,7 @@ class Study:
         return study_to_xarray(self)
 
     def close(self) -> None:
-        self.file.close()
+        self._file.close()
 
     @overload
     def __getitem__(self, name: tuple[str, str]) -> Arm: ...
@@ -171,13 +184,13 @@ class Study:
         return f"{self.trials:,} trials, seed {self.seed}, {'complete' if self.complete else 'not complete'}{kept}"
 
     def __repr__(self) -> str:
-        if not self.file:
+        if not self._file:
             return "<credence.Study, closed>"
         shown = [f"  {arm!r}" for arm in self.arms[:SHOWN]]
         return "\n".join([f"<credence.Study {self.path}: {self._state()}>", *shown, *self._rest()])
 
     def _repr_html_(self) -> str:
-        if not self.file:
+        if not self._file:
             return html.escape(repr(self))
         rows = "".join("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in _row(arm)) + "</tr>"
                        for arm in self.arms[:SHOWN])

@@ -75,6 +75,8 @@ class Trajectory(Variables):
         return values[:, robot:robot + 2], values[:, robot + 2:].reshape(len(values), -1, 2)
 
     def __repr__(self) -> str:
+        if not self._group:
+            return "<credence.Trajectory, closed>"
         return f"<credence.Trajectory {self.group.name[1:]}, {self.source}: {self.status}>"
 
 

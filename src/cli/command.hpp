@@ -4,6 +4,7 @@
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -98,6 +99,11 @@ ReportRequest read_report_request(const Parsed& parsed);
 /// `path` and `run`: the source of the report's numbers.
 int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
                 const RunFacts& run);
+
+/// What `report` or `compare` says of files, computed once: its text in a format of the command.
+using Rendering = std::function<std::string(const std::string& format)>;
+Rendering reported(const Parsed& parsed);
+Rendering compared(const Parsed& parsed);
 
 // The subcommands: their descriptions, and the functions that run them and return the exit code.
 const Command& run_command();

@@ -4,6 +4,7 @@
 #include <credence/store.hpp>
 #include <set>
 
+#include "base/program_name.hpp"
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
 #include "cli/version.hpp"
@@ -19,7 +20,8 @@ const Command& compare_command() {
         "other arm against the fixed arm of its estimator, and every horizon against the greedy one. Of several files,\n"
         "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the second, or\n"
         "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the same world\n"
-        "under --set filter.measurement=0.8 shows what that did. Records (credence judge) of the same runs are compared too.\n",
+        "under --set filter.measurement=0.8 shows what that did. Records (" +
+            program_name() + " judge) of the same runs are compared too.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
          failed_option("a warning comes first"),
          format_option({"text", "json", "csv", "html"}),
@@ -55,8 +57,7 @@ std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
 
 }  // namespace
 
-int compare(const Parsed& parsed) {
-    const std::string format = parsed.choice("format");
+Rendering compared(const Parsed& parsed) {
     check_paths(parsed.arguments);
     std::optional<ArmsChoice> choice;
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
@@ -66,10 +67,17 @@ int compare(const Parsed& parsed) {
     CompareReport report = compare_studies(files, choice);
     report.failed_limit = failed_limit;
     report.of_records = kind_of(parsed.arguments.front()) == FileKind::record;
-    write_output(parsed, format == "json"   ? compare_json(report)
-                         : format == "csv"  ? compare_csv(report)
-                         : format == "html" ? compare_html(report, made_by())
-                                            : compare_text(report));
+    return [report = std::move(report)](const std::string& format) {
+        return format == "json"   ? compare_json(report)
+               : format == "csv"  ? compare_csv(report)
+               : format == "html" ? compare_html(report, made_by())
+                                  : compare_text(report);
+    };
+}
+
+int compare(const Parsed& parsed) {
+    const std::string format = parsed.choice("format");
+    write_output(parsed, compared(parsed)(format));
     return 0;
 }
 

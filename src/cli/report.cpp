@@ -34,26 +34,49 @@ ReportRequest read_report_request(const Parsed& parsed) {
     return request;
 }
 
+namespace {
+
+std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run) {
+    if (format == "json") return report_json(report);
+    if (format == "csv") return report_csv(report);
+    if (format == "html") return report_html(report, {std::filesystem::path(path).filename().string(), run, made_by()});
+    return report_text(report);
+}
+
+/// The path of the results file that is reported.
+const std::string& reported_path(const Parsed& parsed) {
+    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
+    return parsed.arguments.front();
+}
+
+StoredStudy reported_study(const std::string& path) {
+    check_kind(path, {FileKind::results});
+    return read_results(path, most_totals_in_memory);
+}
+
+}  // namespace
+
 int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
                 const RunFacts& run) {
-    const auto page = [&] {
-        return report_html(report, {std::filesystem::path(path).filename().string(), run, made_by()});
-    };
-    write_output(parsed, request.format == "json"   ? report_json(report)
-                         : request.format == "csv"  ? report_csv(report)
-                         : request.format == "html" ? page()
-                                                    : report_text(report));
+    write_output(parsed, rendered(report, request.format, path, run));
     if (parsed.has("require")) require_consistent(report);
     return 0;
 }
 
 int report(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
+    const std::string& path = reported_path(parsed);
     const ReportRequest request = read_report_request(parsed);
-    const std::string& path = parsed.arguments.front();
-    check_kind(path, {FileKind::results});
-    const StoredStudy stored = read_results(path, most_totals_in_memory);
+    const StoredStudy stored = reported_study(path);
     return give_report(parsed, request, make_report(stored.study, request.limits), path, stored.run);
+}
+
+Rendering reported(const Parsed& parsed) {
+    const std::string path = reported_path(parsed);
+    const Limits limits = parse_limits(parsed);
+    StoredStudy stored = reported_study(path);
+    return [report = make_report(stored.study, limits), path, run = std::move(stored.run)](const std::string& format) {
+        return rendered(report, format, path, run);
+    };
 }
 
 }  // namespace credence::cli

@@ -1,0 +1,78 @@
+#include "calls.hpp"
+
+#include "cli/process/interrupt.hpp"
+
+#include <credence/error.hpp>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+namespace credence::python {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+std::timed_mutex& turns = *new std::timed_mutex;  // threads may wait for it when static objects are destroyed
+thread_local bool has_turn = false;
+std::atomic<bool> ending = false;
+
+/// Whether Python runs its signal handlers in this thread.
+bool is_main_thread() { return gettid() == getpid(); }
+
+/// Waits without Python's lock, which the call in progress may need. Whether there is a turn: the main thread returns
+/// now and then for signals.
+bool wait_for_turn() {
+    const nb::gil_scoped_release released;
+    if (is_main_thread()) return turns.try_lock_for(100ms);
+    turns.lock();
+    return true;
+}
+
+void before_fork() {
+    const nb::gil_scoped_release released;
+    if (!has_turn) turns.lock();
+}
+
+void after_fork() {
+    if (!has_turn) turns.unlock();
+}
+
+/// A thread that comes back into Python after its end would crash: the last call is waited for, and none begins.
+void at_exit() {
+    ending = true;
+    const nb::gil_scoped_release released;
+    while (!turns.try_lock_for(50ms)) cli::Interrupt::ask();
+}
+
+}  // namespace
+
+Turn::Turn() {
+    if (has_turn)
+        throw Failure("cannot begin (a signal handler called credence while it was at work in the same thread). Note "
+                      "in the handler what is to be done, and do it after the call.");
+    if (ending) throw Failure("cannot begin (Python is ending). Call it earlier.");
+    while (!wait_for_turn())
+        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    has_turn = true;
+}
+
+Turn::~Turn() {
+    has_turn = false;
+    turns.unlock();
+}
+
+bool is_ending() { return ending; }
+
+void bind_turns(nb::module_&) {
+    const nb::object after = nb::cpp_function(after_fork);
+    nb::module_::import_("os").attr("register_at_fork")(
+        nb::arg("before") = nb::cpp_function(before_fork), nb::arg("after_in_parent") = after,
+        nb::arg("after_in_child") = after);
+    nb::module_::import_("atexit").attr("register")(nb::cpp_function(at_exit));
+}
+
+}  // namespace credence::python

@@ -1,0 +1,277 @@
+"""What processes do around the package: folders, forks, signals, threads and ends; docs/python.md has them in a table."""
+
+from __future__ import annotations
+
+import io
+import os
+import pathlib
+import pickle
+import re
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+from conftest import SCENARIO
+
+import credence
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+HEADING = "## What odd processes get"
+
+# `long_judge` takes seconds, so that what happens meanwhile finds it at work; `soon` is called then.
+PREAMBLE = f"""
+import os, signal, sys, threading, time
+import numpy as np
+import credence
+SCENARIO = {SCENARIO!r}
+def judged(trials):
+    error = np.random.default_rng(5).standard_normal((trials, 50, 6))
+    return credence.judge(error, np.broadcast_to(np.eye(6), (trials, 50, 6, 6))).verdict
+def long_judge():
+    return judged(6000)
+def in_thread(work, daemon=False):
+    thread = threading.Thread(target=work, daemon=daemon)
+    thread.start()
+    time.sleep(0.3)
+    return thread
+def endless_run():
+    credence.run(SCENARIO, trials=10**8, keep="aggregates", force=True, output="endless.h5")
+def wait_for(path):
+    while not os.path.exists(path):
+        time.sleep(0.01)
+"""
+
+
+def process(script):
+    """Exit code of a Python process, and what it printed on both streams; a process that hangs fails the test."""
+    done = subprocess.run(
+        [sys.executable, "-c", PREAMBLE + textwrap.dedent(script)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    return done.returncode, done.stdout
+
+
+def refusal(call):
+    """What a call raises, as the page shows it."""
+    with pytest.raises((ValueError, TypeError, credence.Failure)) as raised:
+        call()
+    return f"{raised.type.__name__}: {raised.value}"
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+
+
+@pytest.fixture
+def study():
+    return credence.run(SCENARIO, trials=256, output="study.h5")
+
+
+def closed(study):
+    study.close()
+    assert repr(study) == "<credence.Study, closed>"
+    calls = [lambda: study.trials, lambda: study["fixed"], lambda: credence.report(study), lambda: credence.resume(study)]
+    (said,) = {refusal(call) for call in calls}
+    return said
+
+
+def changed_beneath(study):
+    arm = study["fixed.ekf"]
+    before, report = arm["trace_P"], credence.report(study)
+    said_before = str(report)
+    credence.run(SCENARIO, trials=512, seed=9, output="study.h5", overwrite=True)
+    assert np.array_equal(arm["trace_P"], before)
+    assert str(report) == said_before
+    assert "256 trials" in report.html
+    calls = [
+        lambda: credence.report(study),
+        lambda: credence.compare(study),
+        lambda: credence.resume(study, trials=1024),
+        lambda: credence.replay(study, scenario="scenario", arm="fixed", trial=0),
+    ]
+    (said,) = {refusal(call) for call in calls}
+    assert credence.open("study.h5").trials == 512
+    return said
+
+
+def in_another_folder(study):
+    os.mkdir("other")
+    os.chdir("other")
+    assert credence.resume(study, trials=512).path == str(pathlib.Path("../study.h5").resolve())
+    return "nothing" if os.listdir() == [] else "a second file"
+
+
+def pickled(study):
+    return refusal(lambda: pickle.dumps(study))
+
+
+def in_memory(study):
+    held = credence.open(io.BytesIO(pathlib.Path(study.path).read_bytes()))
+    assert np.array_equal(held["fixed.ekf"]["trace_P"], study["fixed.ekf"]["trace_P"])
+    return refusal(lambda: credence.report(held))
+
+
+def forked(_):
+    code, said = process("""
+        study = credence.run(SCENARIO, trials=256)
+        thread = in_thread(long_judge)
+        child = os.fork()
+        if child == 0:
+            signal.alarm(60)
+            print(judged(300), credence.run(SCENARIO, trials=256).trials, credence.compare(study).json[0]["trials"])
+            sys.exit(0)
+        assert os.waitpid(child, 0)[1] == 0
+        thread.join()
+        print(os.path.exists(study.path))
+    """)
+    assert (code, said.split()[-4:]) == (0, ["consistent", "256", "256", "True"]), said
+    return "waits"
+
+
+def handled(_):
+    code, said = process("""
+        signal.signal(signal.SIGALRM, lambda *_: judged(300))
+        signal.setitimer(signal.ITIMER_REAL, 0.5)
+        try:
+            long_judge()
+        except credence.Failure as failure:
+            print(f"{type(failure).__name__}: {failure}")
+    """)
+    assert code == 0
+    return said
+
+
+def installed_meanwhile(_):
+    code, said = process("""
+        thread = in_thread(lambda: credence.run(SCENARIO, trials=100_000, threads=1))
+        assert thread.is_alive()
+        signal.signal(signal.SIGTERM, lambda *_: print("caught"))
+        thread.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.1)
+    """)
+    assert (code, said) == (0, "caught\n")
+    return "stays"
+
+
+def ended(_):
+    for work in ("long_judge", "endless_run"):
+        code, said = process(f"""
+            in_thread({work}, daemon=True)
+            if {work} is endless_run:
+                wait_for("endless.h5.journal")
+            sys.exit(7)
+        """)
+        assert code == 7, said
+    assert os.path.exists("endless.h5")
+    assert credence.open("endless.h5").complete is False
+    return "exit code"
+
+
+def left(_):
+    code, said = process("""
+        import ctypes
+        thread = in_thread(endless_run, daemon=True)
+        wait_for("endless.h5.journal")
+        ctypes.CDLL(None).exit(0)
+    """)
+    assert code == 1
+    return said
+
+
+def interrupted(_):
+    code, said = process("""
+        def interrupt():
+            time.sleep(0.5)
+            for _ in range(3):
+                os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(0.2)
+        threading.Thread(target=interrupt).start()
+        credence.run(SCENARIO, trials=10**8, keep="aggregates", force=True)
+    """)
+    assert "KeyboardInterrupt" in said or "Interrupted" in said
+    assert code != 0
+    assert list(pathlib.Path().glob("credence-*")) == []
+    return "removed"
+
+
+CASES = {
+    "A study that is closed": closed,
+    "A study whose file was changed, replaced or removed since it was opened": changed_beneath,
+    "A study in a process that changes its folder": in_another_folder,
+    "A study that is pickled or copied": pickled,
+    "A study in memory (`io.BytesIO`)": in_memory,
+    "`os.fork` or a forked pool while another thread is in a call": forked,
+    "A signal handler that calls credence in the middle of a call": handled,
+    "A signal handler that is installed while another thread runs a study": installed_meanwhile,
+    "The end of Python while a daemon thread is in a call": ended,
+    "`exit()` of a C or C++ library in the middle of a call": left,
+    "Ctrl-C, once or more, in a run without `output`": interrupted,
+}
+
+
+def rows():
+    """{what: what it gets} of the page's table."""
+    table = PAGE.read_text(encoding="utf-8").split(HEADING)[1].split("\n## ")[0]
+    cells = [line.strip("|").split("|") for line in table.splitlines() if line.startswith("|")]
+    return {first.strip(): second.strip() for first, second in cells[2:]}
+
+
+def test_the_table_of_odd_processes_has_the_tested_cases():
+    assert list(rows()) == list(CASES)
+
+
+@pytest.mark.parametrize("what", CASES)
+def test_an_odd_process_gets_what_the_table_says(what, study):
+    found = CASES[what](study)
+    promised = re.findall(r"\*([^*]+)\*", rows()[what])  # messages and outcomes are in italics
+    assert promised
+    for words in promised:
+        assert words in found
+
+
+def test_a_report_is_computed_when_it_is_made(study, monkeypatch):
+    report, comparison = credence.report(study), credence.compare(study)
+    pathlib.Path("study.h5").unlink()
+    assert report.json[0]["trials"] == 256
+    assert "256 trials" in str(report)
+    assert "256 trials" in report.html
+    assert "A - B" in str(comparison) or "trial by trial" in str(comparison)
+
+
+def test_a_folder_of_a_run_that_is_interrupted_while_it_is_opened_is_removed(tmp_path, monkeypatch):
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("credence.study.open", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        credence.run(SCENARIO, trials=256)
+    assert list(tmp_path.glob("credence-*")) == []
+
+
+def test_a_fork_leaves_the_temporary_file_of_its_parent():
+    code, said = process("""
+        study = credence.run(SCENARIO, trials=256)
+        child = os.fork()
+        if child == 0:
+            sys.exit(0)
+        os.waitpid(child, 0)
+        print(os.path.exists(study.path))
+    """)
+    assert (code, said) == (0, "True\n")
+
+
+def test_a_run_does_not_replace_its_own_scenario():
+    pathlib.Path("own.ini").write_text(SCENARIO)
+    with pytest.raises(credence.InputError, match=r"it would replace own\.ini, which is read"):
+        credence.run("own.ini", output="own.ini", overwrite=True)
+    assert pathlib.Path("own.ini").read_text() == SCENARIO
