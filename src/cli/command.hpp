@@ -3,6 +3,7 @@
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
+#include <credence/worlds.hpp>
 
 #include <functional>
 #include <map>
@@ -132,6 +133,9 @@ int obey(const std::vector<std::string>& words);
 /// Throws InputError where this process cannot do the command's work, whatever its arguments: such faults of its
 /// environment need not be those of a process on another machine.
 void check_process(const std::vector<std::string>& words);
+
+/// The key of the world, which is one of every scenario, with the names of all worlds.
+DescribedKey described_world();
 
 /// All subcommands, in the order in which they are shown.
 std::vector<const Command*> all_commands();

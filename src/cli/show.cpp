@@ -30,15 +30,15 @@ void show_scenarios(const std::vector<Scenario>& scenarios) {
     }
 }
 
-/// The line of the world, with the names of all: each has keys of its own. The settings have it of all but the first.
-std::string world_text(const Scenario& scenario) {
-    std::vector<std::string> names;
-    for (const World* world : all_worlds()) names.push_back(world->name());
-    return "# the world: " + joined(names) + "; each has keys of its own, --set " + world_key + "=" + names.back() +
-           " shows them\n" + (scenario.world == first_world ? world_key + (" = " + scenario.world) + "\n" : "");
-}
-
 }  // namespace
+
+DescribedKey described_world() {
+    DescribedKey key{world_key, first_world, "", {}};
+    for (const World* world : all_worlds()) key.choices.push_back(world->name());
+    key.help = "the world: " + joined(key.choices) + "; each has keys of its own, --set " + world_key + "=" +
+               key.choices.back() + " shows them";
+    return key;
+}
 
 int show(const Parsed& parsed) {
     if (parsed.arguments.size() > 1) throw InputError("show takes one scenario. Give one file.");
@@ -51,7 +51,10 @@ int show(const Parsed& parsed) {
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
     const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
-    print(world_text(scenario));
+    const DescribedKey world = described_world();
+    print("# " + world.help + "\n");
+    // The settings have it of all worlds but the first.
+    if (scenario.world == first_world) print(world.key + " = " + world.value + "\n");
     for (const Setting& setting : scenario.settings) {
         const auto described = std::ranges::find(keys, setting.key, &DescribedKey::key);
         if (described != keys.end()) print("# " + described->help + "\n");

@@ -89,8 +89,7 @@ std::string case_of(const Command& command) {
 
 /// The key of the world, and the keys of all worlds; where several worlds have a key, the first one's choices.
 std::vector<DescribedKey> every_key() {
-    std::vector<DescribedKey> keys{{world_key, first_world, "", {}}};
-    for (const World* world : all_worlds()) keys.front().choices.push_back(world->name());
+    std::vector<DescribedKey> keys{described_world()};
     for (const World* world : all_worlds())
         for (DescribedKey& key : world->keys())
             if (std::none_of(keys.begin(), keys.end(), [&](const DescribedKey& known) { return known.key == key.key; }))

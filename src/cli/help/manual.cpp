@@ -68,11 +68,14 @@ std::string described_keys() {
     std::string text = roff::filled(
         "A scenario file is an INI text that names only what differs from the defaults; --set overrides it. Keys,\n"
         "with their defaults:");
+    const auto described = [](const DescribedKey& key) {
+        return roff::tagged(roff::bold(key.key) + " = " + roff::plain(key.value), key.help);
+    };
+    text += described(described_world());
     for (const World* world : all_worlds()) {
         if (world->name() != first_world)
             text += roff::filled("Keys of the world " + world->name() + " (scenario.world = " + world->name() + "):");
-        for (const DescribedKey& key : world->keys())
-            text += roff::tagged(roff::bold(key.key) + " = " + roff::plain(key.value), key.help);
+        for (const DescribedKey& key : world->keys()) text += described(key);
     }
     return text;
 }
