@@ -18,6 +18,7 @@ using namespace std::chrono_literals;
 
 std::timed_mutex& turns = *new std::timed_mutex;  // threads may wait for it when static objects are destroyed
 thread_local bool has_turn = false;
+thread_local bool keeps_turn = false;  ///< between calls, too: that of the main thread when Python ends
 std::atomic<bool> ending = false;
 
 /// Whether Python runs its signal handlers in this thread.
@@ -34,16 +35,18 @@ bool wait_for_turn() {
 
 void before_fork() {
     const nb::gil_scoped_release released;
-    if (!has_turn) turns.lock();
+    if (!has_turn && !keeps_turn) turns.lock();
 }
 
 void after_fork() {
-    if (!has_turn) turns.unlock();
+    if (!has_turn && !keeps_turn) turns.unlock();
 }
 
-/// A thread that comes back into Python after its end would crash: the last call is waited for, and none begins.
+/// A thread that comes back into Python after its end would crash: its call is waited for, and no other one begins.
+/// What else Python calls at its end, in this thread, may call credence.
 void at_exit() {
     ending = true;
+    keeps_turn = true;
     const nb::gil_scoped_release released;
     while (!turns.try_lock_for(50ms)) cli::Interrupt::ask();
 }
@@ -54,18 +57,18 @@ Turn::Turn() {
     if (has_turn)
         throw Failure("cannot begin (a signal handler called credence while it was at work in the same thread). Note "
                       "in the handler what is to be done, and do it after the call.");
-    if (ending) throw Failure("cannot begin (Python is ending). Call it earlier.");
-    while (!wait_for_turn())
+    if (must_end()) throw Failure("cannot begin (Python is ending). Call it earlier.");
+    while (!keeps_turn && !wait_for_turn())
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
     has_turn = true;
 }
 
 Turn::~Turn() {
     has_turn = false;
-    turns.unlock();
+    if (!keeps_turn) turns.unlock();
 }
 
-bool is_ending() { return ending; }
+bool must_end() { return ending && !keeps_turn; }
 
 void bind_turns(nb::module_&) {
     const nb::object after = nb::cpp_function(after_fork);

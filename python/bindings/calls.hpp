@@ -33,8 +33,8 @@ auto alone(const Work& work) {
     return work();
 }
 
-/// Whether Python is ending, and long work is to stop.
-bool is_ending();
+/// Whether Python is ending, and this thread's work is to end.
+bool must_end();
 
 /// Lets a fork wait for the turn, so that the child finds nothing half done, and the end of Python for the last one.
 void bind_turns(nb::module_& module);

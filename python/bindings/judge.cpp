@@ -69,7 +69,7 @@ Judgement judgement(const std::string& name, const Options& options, const Liste
     const Limits limits = limits_of(options);
     const auto progress = [&, due = Due()](const Progress& now) mutable {
         if (!due(now)) return;
-        if (is_ending()) throw Failure("the verdict was not finished (Python ended). Wait for it.");
+        if (must_end()) throw Failure("the verdict was not finished (Python ended). Wait for it.");
         const nb::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (listener) (*listener)(now.done, now.total);

@@ -286,6 +286,21 @@ def test_a_call_that_waits_for_its_turn_hears_signals():
     assert (code, said) == (0, "late True\n")
 
 
+def test_what_python_calls_at_its_end_may_call_credence_and_fork():
+    code, said = process("""
+        import atexit
+        def last():
+            child = os.fork()
+            print(judged(300), flush=True)
+            if child == 0:
+                os._exit(0)
+            os.waitpid(child, 0)
+        atexit.register(last)
+        judged(300)
+    """)
+    assert (code, said.count("consistent")) == (0, 2), said
+
+
 def test_a_run_does_not_replace_its_own_scenario():
     pathlib.Path("own.ini").write_text(SCENARIO)
     with pytest.raises(credence.InputError, match=r"it would replace own\.ini, which is read"):
