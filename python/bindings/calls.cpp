@@ -70,7 +70,7 @@ Turn::~Turn() {
 
 bool must_end() { return ending && !keeps_turn; }
 
-void bind_turns(nb::module_&) {
+void bind_turns() {
     const nb::object after = nb::cpp_function(after_fork);
     nb::module_::import_("os").attr("register_at_fork")(
         nb::arg("before") = nb::cpp_function(before_fork), nb::arg("after_in_parent") = after,

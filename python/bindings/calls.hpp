@@ -37,7 +37,7 @@ auto alone(const Work& work) {
 bool must_end();
 
 /// Lets a fork wait for the turn, so that the child finds nothing half done, and the end of Python for the last one.
-void bind_turns(nb::module_& module);
+void bind_turns();
 
 /// Whether Python is to hear of progress: ten times a second, and of the end. Its lock may take a while to get.
 class Due {

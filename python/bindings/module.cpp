@@ -110,7 +110,7 @@ NB_MODULE(_core, module) {
         .def(nb::init<const std::vector<std::string>&>(), nb::arg("words"))
         .def("in_format", &Said::in, nb::arg("format"));
     bind_judge(module);
-    bind_turns(module);
+    bind_turns();
 }
 
 }  // namespace credence::python
