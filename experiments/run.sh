@@ -8,3 +8,10 @@ source experiments/study.sh
 build_program
 mkdir -p results
 "$credence" run experiments/seed/*.ini -o results/seed.h5 --resume "$@"
+[ -f results/seed.h5 ] || exit 0  # --dry-run
+cat <<END
+
+What next: README.md says how to read this table, and docs/reference-study.md has the whole study.
+  $credence report results/seed.h5 --format html -o results/seed.html     # a page with pictures
+  $credence run my.ini -o my.h5                                           # a scenario of your own: docs/running.md
+END

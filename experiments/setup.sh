@@ -36,16 +36,33 @@ python_venv() {
   touch "$1/complete"
 }
 
-# build DIRECTORY TARGET [cmake arguments]: configures and builds, showing the log only where it fails.
+build_progress_seconds=10
+
+# show_progress LOG: says every ten seconds how much of a build is done, until it is killed or the script ends.
+show_progress() {
+  local start=$SECONDS done_part
+  while sleep "$build_progress_seconds" >/dev/null 2>&1 && kill -0 $$ 2>/dev/null; do
+    done_part=$(grep -o '^\[[^]]*\]' "$1" | tail -n 1 | tr -d '[ ]' || true)
+    echo "  ${done_part:-configuring} after $((SECONDS - start)) s"
+  done
+}
+
+# build DIRECTORY TARGET [cmake arguments]: configures and builds, with its progress, showing the log only where it fails.
 build() {
-  local directory=$1 target=$2 log
+  local directory=$1 target=$2 log progress status=0
   shift 2
   mkdir -p "$directory"
   log=$directory/build.log
+  : >"$log"
   echo "building $target in $directory"
-  if ! { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1; then
-    tail -n 60 "$log" >&2
-    echo "the build failed; all of it is in $log" >&2
-    return 1
-  fi
+  show_progress "$log" &
+  progress=$!
+  { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } \
+    >"$log" 2>&1 || status=1
+  kill "$progress" 2>/dev/null || true
+  wait "$progress" 2>/dev/null || true
+  [ $status -eq 0 ] && return 0
+  tail -n 60 "$log" >&2
+  echo "the build failed; all of it is in $log" >&2
+  return 1
 }
