@@ -1,7 +1,9 @@
 #include "cli/command.hpp"
 
+#include "base/choice.hpp"
 #include "base/program_name.hpp"
 #include "files/system/durable_file.hpp"
+#include "worlds/notes.hpp"
 
 #include <credence/error.hpp>
 #include <credence/store.hpp>
@@ -14,6 +16,7 @@
 #include <iostream>
 #include <limits>
 #include <new>
+#include <set>
 #include <sstream>
 
 namespace credence::cli {
@@ -130,7 +133,8 @@ std::string Parsed::choice(const std::string& option) const {
     if (!given) return choices.front();
     for (const std::string& choice : choices)
         if (*given == choice) return choice;
-    throw invalid_value("--" + option, *given, "not one of its choices", "Give one of " + joined(choices));
+    throw invalid_value("--" + option, *given, "not one of its choices",
+                        did_you_mean(*given, choices) + "Give one of " + joined(choices));
 }
 
 Overrides Parsed::overrides() const {
@@ -229,6 +233,13 @@ std::optional<Output> check_output_option(const Parsed& parsed) {
 void print(const std::string& text) { std::cout << shown(text); }
 
 void say(const std::string& text) { std::cerr << shown(text) << std::flush; }
+
+void say_notes(const std::vector<Scenario>& scenarios, const std::string& command) {
+    std::set<std::string> said;  // keys: a sweep may have many such values of one
+    for (const Scenario& scenario : scenarios)
+        for (const std::string& note : notes_on(scenario))
+            if (said.insert(note.substr(0, note.find('='))).second) say("credence " + command + ": note: " + note + "\n");
+}
 
 void write_output(const Parsed& parsed, const std::string& text) {
     if (const std::optional<Output> output = check_output_option(parsed)) write_text_file(*output, shown(text));

@@ -74,6 +74,9 @@ void print(const std::string& text);
 /// The same to the standard error, flushed at once.
 void say(const std::string& text);
 
+/// Says once what may be a mistake in the scenarios.
+void say_notes(const std::vector<Scenario>& scenarios, const std::string& command);
+
 /// Writes a text to `-o`'s file, or to the standard output.
 void write_output(const Parsed& parsed, const std::string& text);
 

@@ -45,7 +45,9 @@ int show(const Parsed& parsed) {
     const std::vector<SweepAxis> axes = parsed.sweep();
     if (!parsed.arguments.empty()) {
         check_kind(parsed.arguments.front(), {FileKind::scenario});
-        show_scenarios(read_grid(parsed.arguments.front(), parsed.overrides(), axes));
+        const std::vector<Scenario> scenarios = read_grid(parsed.arguments.front(), parsed.overrides(), axes);
+        show_scenarios(scenarios);
+        say_notes(scenarios, "show");
         return 0;
     }
     if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
@@ -60,6 +62,7 @@ int show(const Parsed& parsed) {
         if (described != keys.end()) print("# " + described->help + "\n");
         print(setting.key + " = " + setting.value + "\n");
     }
+    say_notes({scenario}, "show");
     return 0;
 }
 

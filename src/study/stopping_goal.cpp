@@ -2,6 +2,8 @@
 
 #include "study/stopping_subject.hpp"
 
+#include "base/choice.hpp"
+
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
@@ -44,11 +46,6 @@ void parse_arms(StoppingGoal& goal) {
     goal.subtrahend = arms[1];
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
-    const std::string meant = closest(word, known);
-    return (meant.empty() ? "" : "Did you mean " + meant + "? ") + "There are " + joined(known);
-}
-
 std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& columns) {
     std::vector<std::string> names;
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -56,7 +53,7 @@ std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& c
         if (columns[c].name == goal.metric) return c;
         names.push_back(columns[c].name);
     }
-    throw refused(goal.text, "there is no column " + goal.metric, did_you_mean(goal.metric, names));
+    throw refused(goal.text, "there is no column " + goal.metric, did_you_mean(goal.metric, names) + "There are " + joined(names));
 }
 
 /// The scenario's arm of that name, or its only arm of that controller; nothing where it has no such arm.
@@ -80,7 +77,7 @@ InputError no_such_pair(const StoppingGoal& goal, const Study& study) {
                 if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const std::string& name : {goal.minuend, goal.subtrahend})
         if (std::find(known.begin(), known.end(), name) == known.end())
-            return refused(goal.text, "no scenario has an arm " + name, did_you_mean(name, known));
+            return refused(goal.text, "no scenario has an arm " + name, did_you_mean(name, known) + "There are " + joined(known));
     return refused(goal.text, "no scenario has both " + goal.minuend + " and " + goal.subtrahend,
                    "There are " + joined(known));
 }

@@ -1,5 +1,6 @@
 #include "worlds/values.hpp"
 
+#include "base/choice.hpp"
 #include "base/program_name.hpp"
 
 #include <algorithm>
@@ -28,7 +29,8 @@ std::string characters_not_in(const std::string& value, bool (*allowed)(char)) {
 int parse_feature_index(const std::string& value, const std::string& text) {
     const std::optional<std::int64_t> index = to_integer(text);
     if (!index || *index < 0 || *index >= largest_feature_count)
-        throw invalid_value("edges.graph", value, "'" + text + "' is not a feature", "Features count from 0");
+        throw invalid_value("edges.graph", value, "'" + text + "' is not a feature",
+                            "Features count from 0 to " + std::to_string(largest_feature_count - 1));
     return static_cast<int>(*index);
 }
 
@@ -78,6 +80,9 @@ std::vector<Point> parse_points(const std::string& name, const std::string& valu
     for (const std::string& pair : split_list(value)) {
         const std::size_t space = pair.find_first_of(" \t");
         const std::string x = pair.substr(0, space), y = space == std::string::npos ? "" : trimmed(pair.substr(space));
+        if (!to_number(x) || !to_number(y))
+            throw invalid_value(name, value, "'" + pair + "' is not a point",
+                                "Write pairs `x y` separated by commas, such as `4 0, 4 4`");
         const ValueRange anywhere = between(-largest_value, largest_value);
         positions.push_back({parse_real(name, x, anywhere), parse_real(name, y, anywhere)});
     }
@@ -208,11 +213,28 @@ std::string is_unit(const std::string& value) {
     });
 }
 
+void refuse_again(const InputError& refusal, const std::string& value, const std::vector<std::string>& choices) {
+    const auto is_choice = [&](const std::string& word) { return std::ranges::find(choices, word) != choices.end(); };
+    std::string message = refusal.what();
+    const std::string end_of_reason = "). ";
+    const std::size_t end = message.rfind(end_of_reason);
+    for (const std::string& word : split_list(value))
+        if (const std::string nearest = is_choice(word) ? "" : did_you_mean(word, choices); !nearest.empty()) {
+            if (end != std::string::npos) message.insert(end + end_of_reason.size(), nearest);
+            break;
+        }
+    throw InputError(message, refusal.key());
+}
+
 void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known) {
     constexpr std::size_t a_line = 12;
-    const std::string meant = closest(key, known);
+    const std::string whole = key.substr(key.find('.') + 1);  // of a key that stands in a section with its section
+    const bool sectioned_twice = std::ranges::find(known, whole) != known.end();
+    const std::string meant = sectioned_twice ? whole : closest(key, known);
+    const std::size_t dot = meant.find('.');
     throw InputError("unknown key " + printable(key) + ". " +
-                         (!meant.empty()           ? "Did you mean " + meant + "?"
+                         (sectioned_twice ? "Under [" + meant.substr(0, dot) + "] write " + meant.substr(dot + 1) + "."
+                          : !meant.empty()        ? "Did you mean " + meant + "?"
                           : known.size() > a_line ? "`" + program_name() + " show` prints every key."
                                                    : "The keys are " + joined(known) + "."),
                      key);

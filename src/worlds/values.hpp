@@ -23,8 +23,9 @@ inline ValueRange above(double low) { return {low, largest_value, false, false};
 inline ValueRange above_or_infinite(double low) { return {low, largest_value, false, true}; }
 inline ValueRange between(double low, double high) { return {low, high, true, false}; }
 
-/// Whether sigma^2 is a number that an inverse can be taken of.
+/// Whether sigma^2 is a number that an inverse can be taken of; `above_least` says so in a remedy.
 inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
+inline const std::string above_least = "above 1e-100";
 
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);

@@ -1,5 +1,6 @@
 #include <credence/worlds.hpp>
 
+#include "base/choice.hpp"
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
 #include "worlds/landmarks/landmarks.hpp"
@@ -65,7 +66,7 @@ const World& world_of(const Scenario& scenario) {
     std::vector<std::string> names;
     for (const World* world : all_worlds()) names.push_back(world->name());
     throw invalid_value(world_key, printable(scenario.world), "this program has no such world",
-                        "Use the program that has it, or give one of " + joined(names));
+                        did_you_mean(scenario.world, names) + "Use the program that has it, or give one of " + joined(names));
 }
 
 std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario) {

@@ -2,6 +2,7 @@
 // Module worlds: the keys of a scenario. One table for each world serves scenario files, `--set`, `credence show`, stored
 // scenarios, the study's hash and the documentation.
 
+#include <credence/error.hpp>
 #include <credence/text.hpp>
 #include <credence/worlds.hpp>
 
@@ -26,14 +27,25 @@ struct KeyOf {
 /// Throws InputError for a key that is not among `known`, with the closest one that is.
 [[noreturn]] void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known);
 
+/// Throws the refusal of a key's value again, with the choice that is nearest to it, or to a part of it, where one is
+/// near.
+[[noreturn]] void refuse_again(const InputError& refusal, const std::string& value,
+                               const std::vector<std::string>& choices);
+
 /// Sets `section.key` to a value without its outer blanks. Throws InputError for an unknown key or a value out of range.
 template <class Settings>
 void set_key(const std::vector<KeyOf<Settings>>& keys, Settings& settings, const std::string& name,
              const std::string& value) {
     std::vector<std::string> names;
     for (const KeyOf<Settings>& key : keys) {
-        if (key.name == name) return key.set(settings, trimmed(value));  // as a file would read it back
         names.push_back(key.name);
+        if (key.name != name) continue;
+        const std::string as_read_back = trimmed(value);
+        try {
+            return key.set(settings, as_read_back);
+        } catch (const InputError& refusal) {
+            refuse_again(refusal, as_read_back, key.choices);
+        }
     }
     refuse_unknown_key(name, names);
 }

@@ -1,5 +1,7 @@
 #include "report/compare/choice.hpp"
 
+#include "base/choice.hpp"
+
 #include <algorithm>
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -128,19 +130,19 @@ private:
     }
 
     [[noreturn]] void refuse(const ArmsChoice& choice) const {
-        std::string why = "no scenario has both", meant;
+        std::string why = "no scenario has both", nearest;
         for (const ArmChoice& side : {choice.a, choice.b}) {
             std::vector<std::string> names = arm_names(files_[side.file]);
             for (std::size_t i = names.size(); i-- > 0;) names.push_back(controller_of(names[i]));
             if (one_of(side.arm, names)) continue;
             why = "no scenario of " + files_[side.file].path + " has " + side.arm;
-            meant = closest(side.arm, names);
+            nearest = did_you_mean(side.arm, names);
             break;
         }
         std::string there = contents(files_[choice.a.file]);
         if (choice.a.file != choice.b.file) there += "; " + contents(files_[choice.b.file]);
         throw invalid_value("--arms", choice.text, why,
-                            (meant.empty() ? "" : "Did you mean " + meant + "? ") + "The arms there are: " + there);
+                            nearest + "The arms there are: " + there);
     }
 
     const std::vector<StudyFile>& files_;

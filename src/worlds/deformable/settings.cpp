@@ -3,6 +3,7 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
+#include "base/choice.hpp"
 #include "worlds/values.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ void check_sensor(const SensorSettings& sensor) {
     if (sensor.noise == RangeNoise::constant) {
         if (!has_variance(sensor.sigma))
             throw invalid_value("sensor.sigma", to_text(sensor.sigma), "it makes S singular",
-                                "Give a standard deviation above 0");
+                                "Give a standard deviation " + above_least);
         return;
     }
     if (std::isinf(sensor.range_max))
@@ -56,7 +57,7 @@ void check_sensor(const SensorSettings& sensor) {
                             "Give a finite range or sensor.noise=constant");
     if (!has_variance(sensor.sigma_near))
         throw invalid_value("sensor.sigma_near", to_text(sensor.sigma_near), "it makes S singular",
-                            "Give a standard deviation above 0");
+                            "Give a standard deviation " + above_least);
     if (sensor.sigma_far < sensor.sigma_near)
         throw invalid_value(
             "sensor.sigma_far", to_text(sensor.sigma_far),
@@ -64,27 +65,30 @@ void check_sensor(const SensorSettings& sensor) {
             "Give at least sigma_near");
 }
 
-/// A believed sigma of 0 is refused where it makes P or S singular [docs/model.md, What is refused].
-void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why) {
+/// A believed sigma of 0 is refused where it makes P or S singular [docs/model.md, What is refused]; `otherwise` is what
+/// else would make it harmless.
+void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why,
+                    const std::string& otherwise) {
     if (!harmful || has_variance(sigma * factor)) return;
     if (!has_variance(sigma))
-        throw invalid_value(std::string("noise.") + key, to_text(sigma), why, "Give a standard deviation above 0");
+        throw invalid_value(std::string("noise.") + key, to_text(sigma), why,
+                            "Give a standard deviation " + above_least + ", or " + otherwise);
     const std::string name = std::string("filter.") + (std::string(key) == "deformation" ? "edges" : key);
-    throw invalid_value(name, to_text(factor), why, "Give a factor above 0");
+    throw invalid_value(name, to_text(factor), why, "Give a larger factor, or " + otherwise);
 }
 
 void check_noise(const DeformableSettings& s) {
     const bool heading = s.process == Process::heading;
-    check_believed("heading", s.noise.heading, s.filter.heading, heading && s.noise.initial_heading == 0,
-                   "the heading's variance would stay 0 and P singular");
-    check_believed("odometry", s.noise.odometry, s.filter.odometry, s.noise.initial_position == 0,
-                   "the position's variance would stay 0 and P singular");
+    check_believed("heading", s.noise.heading, s.filter.heading, heading && !has_variance(s.noise.initial_heading),
+                   "the heading's variance would stay 0 and P singular", "set noise.initial_heading " + above_least);
+    check_believed("odometry", s.noise.odometry, s.filter.odometry, !has_variance(s.noise.initial_position),
+                   "the position's variance would stay 0 and P singular", "set noise.initial_position " + above_least);
     check_believed("deformation", s.noise.deformation, s.filter.edges, !edge_list(s).empty(),
-                   "edges believed exact make S or P singular");
+                   "edges believed exact make S or P singular", "set edges.graph=none");
     for (const auto& [name, factor] : {std::pair{"filter.measurement", s.filter.measurement},
                                        std::pair{"filter.covariance", s.filter.covariance}})
         if (!has_variance(factor))
-            throw invalid_value(name, to_text(factor), "it makes S or P singular", "Give a factor above 0");
+            throw invalid_value(name, to_text(factor), "it makes S or P singular", "Give a factor " + above_least);
     if (!heading && s.noise.initial_heading > 0)
         throw invalid_value("noise.initial_heading", to_text(s.noise.initial_heading),
                             "the translation model has no heading", "Set it to 0 or use model.process=heading");
@@ -95,8 +99,9 @@ void check_edges(const DeformableSettings& s) {
     for (const Edge& edge : s.edges.list)
         if (edge.to >= features)
             throw invalid_value("edges.graph", graph_text(s.edges),
-                                "there are " + std::to_string(features) + " features",
-                                "Name features 0 to " + std::to_string(features - 1));
+                                "the features are " + std::to_string(features) + ", counted from 0",
+                                features == 1 ? "Set it to none"
+                                              : "Name features 0 to " + std::to_string(features - 1));
 }
 
 void check_horizon(const DeformableSettings& s) {
@@ -142,12 +147,15 @@ void check_arms(const DeformableSettings& s) {
     for (std::size_t i = 0; i < estimator_names().size(); ++i)
         if (process_of(static_cast<Estimator>(i)) == s.process) fitting.push_back(estimator_names()[i]);
     const std::vector<Estimator> asked = *resolved(s).arms.estimators;
+    const bool all_fit_the_other = std::ranges::none_of(asked, [&](Estimator one) { return process_of(one) == s.process; });
+    const std::string other = s.process == Process::heading ? "translation" : "heading";
+    const std::string otherwise = all_fit_the_other ? ", or set model.process=" + other : "";
     for (const Estimator estimator : asked)
         if (process_of(estimator) != s.process)
             throw invalid_value("arms.estimators", names_text(asked, estimator_names()),
                                 estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" +
                                     process,
-                                "Give some of " + joined(fitting) + ", or change the process");
+                                "Give some of " + joined(fitting) + otherwise);
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);
@@ -157,7 +165,7 @@ void check_arms(const DeformableSettings& s) {
         for (const PublishedNumber& number : *numbers)
             if (std::find(names.begin(), names.end(), number.arm) == names.end())
                 throw invalid_value(key, published_text(*numbers), "'" + number.arm + "' is not an arm",
-                                    "Name arms such as " + joined(names));
+                                    did_you_mean(number.arm, names) + "Name arms such as " + joined(names));
 }
 
 }  // namespace
