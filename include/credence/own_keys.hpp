@@ -64,7 +64,10 @@ public:
                 const std::string& help) {
         add(key, help, choices,
             [=](Settings& s, const std::string& text) { s.*member = static_cast<Enum>(own_choice(key, text, choices)); },
-            [=](const Settings& s) { return choices[static_cast<std::size_t>(s.*member)]; });
+            [=](const Settings& s) {
+                const auto place = static_cast<std::size_t>(s.*member);
+                return place < choices.size() ? choices[place] : std::to_string(place);  // which `set` refuses
+            });
     }
 
     /// All of them, those of every world first.

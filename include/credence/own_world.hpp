@@ -10,7 +10,7 @@
 //   static constexpr const char* W::name
 //       letters, digits, _ and -: what `scenario.world` says in a scenario file.
 //   static void W::keys(OwnKeys<Settings>&)
-//       the keys of the scenario file, see OwnKeys.
+//       the keys of the scenario file, see OwnKeys: `section.key`, in any section but sweep and published.
 //   static std::vector<Component> W::components(const Settings&)
 //       name and unit of each component of the state, [n], n up to 1000. Names and units have no blanks.
 //   static std::vector<ComponentGroup> W::groups(const Settings&)
@@ -19,14 +19,15 @@
 //   static std::vector<std::string> W::arms(const Settings&)
 //       the filters that every trial runs under, with the same draws.
 //   static int W::innovation_rows(const Settings&)
-//       m, the most rows of an innovation; 0 where trials give none.
+//       m, the most rows of an innovation, up to 2000; 0 where trials give none.
 //   static void W::run(const Settings&, OwnTrial& trial)
 //       one trial under trial.arm(): the truth, the measurements, the filter; trial.step(...) after each step. All
 //       randomness comes from trial.normal and trial.uniform; the same key is the same draw under every arm.
 //   or template <class Real> static void W::run(const Settings&, OwnTrialOf<Real>& trial)
 //       the same for several trials at once, see own_trial.hpp.
 // and, if it has use for them,
-//   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set
+//   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set; a trial that
+//       sets one of the type integer to anything else than a whole number of 32 bits has failed
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
@@ -98,7 +99,9 @@ public:
         scenario.groups = {{"all", 0, static_cast<int>(scenario.components.size())}};
         for (ComponentGroup& group : groups_of(settings.own)) scenario.groups.push_back(std::move(group));
         scenario.arms = W::arms(settings.own);
-        check_declared(scenario);
+        check_declared(scenario, report_of(settings.own));
+        Settings read_back;  // a default that its own key refuses would make files that no one can read
+        for (const KeyOf<Settings>& key : keys_.list()) key.set(read_back, key.get(settings));
     }
     std::vector<Column> columns(const Settings& settings, const Scenario& scenario) const {
         return own_columns(scenario, report_of(settings.own));
@@ -144,7 +147,7 @@ private:
     OwnKeys<typename W::Settings> keys_;
 };
 
-/// Adds W to the worlds that there are: in main, before anything else. Throws like add_world.
+/// Adds W to the worlds that there are: in main, before anything else.
 template <class W>
 void add_own_world() {
     add_world(std::make_unique<WorldOf<OwnWorld<W>>>());

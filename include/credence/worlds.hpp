@@ -61,8 +61,7 @@ public:
 /// plan; beside `horizon.X` first of all the greedy one. Empty where there is none.
 std::vector<std::string> baselines_among(const std::vector<std::string>& arms);
 
-/// Adds a world to those that there are. Not thread-safe: before anything else. Throws InputError where there is one of
-/// that name.
+/// Adds a world to those that there are. Not thread-safe: before anything else.
 void add_world(std::unique_ptr<const World> world);
 
 /// All of them, the deformable one first.
@@ -71,7 +70,7 @@ std::vector<const World*> all_worlds();
 /// The world of this name; nullptr where there is none.
 const World* find_world(const std::string& name);
 
-/// The same; throws InputError where there is none: the program that has it must be used.
+/// The same; throws InputError where there is none, so that the program that has it must be used, or where there are two.
 const World& world_of(const Scenario& scenario);
 
 /// The scenario made ready by its world. Throws like world_of.

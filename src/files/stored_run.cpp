@@ -3,6 +3,7 @@
 #include <credence/error.hpp>
 
 #include "files/results/agreement.hpp"
+#include "files/results/links.hpp"
 #include "files/journal/journal.hpp"
 #include "files/system/system_file.hpp"
 
@@ -67,6 +68,7 @@ StoredRun::StoredRun(const std::string& path, Study study, Start start, const st
       start_(start),
       release_(release.substr(0, commit_release_size)),  // cut as in a journal
       study_(std::move(study)) {
+    refuse_clashing_links(study_);
     open_journal();
     if (start_ == Start::resume) go_on();
 }

@@ -4,12 +4,13 @@
 #include <credence/detail/batch.hpp>
 #include "worlds/landmarks/problem.hpp"
 #include "slam/trial/problem.hpp"
-#include "worlds/own/lanes/view.hpp"
 
 #include <cstddef>
 #include <string>
 
 namespace credence {
+
+struct OwnView;  // worlds/own/lanes/view.hpp, which the targets of the other worlds do not read
 
 /// Simulates a batch of an arm. The same bits from every target.
 using SimulateFunction = void (*)(const ProblemView&, const Arm&, const Batch&);

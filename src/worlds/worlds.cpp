@@ -43,11 +43,7 @@ std::vector<std::string> baselines_among(const std::vector<std::string>& arms) {
     return baselines;
 }
 
-void add_world(std::unique_ptr<const World> world) {
-    if (find_world(world->name()))
-        throw invalid_value(world_key, world->name(), "there is a world of that name", "Give yours another name");
-    registry().push_back(std::move(world));
-}
+void add_world(std::unique_ptr<const World> world) { registry().push_back(std::move(world)); }
 
 std::vector<const World*> all_worlds() {
     std::vector<const World*> all;
@@ -62,9 +58,12 @@ const World* find_world(const std::string& name) {
 }
 
 const World& world_of(const Scenario& scenario) {
-    if (const World* world = find_world(scenario.world)) return *world;
     std::vector<std::string> names;
     for (const World* world : all_worlds()) names.push_back(world->name());
+    if (std::ranges::count(names, scenario.world) > 1)
+        throw invalid_value(world_key, scenario.world, "this program has two worlds of that name",
+                            "Give the one that was added another name");
+    if (const World* world = find_world(scenario.world)) return *world;
     throw invalid_value(world_key, printable(scenario.world), "this program has no such world",
                         did_you_mean(scenario.world, names) + "Use the program that has it, or give one of " + joined(names));
 }

@@ -8,6 +8,7 @@
 #include "files/results/declared.hpp"
 #include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
+#include "files/results/links.hpp"
 #include "files/results/sums.hpp"
 
 #include <algorithm>
@@ -44,26 +45,6 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     for (const T value : dataset.read<T>())
         if (value != first++) throw Error(dataset.place(), "does not count on by one");
     return dataset.extents()[0];
-}
-
-/// Names of the datasets in the group of the next arm.
-std::vector<std::string> arm_links(const ScenarioResults& results, int schema) {
-    std::vector<std::string> names{"step", "part"};
-    if (results.keep == Keep::trials) {
-        names.push_back("trial");
-        for (const Column& column : results.columns) names.push_back(column.name);
-    } else {
-        const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
-        names.insert(names.end(), aggregates.begin(), aggregates.end());
-    }
-    for (const Series& series : results.all_series) {
-        names.push_back(series.name + "_total");
-        if (!series.integer) names.push_back(series.name + "_square_total");
-        names.push_back(series.name + "_run_square_total");
-    }
-    const std::vector<std::string> evidence = evidence_links(results, schema);
-    names.insert(names.end(), evidence.begin(), evidence.end());
-    return names;
 }
 
 /// Throws where the totals are not of all trials that did not fail.

@@ -5,6 +5,7 @@
 #include "base/nan.hpp"
 #include "numeric/chi_square.hpp"
 #include "scenario/state_series.hpp"
+#include "worlds/own/columns.hpp"
 #include "worlds/own/lag_products.hpp"
 #include "worlds/own/moments.hpp"
 #include "worlds/own/step.hpp"
@@ -87,6 +88,11 @@ public:
         if (step_ != case_.steps())
             throw std::logic_error("world " + case_.scenario.world + ": a trial took " + std::to_string(step_) +
                                    " steps, not " + std::to_string(case_.steps()) + ".");
+        for (std::size_t c = 0; c < own_.size(); ++c) {
+            if (case_.report.columns[c].type != ColumnType::integer || is_stored_integer(own_[c])) continue;
+            status_ = Status::non_finite;
+            status_pose_ = static_cast<int>(step_);
+        }
     }
 
     std::size_t arm() const override { return arm_; }

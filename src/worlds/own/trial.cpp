@@ -8,29 +8,69 @@
 
 #include "base/nan.hpp"
 
+#include "worlds/own/columns.hpp"
+
 #include <algorithm>
-#include <stdexcept>
 
 namespace credence {
 
 namespace {
 
-constexpr int largest_state = 1000;
+constexpr int largest_state = 1000, largest_innovation = 2000;
 
 bool is_word(const std::string& text) {
     return !text.empty() && text.find_first_of(" \t\n") == std::string::npos;
 }
 
-/// `what` is wrong with a list of names.
+InputError refused(const Scenario& scenario, const std::string& why, const std::string& remedy) {
+    return InputError("cannot use world " + printable(scenario.world) + " (" + printable(why) + "). " + remedy + ".");
+}
+
+/// `what` is listed: the names must be there, be names, and differ.
 template <class Named, class Name>
-void check_names(const std::string& world, const std::string& what, const std::vector<Named>& all, Name name) {
+void check_names(const Scenario& scenario, const std::string& what, const std::vector<Named>& all, Name name,
+                 bool (*is_name)(const std::string&) = names_something) {
     std::vector<std::string> names;
     for (const Named& one : all) names.push_back(name(one));
-    std::sort(names.begin(), names.end());
-    const bool twice = std::adjacent_find(names.begin(), names.end()) != names.end();
-    if (names.empty() || twice || !std::all_of(names.begin(), names.end(), names_something))
-        throw std::invalid_argument("world " + world + ": its " + what +
-                                    " need names that differ, of letters, digits, _ and -.");
+    const std::string remedy = "Give its " + what + " other names";
+    if (names.empty()) throw refused(scenario, "it has no " + what, "Name one or more");
+    for (const std::string& one : names)
+        if (!is_name(one)) throw refused(scenario, "'" + one + "' among its " + what + " is no name of letters, digits, _ and -", remedy);
+    std::ranges::sort(names);
+    if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
+        throw refused(scenario, *twice + " is there twice among its " + what, remedy);
+}
+
+/// Whether a text is `section.key`, of names.
+bool names_key(const std::string& text) {
+    const std::vector<std::string> parts = split_list(text, '.');
+    return parts.size() > 1 && std::ranges::all_of(parts, names_something) && joined(parts, ".") == text;
+}
+
+/// Each key must be read back from a file to the same value, by this program and by others.
+void check_keys(const Scenario& scenario) {
+    check_names(scenario, "keys", scenario.settings, [](const Setting& one) { return one.key; }, names_key);
+    for (const auto& [key, value, later_default] : scenario.settings) {
+        if (key.starts_with("sweep.") || key.starts_with("published."))
+            throw refused(scenario, key + " means something else in every world", "Give the key another section");
+        if (value.find_first_of("#\n\r") != std::string::npos || trimmed(value) != value)
+            throw refused(scenario, key + "=" + value + " cannot be read back from a file",
+                          "Write its values without # and without blanks at their ends");
+    }
+}
+
+void check_columns(const Scenario& scenario, const OwnReport& report) {
+    check_names(scenario, "columns", own_columns(scenario, report), [](const Column& column) { return column.name; });
+    for (const Column& column : report.columns) {
+        if (column.type == ColumnType::status)
+            throw refused(scenario, "column " + column.name + " has the type status", "Make it an integer");
+        if (column.type == ColumnType::integer && !is_stored_integer(column.fill))
+            throw refused(scenario, "column " + column.name + " is filled with " + to_text(column.fill),
+                          "Fill it with a whole number of 32 bits");
+        if (!is_word(column.unit) || column.unit.find(',') != std::string::npos)
+            throw refused(scenario, "the unit '" + column.unit + "' of column " + column.name + " is no word",
+                          "Write one such as m/s, or 1");
+    }
 }
 
 bool is_part_of(const ComponentGroup& group, int n) {
@@ -55,7 +95,6 @@ std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& repor
     columns.push_back(real("nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1"));
     columns.push_back(real("mean_trace_P", "mean over the steps of the trace of the covariance", unit));
     for (Column& column : status_columns()) columns.push_back(std::move(column));
-    check_names(scenario.world, "columns", columns, [](const Column& column) { return column.name; });
     return columns;
 }
 
@@ -65,21 +104,28 @@ std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report
         .list;
 }
 
-void check_declared(const Scenario& scenario) {
+void check_declared(const Scenario& scenario, const OwnReport& report) {
     const auto n = static_cast<int>(scenario.components.size());
-    check_names(scenario.world, "components", scenario.components, [](const Component& one) { return one.name; });
-    check_names(scenario.world, "groups", scenario.groups, [](const ComponentGroup& one) { return one.name; });
-    for (const std::string& arm : scenario.arms)
-        if (!names_arm(arm))
-            throw std::invalid_argument("world " + scenario.world + ": " + printable(arm) + " is no name for an arm.");
-    if (scenario.arms.empty() || n > largest_state)
-        throw std::invalid_argument("world " + scenario.world + ": it needs an arm, and a state of 1 to 1000.");
+    if (!names_something(scenario.world))
+        throw refused(scenario, "its name is none of letters, digits, _ and -", "Give it another name");
+    check_keys(scenario);
+    check_names(scenario, "arms", scenario.arms, [](const std::string& arm) { return arm; }, names_arm);
+    check_names(scenario, "components", scenario.components, [](const Component& one) { return one.name; });
+    if (n > largest_state)
+        throw refused(scenario, "its state has " + std::to_string(n) + " components", "Give at most 1000");
     for (const Component& component : scenario.components)
         if (!is_word(component.unit))
-            throw std::invalid_argument("world " + scenario.world + ": a component's unit is one word, such as m/s.");
+            throw refused(scenario, "the unit '" + component.unit + "' of " + component.name + " is no word",
+                          "Write one such as m/s, or 1");
+    check_names(scenario, "groups", scenario.groups, [](const ComponentGroup& one) { return one.name; });
     for (const ComponentGroup& group : scenario.groups)
         if (!is_part_of(group, n))
-            throw std::invalid_argument("world " + scenario.world + ": group " + group.name + " is not in the state.");
+            throw refused(scenario, "group " + group.name + " is not in the state of " + std::to_string(n) + " components",
+                          "Give it components of the state, each once");
+    const int m = report.largest_innovation;
+    if (m < 0 || m > largest_innovation)
+        throw refused(scenario, "its innovations have " + std::to_string(m) + " rows", "Give 0 to 2000 as innovation_rows");
+    check_columns(scenario, report);
 }
 
 }  // namespace credence

@@ -94,9 +94,6 @@ public:
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
           all_series_(scenario.components, scenario.groups, innovations_) {
         for (const ComponentGroup& group : scenario.groups) {
-            if (!group.contiguous())
-                throw std::invalid_argument("world " + scenario.world + ": group " + group.name +
-                                            " is a list of components; a world in lanes has contiguous groups.");
             groups_.push_back({group.first, group.count});
             for (const double level : coverage_levels)
                 coverage_bounds_.push_back(stable_chi_square_quantile(level, group.count));
@@ -110,6 +107,8 @@ public:
         view_.largest_innovation = report.largest_innovation;
         view_.column_count = static_cast<int>(columns_.size());
         view_.own_column_count = static_cast<int>(report.columns.size());
+        for (const Column& column : report.columns) whole_.push_back(column.type == ColumnType::integer);
+        view_.whole = whole_.data();
         view_.groups = groups_.data();
         view_.nis = static_cast<int>(all_series_.nis);
         view_.squared_error = static_cast<int>(all_series_.squared_error);
@@ -165,15 +164,22 @@ private:
     StateSeries all_series_;
     std::vector<GroupRange> groups_;
     std::vector<double> coverage_bounds_;  ///< [groups, levels]
+    std::vector<char> whole_;              ///< [own columns]
     OwnView view_;
     SimulationShape shape_;
 };
+
+/// Lanes evaluate no others.
+bool are_contiguous(const std::vector<ComponentGroup>& groups) {
+    return std::ranges::all_of(groups, &ComponentGroup::contiguous);
+}
 
 }  // namespace
 
 std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, const OwnReport& report,
                                                   const std::vector<LanesOfTarget>& targets,
                                                   std::shared_ptr<const void> settings) {
+    if (!are_contiguous(scenario.groups)) return nullptr;
     const Target target = best_target();
     for (const LanesOfTarget& one : targets)
         if (one.target == target.name && one.run != nullptr)
@@ -183,7 +189,7 @@ std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, cons
 
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run) {
-    if (!std::all_of(scenario.groups.begin(), scenario.groups.end(), [](const auto& group) { return group.contiguous(); }))
+    if (!are_contiguous(scenario.groups))
         return one_at_a_time_simulation(scenario, report, std::move(run));
     const Target target = best_target();
     auto one_by_one = std::make_shared<const OneByOne>(OneByOne{std::move(run), target.lanes});

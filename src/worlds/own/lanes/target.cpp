@@ -45,6 +45,7 @@ void simulate_own(const OwnView& view, const Batch& batch) {
         PackOfTrials<Real> pack(view, draws, first_lanes<Real>(batch.trials - i), room, unfolded.next(),
                                 batch.errors != nullptr ? errors : nullptr, moments);
         view.run(view, pack);
+        pack.note_columns();
         pack.columns(columns);
         double* to = batch.columns + i / octet * view.column_count * octet + i % octet;
         for (int c = 0; c < view.column_count; ++c) store(columns[c], to + c * octet);

@@ -76,6 +76,17 @@ public:
         return both(there_, outcome.status < Real(static_cast<int>(Status::covariance_not_positive_definite)));
     }
 
+    /// After the last step: notes the trials of which a column of whole numbers is none of 32 bits.
+    void note_columns() {
+        constexpr double largest = 2147483647, rounding = 6755399441055744;  // 1.5 * 2^52 leaves no place for a fraction
+        for (int c = 0; c < view_.own_column_count; ++c) {
+            if (!view_.whole[c]) continue;
+            const Real value = load<Real>(own_columns + c * lanes<Real>);
+            const Mask<Real> is_whole = value + Real(rounding) - Real(rounding) == value;
+            outcome.note(negated(both(is_whole, absolute(value) <= Real(largest))), Status::non_finite, steps);
+        }
+    }
+
     /// Writes the columns [column_count], in the order of own_columns().
     void columns(Real* to) const {
         const int steps_of_trial = poses - 1;

@@ -22,6 +22,7 @@ struct OwnView : CommonView {
     std::size_t arm = 0;
     int largest_innovation = 0;              ///< m
     int column_count = 0, own_column_count = 0;
+    const char* whole = nullptr;             ///< [own_column_count] whether the column is of whole numbers
     const GroupRange* groups = nullptr;      ///< [group_count]
     int nis = 0, squared_error = 0, variance = 0, standardised_error = 0;  ///< where each kind of series begins
     /// Whether a matrix [n, n] whose pivots leave it open is positive definite. The answer of one trial at a time.

@@ -1,0 +1,42 @@
+#include "files/results/links.hpp"
+
+#include <credence/error.hpp>
+
+#include "files/results/aggregates.hpp"
+#include "files/results/evidence.hpp"
+
+#include <algorithm>
+
+namespace credence {
+
+std::vector<std::string> arm_links(const ScenarioResults& results, int schema) {
+    std::vector<std::string> names{"step", "part"};
+    if (results.keep == Keep::trials) {
+        names.push_back("trial");
+        for (const Column& column : results.columns) names.push_back(column.name);
+    } else {
+        const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
+        names.insert(names.end(), aggregates.begin(), aggregates.end());
+    }
+    for (const Series& series : results.all_series) {
+        names.push_back(series.name + "_total");
+        if (!series.integer) names.push_back(series.name + "_square_total");
+        names.push_back(series.name + "_run_square_total");
+    }
+    const std::vector<std::string> evidence = evidence_links(results, schema);
+    names.insert(names.end(), evidence.begin(), evidence.end());
+    return names;
+}
+
+void refuse_clashing_links(const Study& study) {
+    for (const ScenarioResults& results : study.scenarios) {
+        std::vector<std::string> names = arm_links(results, schema_version);
+        std::ranges::sort(names);
+        if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
+            throw InputError("cannot store scenario " + results.scenario.name + " (its world " + results.scenario.world +
+                             " names columns, groups or components so that two datasets would be " + *twice +
+                             "). Rename one of them in the world.");
+    }
+}
+
+}  // namespace credence
