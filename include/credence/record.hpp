@@ -68,6 +68,9 @@ struct Record {
 /// trials are left out of the series. A trial whose error or covariance exceeds 1e12 has `diverged`, and stays in the
 /// series. All are listed as troubles.
 ///
+/// Components whose errors and whose rows and columns of every covariance are 0 at all steps are not in the state: they
+/// are left out, and `results.not_judged` names them.
+///
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {});
 

@@ -182,3 +182,19 @@ def test_an_error_in_progress_ends_the_call():
     array = judging._array(np.zeros((3, 2, 2)))
     with pytest.raises(Stop):
         _core.judge({"error": array, "covariance": judging._array(np.ones((3, 2, 2)))}, {}, {}, {}, {}, b"record", stop)
+
+
+def test_planar_poses_in_space_are_judged_in_the_plane():
+    rng = np.random.default_rng(3)
+    plane = [0, 1, 5]
+    error, covariance = np.zeros((200, 4, 6)), np.zeros((200, 4, 6, 6))
+    error[..., plane] = rng.normal(size=(200, 4, 3))
+    covariance[..., plane, plane] = 1
+    names = ["x", "y", "z", "roll", "pitch", "yaw"]
+    flat = credence.judge(error[..., plane], covariance[..., plane, :][..., plane], component_names=["x", "y", "yaw"])
+    space = credence.judge(error, covariance, component_names=names, groups={"tilt": [3, 4]})
+    assert space["not_judged"] == [
+        "Not in the state, because their errors and variances are 0 at every step: z, roll, pitch.",
+        "Groups of nothing else are left out: tilt.",
+    ]
+    assert {**space.json[0], "not_judged": None} == {**flat.json[0], "not_judged": None}

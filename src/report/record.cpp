@@ -22,7 +22,8 @@ void hint_at_known_start(const Record& record, Consistency& verdict) {
     if (verdict.verdict == Verdict::failed && std::ranges::all_of(record.troubles, at_start))
         verdict.hints.push_back(
             "the covariance is singular at the first step: where the start is known exactly (P0 = 0), begin the "
-            "record one step later, or make the known components NaN at that step");
+            "record one step later, or make the known components NaN at that step; components that are known at every "
+            "step are left out where their errors are 0 too");
 }
 
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.

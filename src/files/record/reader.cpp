@@ -10,6 +10,25 @@ namespace credence {
 using hdf5::Error;
 using hdf5::Extents;
 
+void for_each_step(const RecordPart& part, const RecordValues& values, const std::function<void(const RecordStep&)>& use) {
+    const std::size_t steps = static_cast<std::size_t>(part.trials) * static_cast<std::size_t>(part.steps);
+    std::size_t i = 0;
+    const auto at = [&](const std::vector<double>& all) -> const double* {
+        return all.empty() ? nullptr : &all[i * (all.size() / steps)];
+    };
+    RecordStep step;
+    step.own.resize(values.own.size());
+    for (step.trial = part.first_trial; step.trial < part.first_trial + part.trials; ++step.trial)
+        for (step.step = part.first_step; step.step < part.first_step + part.steps; ++step.step, ++i) {
+            step.error = at(values.error);
+            step.covariance = at(values.covariance);
+            step.innovation = at(values.innovation);
+            step.innovation_covariance = at(values.innovation_covariance);
+            for (std::size_t b = 0; b < step.own.size(); ++b) step.own[b] = at(values.own[b]);
+            use(step);
+        }
+}
+
 RecordReader::RecordReader(const RecordSource& source, std::int64_t part_numbers)
     : layout_(open_record(source)), part_numbers_(part_numbers) {
     const RecordDatasets& data = layout_.data;
@@ -18,6 +37,7 @@ RecordReader::RecordReader(const RecordSource& source, std::int64_t part_numbers
         add_size(*dataset);
     for (const DatasetPointer& dataset : data.own) add_size(dataset);
     if (layout_.shape.declared.empty()) layout_.shape.longest = longest_trial();
+    if (const std::vector<char> known = known_components(); !known.empty()) remaining_.emplace(known, layout_);
 }
 
 void RecordReader::add_size(const DatasetPointer& dataset) {
@@ -28,33 +48,49 @@ void RecordReader::add_size(const DatasetPointer& dataset) {
     step_numbers_ += size;
 }
 
-/// The datasets whose numbers say that a step exists: errors, or NEES where there are none.
-std::vector<const RecordDataset*> RecordReader::leading() const {
-    const RecordDatasets& data = layout_.data;
-    if (data.error) return {&*data.error};
-    if (data.estimate) return {&*data.estimate};
-    std::vector<const RecordDataset*> all;
-    for (const DatasetPointer& nees : data.own)
-        if (nees) all.push_back(&*nees);
-    return all;
-}
-
-/// Only the errors are read, and usually only the first trial: the search ends at a trial that has all steps.
-int RecordReader::longest_trial() const {
+void RecordReader::each_part(const std::function<bool(const RecordPart&)>& visit) const {
     const RecordShape& shape = layout_.shape;
-    int longest = 0;
-    std::vector<double> values;
-    for (std::int64_t trial = 0; trial < shape.trials && longest < shape.steps;) {
+    for (std::int64_t trial = 0; trial < shape.trials;) {
         std::int64_t trials = 1;
         for (int step = 0; step < shape.steps;) {
             const RecordPart part = part_at(trial, step);
-            for (const RecordDataset* dataset : leading()) longest = std::max(longest, last_step(*dataset, part, values));
+            if (!visit(part)) return;
             step += part.steps;
             trials = part.trials;
         }
         trial += trials;
     }
+}
+
+/// Only the errors are read, and usually only the first trial: the search ends at a trial that has all steps.
+int RecordReader::longest_trial() const {
+    int longest = 0;
+    std::vector<double> values;
+    each_part([&](const RecordPart& part) {
+        for (const RecordDataset* dataset : layout_.data.leading()) longest = std::max(longest, last_step(*dataset, part, values));
+        return longest < layout_.shape.steps;
+    });
     return longest;
+}
+
+std::vector<char> RecordReader::known_components() const {
+    KnownSearch search(layout_.shape);
+    RecordValues values;
+    const auto look = [&](auto read_part, auto see) {
+        each_part([&](const RecordPart& part) {
+            if (!search.goes_on()) return false;
+            (this->*read_part)(part, values);
+            for_each_step(part, values, [&](const RecordStep& step) {
+                if (layout_.shape.covers(step.trial, step.step)) see(step);
+            });
+            return true;
+        });
+    };
+    look(&RecordReader::read_errors, [&](const RecordStep& step) { search.see_error(step.error); });
+    search.end_errors();
+    values = {};
+    look(&RecordReader::read_covariances, [&](const RecordStep& step) { search.see_covariances(step); });
+    return search.known();
 }
 
 /// The number of steps, counted from the first of all, up to the last one that some trial of the part has.
@@ -75,7 +111,7 @@ RecordPart RecordReader::part_at(std::int64_t trial, int step) const {
     if (step > 0 || steps < shape.steps) return {trial, 1, step, steps};
     std::int64_t trials = std::max<std::int64_t>(part_numbers_ / (of_step * steps), 1);
     // Whole chunks are read, so that each is decompressed once.
-    const RecordDataset& largest = layout_.data.covariance ? *layout_.data.covariance : *leading().front();
+    const RecordDataset& largest = layout_.data.covariance ? *layout_.data.covariance : *layout_.data.leading().front();
     const auto together = layout_.single ? 1 : static_cast<std::int64_t>(largest.chunk());
     if (trials > together) trials -= trials % together;
     return {trial, std::min(trials, shape.trials - trial), 0, steps};
@@ -98,16 +134,24 @@ void RecordReader::read(const RecordDataset& dataset, const RecordPart& part, st
 
 void RecordReader::read(const RecordPart& part, RecordValues& values) const {
     const RecordDatasets& data = layout_.data;
-    const auto read_if = [&](const DatasetPointer& dataset, std::vector<double>& to) {
-        if (dataset) read(*dataset, part, to);
-    };
-    read_if(data.error, values.error);
-    if (data.manifold) read_manifold(part, values);
-    read_if(data.covariance, values.covariance);
-    read_if(data.innovation, values.innovation);
-    read_if(data.innovation_covariance, values.innovation_covariance);
+    read_errors(part, values);
+    read_covariances(part, values);
+    if (data.innovation) read(*data.innovation, part, values.innovation);
+    if (data.innovation) read(*data.innovation_covariance, part, values.innovation_covariance);
+    if (remaining_) remaining_->keep(layout_.shape, values);
+}
+
+void RecordReader::read_errors(const RecordPart& part, RecordValues& values) const {
+    if (layout_.data.error) read(*layout_.data.error, part, values.error);
+    if (layout_.data.manifold) read_manifold(part, values);
+}
+
+void RecordReader::read_covariances(const RecordPart& part, RecordValues& values) const {
+    const RecordDatasets& data = layout_.data;
+    if (data.covariance) read(*data.covariance, part, values.covariance);
     values.own.resize(data.own.size());
-    for (std::size_t b = 0; b < data.own.size(); ++b) read_if(data.own[b], values.own[b]);
+    for (std::size_t b = 0; b < data.own.size(); ++b)
+        if (data.own[b]) read(*data.own[b], part, values.own[b]);
 }
 
 /// Forms the errors of a part from truth and estimate.

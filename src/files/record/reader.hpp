@@ -1,10 +1,13 @@
 #pragma once
 // The datasets of a record for `judge`: their extents checked against each other, and read part by part.
 
+#include "files/record/known.hpp"
 #include "files/record/layout/layout.hpp"
 #include "worlds/own/step.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +29,10 @@ struct RecordValues {
     std::vector<double> truth, estimate;        ///< [trials, steps, q]
 };
 
-/// All functions throw hdf5::Error.
+/// The values of a part's step, one step after the other.
+void for_each_step(const RecordPart& part, const RecordValues& values, const std::function<void(const RecordStep&)>& use);
+
+/// Shape and values are those without components that are known exactly. All functions throw hdf5::Error.
 class RecordReader {
 public:
     /// `part_numbers`: how many numbers are read at once, 64 MiB of doubles by default.
@@ -46,13 +52,18 @@ private:
     void require_quaternions(const RecordDataset& dataset, std::int64_t trial, int step,
                              const double* coordinates) const;
     void add_size(const DatasetPointer& dataset);
-    std::vector<const RecordDataset*> leading() const;
+    /// Calls `visit` for every part, until it returns false.
+    void each_part(const std::function<bool(const RecordPart&)>& visit) const;
     int longest_trial() const;
+    std::vector<char> known_components() const;
+    void read_errors(const RecordPart& part, RecordValues& values) const;
+    void read_covariances(const RecordPart& part, RecordValues& values) const;
     int last_step(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const;
 
     RecordLayout layout_;
     std::int64_t part_numbers_;
     std::int64_t step_numbers_ = 0;  ///< numbers of one step of a trial
+    std::optional<RemainingState> remaining_;  ///< where components are known exactly
 };
 
 }  // namespace credence

@@ -8,29 +8,6 @@
 
 namespace credence {
 
-namespace {
-
-void add_part(const RecordPart& part, const RecordValues& values, RecordTotals& totals) {
-    const std::size_t steps = static_cast<std::size_t>(part.trials) * static_cast<std::size_t>(part.steps);
-    std::size_t i = 0;
-    const auto at = [&](const std::vector<double>& all) -> const double* {
-        return all.empty() ? nullptr : &all[i * (all.size() / steps)];
-    };
-    RecordStep step;
-    step.own.resize(values.own.size());
-    for (step.trial = part.first_trial; step.trial < part.first_trial + part.trials; ++step.trial)
-        for (step.step = part.first_step; step.step < part.first_step + part.steps; ++step.step, ++i) {
-            step.error = at(values.error);
-            step.covariance = at(values.covariance);
-            step.innovation = at(values.innovation);
-            step.innovation_covariance = at(values.innovation_covariance);
-            for (std::size_t b = 0; b < step.own.size(); ++b) step.own[b] = at(values.own[b]);
-            totals.add(step);
-        }
-}
-
-}  // namespace
-
 Record read_record(const RecordReader& reader, const std::string& path,
                    const std::function<void(const Progress&)>& progress) {
     const auto start = std::chrono::steady_clock::now();
@@ -42,7 +19,7 @@ Record read_record(const RecordReader& reader, const std::string& path,
         for (int step = 0; step < shape.steps;) {
             const RecordPart part = reader.part_at(trial, step);
             reader.read(part, values);
-            add_part(part, values, totals);
+            for_each_step(part, values, [&](const RecordStep& one) { totals.add(one); });
             step += part.steps;
             trials = part.trials;
         }

@@ -70,6 +70,11 @@ std::string groups_of(const RecordShape& shape, GroupSource source) {
 /// What a record cannot show, in sentences.
 std::vector<std::string> not_judged(const RecordShape& shape) {
     std::vector<std::string> sentences;
+    if (!shape.known.empty())
+        sentences.push_back("Not in the state, because their errors and variances are 0 at every step: " +
+                            joined(shape.known) + ".");
+    if (!shape.known_groups.empty())
+        sentences.push_back("Groups of nothing else are left out: " + joined(shape.known_groups) + ".");
     if (shape.has_variances)
         sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
                             "between components is.");

@@ -46,6 +46,7 @@ struct RecordShape {
     std::vector<GroupSource> sources;    ///< [groups]; empty: all `joint`
     std::vector<double> group_epsilons;  ///< [groups] of the types in the file, where a group has a covariance of its own
     std::vector<RowGroup> row_groups;
+    std::vector<std::string> known, known_groups;  ///< left out: components that are known exactly, and groups of these
     bool has_errors = true;              ///< false: NEES alone
     bool has_variances = false;          ///< the covariance is [trial, step, n]
 

@@ -97,16 +97,6 @@ std::vector<NamedList> parse_lists(const ListEntries& entries, const Listed& of,
     return lists;
 }
 
-ComponentGroup as_group(NamedList list) {
-    ComponentGroup group{list.name, list.members.front(), static_cast<int>(list.members.size())};
-    for (int i = 0; i < group.count; ++i)
-        if (list.members[static_cast<std::size_t>(i)] != group.first + i) {
-            group.components = std::move(list.members);
-            break;
-        }
-    return group;
-}
-
 /// The texts of a list, of which there must be one for each component.
 std::vector<std::string> read_list(const RecordSource& source, const std::string& name, int n) {
     if (!source.has_attribute(name)) return {};
@@ -122,6 +112,16 @@ std::vector<std::string> read_list(const RecordSource& source, const std::string
 }
 
 }  // namespace
+
+ComponentGroup group_of(const std::string& name, std::vector<int> members) {
+    ComponentGroup group{name, members.front(), static_cast<int>(members.size())};
+    for (int i = 0; i < group.count; ++i)
+        if (members[static_cast<std::size_t>(i)] != group.first + i) {
+            group.components = std::move(members);
+            break;
+        }
+    return group;
+}
 
 std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place) {
     std::vector<ComponentGroup> groups{{"all", 0, n}};
@@ -147,7 +147,7 @@ void require_group_name(const std::string& name, const std::string& what, const 
 std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place) {
     std::vector<ComponentGroup> groups{{"all", 0, n}};
     for (NamedList& list : parse_lists(entries, {"component", "the state", n, group_example, dictionary}, place))
-        groups.push_back(as_group(std::move(list)));
+        groups.push_back(group_of(list.name, std::move(list.members)));
     return groups;
 }
 

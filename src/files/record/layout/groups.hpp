@@ -16,6 +16,9 @@ std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const s
 /// The same for version 2: `position 0 2, velocity 1 3, heading 4`, with ranges such as `0:3` between them.
 std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place);
 
+/// A group of one component or more: contiguous where they are so, and in order.
+ComponentGroup group_of(const std::string& name, std::vector<int> members);
+
 /// Groups of the m rows of an innovation, such as `gps 0:3, baro 3`.
 std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const std::string& place);
 

@@ -13,6 +13,15 @@ using hdf5::Error;
 using hdf5::Extents;
 using hdf5::extents_text;
 
+std::vector<const RecordDataset*> RecordDatasets::leading() const {
+    if (error) return {error.get()};
+    if (estimate) return {estimate.get()};
+    std::vector<const RecordDataset*> all;
+    for (const DatasetPointer& nees : own)
+        if (nees) all.push_back(nees.get());
+    return all;
+}
+
 void set_extents(const PlacedExtents& leading, std::size_t rank, const std::string& written, RecordLayout& layout) {
     const Extents& extents = leading.extents;
     if (extents.size() != rank && extents.size() + 1 != rank)
@@ -94,7 +103,7 @@ RecordLayout open_version_2(const RecordSource& source) {
         leading = open_nees_alone(source, layout);
     add_innovations(source, leading, layout);
     add_steps(source, layout.shape);
-    check_time(source, layout.shape);
+    check_time(source, layout);
     return layout;
 }
 

@@ -19,6 +19,9 @@ struct RecordDatasets {
     DatasetPointer innovation_covariance;         ///< [m, m]
     std::vector<DatasetPointer> own;              ///< [groups] covariance [d, d], or NEES []
     std::optional<Manifold> manifold;             ///< of truth and estimate
+
+    /// Those whose numbers say that a step exists: errors, or NEES where there are none.
+    std::vector<const RecordDataset*> leading() const;
 };
 
 struct RecordLayout {

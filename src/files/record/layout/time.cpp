@@ -1,5 +1,6 @@
 // The datasets of a record that say how long each run is, and when its steps are.
 
+#include <algorithm>
 #include <cmath>
 #include <credence/text.hpp>
 #include <limits>
@@ -36,6 +37,37 @@ void add_steps(const RecordSource& source, RecordShape& shape) {
 
 namespace {
 
+const std::string how_times_are = "Write times that increase from step to step, in seconds";
+
+/// Whether a trial has each of the steps.
+std::vector<char> steps_there(const RecordLayout& layout, std::int64_t trial) {
+    std::vector<char> there(static_cast<std::size_t>(layout.shape.steps), 0);
+    for (const RecordDataset* dataset : layout.data.leading()) {
+        Extents first(dataset->extents().size(), 0), count = dataset->extents();
+        if (!layout.single) first[0] = static_cast<hsize_t>(trial), count[0] = 1;
+        std::size_t size = 1;
+        for (const hsize_t extent : count) size *= extent;
+        std::vector<double> values(size);
+        dataset->read(first, count, values);
+        for (std::size_t i = 0; i < size; ++i)
+            if (!std::isnan(values[i])) there[i / (size / there.size())] = 1;
+    }
+    return there;
+}
+
+/// Refuses a step of the trial that is there and has no time.
+void require_times(const std::vector<double>& times, std::int64_t trial, const RecordLayout& layout,
+                   const std::string& place) {
+    if (std::ranges::none_of(times, [](double time) { return std::isnan(time); })) return;
+    const std::vector<char> there = steps_there(layout, trial);
+    for (std::size_t k = 0; k < times.size() && layout.shape.covers(trial, static_cast<int>(k)); ++k)
+        if (std::isnan(times[k]) && there[k])
+            throw Error(place,
+                        "trial " + std::to_string(trial) + ", step " + std::to_string(k) +
+                            " (both counted from 0) is there and has no time: it is NaN",
+                        how_times_are);
+}
+
 /// The times of a trial's steps; `which` begins the message where they do not increase.
 void require_increasing(const std::vector<double>& times, std::int64_t trial, const RecordShape& shape,
                         const std::string& place, const std::string& which) {
@@ -46,14 +78,15 @@ void require_increasing(const std::vector<double>& times, std::int64_t trial, co
             throw Error(place,
                         which + "step " + std::to_string(k) + " (counted from 0) has " + to_text(times[k]) +
                             ", and the time before is " + to_text(before),
-                        "Write times that increase from step to step, in seconds");
+                        how_times_are);
         before = times[k];
     }
 }
 
 }  // namespace
 
-void check_time(const RecordSource& source, const RecordShape& shape) {
+void check_time(const RecordSource& source, const RecordLayout& layout) {
+    const RecordShape& shape = layout.shape;
     if (!source.has("time")) return;
     const DatasetPointer dataset = source.open("time", Numbers::any);
     const Extents& extents = dataset->extents();
@@ -69,6 +102,8 @@ void check_time(const RecordSource& source, const RecordShape& shape) {
         dataset->read(common ? Extents{0} : Extents{trial, 0}, common ? Extents{steps} : Extents{1, steps}, times);
         require_increasing(times, static_cast<std::int64_t>(trial), shape, dataset->place(),
                            common ? "" : "trial " + std::to_string(trial) + ", ");
+        for (hsize_t of = trial; of < (common ? trials : trial + 1); ++of)
+            require_times(times, static_cast<std::int64_t>(of), layout, dataset->place());
     }
 }
 
