@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
+import sys
+from collections.abc import Callable, Iterator
 
 import matplotlib
 import numpy as np
@@ -27,18 +30,40 @@ def _writer(path: str, frames_per_second: int) -> AbstractMovieWriter:
     return FFMpegWriter(fps=frames_per_second)
 
 
-def animate(trial: Trajectory, path: str, *, ellipse: str = "95", frames_per_second: int = 8) -> None:
+def animate(trial: Trajectory, path: str, *, ellipse: str = "95", frames_per_second: int = 8,
+            progress: bool | None = None) -> None:
     """Writes the trial to a .gif or .mp4."""
     trajectory.need_path(trial)
     writer = _writer(path, frames_per_second)
     poses = np.unique(np.linspace(0, len(trial["pose"]) - 1, min(len(trial["pose"]), MOST_FRAMES)).astype(int))
-    with matplotlib.rc_context(style.PRINT):
+    poses = np.r_[poses, np.repeat(poses[-1], frames_per_second)]  # the end is held for a second
+    with matplotlib.rc_context(style.PRINT), style.whole(path) as part, _said(path, progress) as said:
         frame = _Frame(trial, trajectory.ELLIPSES[ellipse][0], trajectory.ELLIPSES[ellipse][1])
-        with writer.saving(frame.picture, path, dpi=130):
-            for pose in [*poses, *[poses[-1]] * frames_per_second]:  # the end is held for a second
+        writer.setup(frame.picture, str(part), dpi=130)
+        try:
+            for done, pose in enumerate(poses):
+                said(f"{done} of {poses.size} frames")
                 frame.show(int(pose))
                 writer.grab_frame()
                 frame.picture.set_layout_engine("none")  # all frames have the layout of the first
+            said("all frames are drawn, writing")
+        except BaseException:
+            with contextlib.suppress(Exception):  # what ends it matters, not that the film is no film
+                writer.finish()
+            raise
+        writer.finish()
+
+
+@contextlib.contextmanager
+def _said(path: str, progress: bool | None) -> Iterator[Callable[[str], object]]:
+    """A function that says how far it is, on one line of the error stream; by default only on a terminal."""
+    if not (sys.stderr.isatty() if progress is None else progress):
+        yield lambda words: None
+        return
+    try:
+        yield lambda words: print(f"\r\033[K{path}: {words}", end="", file=sys.stderr, flush=True)
+    finally:
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
 class _Frame:
@@ -50,21 +75,21 @@ class _Frame:
         self.covariance, self.seen, self.nees = trial["covariance"], trial["seen"], trial["nees"]
         self.first = trial.components.index("r_x")
         self.picture, self.axis = style.one_panel(140)
-        ratio = trajectory.limits(self.axis, trial, scale)
-        self.box = self.axis.get_xlim(), self.axis.get_ylim()
-        self.picture.set_figheight(min(150, 34 + 118 / ratio) / 25.4)
-        marks = [("true path", {"color": "black", "marker": "o"}), ("features", {"color": style.GREEN, "marker": "o"}),
+        self.box = trajectory.extent(trial, scale)
+        self.picture.set_figheight(min(150, 34 + 118 / trajectory.shape(self.box)) / 25.4)
+        marks = [("true path", trajectory.TRUE_PATH | {"marker": "o"}),
+                 ("features", {"color": style.GREEN, "marker": "o"}),
                  ("estimated path", {"color": self.colour, "linestyle": "--", "marker": "+"}),
                  (called, {"color": self.colour, "marker": "o", "linestyle": "", "markerfacecolor": "none"})]
         self.entries = [(Line2D([], [], **drawn), label) for label, drawn in marks]  # type: ignore[arg-type]
 
     def show(self, pose: int) -> None:
-        axis, labels = self.axis, (self.axis.get_xlabel(), self.axis.get_ylabel())
+        axis = self.axis
         axis.clear()
         for feature in np.flatnonzero(self.seen[pose] == 1):
             axis.plot(*np.stack([self.robot[pose], self.features[pose, feature]]).T, color=style.SKY, linewidth=0.8)
         axis.plot(*self.features[pose].T, "o", color=style.GREEN)
-        axis.plot(*self.robot[:pose + 1].T, color="black", linewidth=0.9)
+        axis.plot(*self.robot[:pose + 1].T, **trajectory.TRUE_PATH)  # type: ignore[arg-type]
         axis.plot(*self.robot[pose], "o", color="black", markersize=5)
         axis.plot(*self.mean[:pose + 1].T, color=self.colour, linestyle="--", linewidth=0.9)
         axis.plot(*self.mean[pose], "+", color=self.colour, markersize=7, markeredgewidth=1.4)
@@ -73,7 +98,7 @@ class _Frame:
                                 for k in range(self.first, self.first + 2 * len(centres), 2)])
         trajectory.ellipses(centres, covariances, self.scale, axis, linewidths=0.9,
                             edgecolors=[self.colour] + [style.GREEN] * (len(centres) - 1))
-        axis.set(xlim=self.box[0], ylim=self.box[1], aspect="equal", xlabel=labels[0], ylabel=labels[1])
+        trajectory.show(axis, self.trial, self.box)
         style.key(axis, self.entries, 140)
         nees = f", NEES {self.nees[pose]:.1f} of {len(self.trial.components)}" if np.isfinite(self.nees[pose]) else ""
         self.picture.title(f"Pose {pose} of {len(self.robot) - 1}{nees}", trajectory.source(self.trial))

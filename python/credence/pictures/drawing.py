@@ -37,6 +37,7 @@ def plot(
     arms: Sequence[str] | None = None,
     width: float = style.PAGE,
     path: str | os.PathLike[str] | None = None,
+    title: bool = True,
     **options: Any,
 ) -> Picture:
     """Draws one picture, whose title says its message.
@@ -53,11 +54,15 @@ def plot(
     scenario : str, optional
         The scenario of a study.
     arms : list of str, optional
-        The arms to draw; all of them by default. An arm looks the same in every picture.
+        The arms to draw; all of them by default. An arm looks the same in every picture. A controller alone, such as
+        ``greedy``, will do if it has one arm. Of two, (A, B), ``paired`` and a ``difference`` are A - B; by default
+        these take the pairs of ``credence.compare``.
     width : float
         In millimetres: 175, a page, by default; 85 is a column.
     path : path, optional
         Where to save it as well: .pdf, .svg or .png.
+    title : bool
+        Whether it has its message and, below it, its source; without them a page says both in its caption.
     **options
         ``group`` of nees, coverage and accuracy (``all``); ``level`` of coverage (0.95); ``column`` of distribution,
         paired (``trace_P``) and sweep (``nees_ratio``); ``difference`` of sweep (False); ``arm`` of map; ``ellipse`` of
@@ -78,6 +83,9 @@ def plot(
             what = what.scenarios[scenario or next(iter(what))]
     with matplotlib.rc_context(style.PRINT):
         picture = _drawn(what, kind, arms, width, options)
+        if not title:
+            picture.leave_title_out()
+        picture.fit_labels()
     if path is not None:
         picture.save(path)
     return picture
@@ -98,19 +106,32 @@ def _first(path: str | os.PathLike[str]) -> Study | Trajectory:
 def _drawn(what: Scenario | Grid | Trajectory, kind: str | None, arms: Sequence[str] | None, width: float,
            options: dict[str, Any]) -> Picture:
     if isinstance(what, Grid):
-        return _known({"sweep": sweep.sweep}, kind or "sweep")(what, width, **options)
+        first = what.study[next(name for name in what.names.flat if name)]
+        wanted = [arm_meant(first, name) for name in arms] if arms else None
+        return _known({"sweep": sweep.sweep}, kind or "sweep")(what, width, wanted=wanted, **options)
     if isinstance(what, Trajectory):
         return _known(OF_TRIAL, kind or "path")(what, width, **options)
     draw = _known(OF_SCENARIO, kind or "nees")
     there = {name: (place, arm) for place, (name, arm) in enumerate(what.arms.items())}
-    for name in arms or []:
-        what[name]  # refuses an arm that is not there
-    chosen = {name: there[name] for name in arms or there}
+    chosen = {name: there[name] for name in ([arm_meant(what, name) for name in arms] if arms else there)}
     for name, (_, arm) in chosen.items():
         if arm.counted_trials == 0:
             why = "every trial failed" if arm.trials else "it is not run yet"
             raise ValueError(f"invalid arm {name} ({why}). Choose others with arms=[...].")
+    if draw is paired and arms:
+        options["wanted"] = list(chosen)
     return draw(what, chosen, width, **options)
+
+
+def arm_meant(scenario: Scenario, name: str) -> str:
+    """The arm that a name denotes: its own name, or that of the only arm of a controller."""
+    there = list(scenario)
+    meant = [arm for arm in there if arm == name] or [arm for arm in there if arm.partition(".")[0] == name]
+    if len(meant) == 1:
+        return meant[0]
+    if meant:
+        raise ValueError(f"invalid arm {name} (in {scenario.name} it is {' or '.join(meant)}). Give its whole name.")
+    raise ValueError(f"invalid arm {name} ({scenario.name} has no such arm). It has {', '.join(there)}.")
 
 
 def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[..., Picture]:
@@ -129,6 +150,7 @@ def animate(
     ellipse: str = "95",
     frames_per_second: int = 8,
     credence: str | None = None,
+    progress: bool | None = None,
 ) -> pathlib.Path:
     """Writes one trial as a moving picture: true and estimated path, features and ellipses, pose after pose.
 
@@ -149,6 +171,8 @@ def animate(
         Poses a second. Trials of more than 150 poses skip some.
     credence : path, optional
         The program that runs the trial again where the package's compiled module is missing.
+    progress : bool
+        Whether a line says how many frames are drawn; by default on a terminal.
 
     Returns
     -------
@@ -159,13 +183,14 @@ def animate(
         what = _first(what)
     if isinstance(what, Trajectory):
         path = pathlib.Path(path or f"{what.scenario.name}-{what.name}.gif")
-        animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second)
+        animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second,
+                          progress=progress)
         return path
     scenario = scenario or next(iter(what))
-    arm = arm or list(what.scenarios[scenario])[-1]
+    arm = arm_meant(what.scenarios[scenario], arm) if arm else list(what.scenarios[scenario])[-1]
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         file = os.path.join(folder, "trial.h5")
         program.replay(what.path, scenario, arm, trial, file, credence)
         (trajectory_of_trial,) = open_trajectories(file)
         return animate(trajectory_of_trial, path=path or f"{scenario}-{arm}-{trial}.gif", ellipse=ellipse,
-                       frames_per_second=frames_per_second)
+                       frames_per_second=frames_per_second, progress=progress)

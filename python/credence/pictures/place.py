@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
+import textwrap
 
 import numpy as np
-from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ..study import Scenario
 from ..trajectory import Trajectory, open_trajectories
@@ -16,7 +19,9 @@ from .style import Picture
 from .trials import draw_distribution, percentile
 
 COLUMNS = ("trace_P", "unseen")
-KEYS = 36.0  # millimetres between paths and distributions, for the legends of both
+LINE = 4.0  # millimetres of a line of a legend
+DISTRIBUTION = 46.0  # millimetres of its panel's height
+LABELS = 13.0  # millimetres of the ticks and the label of a panel
 
 
 def _grouped(trials: dict[str, Trajectory]) -> list[tuple[list[str], Trajectory]]:
@@ -44,39 +49,45 @@ def place(scenario: Scenario, arms: Arms, width: float, *, trial: int = 0, crede
 
 
 def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajectory]) -> Picture:
+    picture, page = Picture(width, 0), width >= style.PAGE
     paths = _grouped(trials)
-    wide = scenario.setting("features.path") == "straight"
-    rows, across = (len(paths), 1) if wide else (1, len(paths))
-    heights = [30.0 if wide else 0.95 * width / across] * rows + [KEYS, 52.0]
-    picture = Picture(width, 0)
-    grid = picture.add_gridspec(rows + 2, 2, height_ratios=heights)
-    axes = [picture.add_subplot(grid[row, :] if across == 1 else grid[row, column])
-            for row in range(rows) for column in range(across)]
-    for axis, (names, one) in zip(axes, paths, strict=True):
+    boxes = np.array([trajectory.extent(one, trajectory.ELLIPSES["95"][0]) for _, one in paths])
+    box = np.stack([boxes.min(axis=0), boxes.max(axis=0)])[[0, 1, 0, 1], range(4)]
+    across = _across(len(paths), page, trajectory.shape(box))
+    rows, keys = -(-len(paths) // across), 2 if page else 4
+    titles = [textwrap.wrap(" and ".join(names), int(width / across / 1.7)) for names, _ in paths]
+    heights = [rows * (LABELS + LINE * max(map(len, titles)) + (width / across - LABELS) / trajectory.shape(box))
+               + keys * LINE,
+               (1 if page else 2) * (LABELS + DISTRIBUTION + LINE * (len(arms) + len(scenario.published("trace_P"))))]
+    above, below = picture.subfigures(2, 1, squeeze=False, height_ratios=heights)[:, 0]
+    axes = above.subplots(rows, across, squeeze=False).ravel()
+    for axis, (_, one), title in zip(axes, paths, titles, strict=False):
         trajectory.draw_path(axis, one)
-        axis.set_title(" and ".join(names))
-    _share_limits(axes)
-    keys = picture.add_subplot(grid[rows, :])
-    keys.set_axis_off()
-    keys.legend(*axes[0].get_legend_handles_labels(), loc="upper center", ncols=5, borderaxespad=0).set_in_layout(False)
+        trajectory.show(axis, one, box)
+        axis.set_title("\n".join(title))
+        axis.xaxis.set_major_locator(MaxNLocator(nbins=max(4, int(width / across / 12))))
+    for axis in axes[len(paths):]:
+        axis.remove()
+    drawn, labels = axes[0].get_legend_handles_labels()
+    grey = Line2D([], [], color=style.GREY, linestyle="--", marker="+")  # each path has the colour of its arm
+    handles = [grey if label == "estimated path" else one for one, label in zip(drawn, labels, strict=True)]
+    above.legend(handles, labels, loc="outside lower center", ncols=-(-len(labels) // keys), borderaxespad=0)
     runs = {column: {name: one.columns[column] for name, one in trials.items()} for column in COLUMNS}
-    for place, column in enumerate(COLUMNS):
-        axis = picture.add_subplot(grid[rows + 1, place])
-        draw_distribution(axis, scenario, arms, column, width / 2, runs[column])
-        if legend := axis.get_legend():
-            legend.set_in_layout(False)
-    picture.set_figheight((20 + sum(heights)) / 25.4)
+    for column, axis in zip(COLUMNS, below.subplots(*((1, 2) if page else (2, 1))), strict=True):
+        _, entries = draw_distribution(axis, scenario, arms, column, runs[column])
+        axis.legend(*zip(*entries, strict=True), loc="lower left", bbox_to_anchor=(-0.01, 1.0), borderaxespad=0.2)
     unit = style.pretty(next(iter(arms.values()))[1].describe("trace_P").units)
-    said = {name: f"{value:.3g} {unit} ({percentile(arms[name][1]['trace_P'], value):.0f} % of the trials have less)"
-            for name, value in runs["trace_P"].items()}
-    picture.title("trace(P) at the last pose: " + ", ".join(f"{name} {words}" for name, words in said.items()),
+    found = {name: (value, percentile(arms[name][1]["trace_P"], value)) for name, value in runs["trace_P"].items()}
+    picture.title("trace(P) at the last pose: "
+                  + style.ranked(found, lambda of: f"{of[0]:.3g} {unit} ({of[1]:.0f} % of the trials have less)"),
                   f"Above trial {next(iter(trials.values())).trial}, below its place among {source(scenario)}")
+    lines = sum(text.get_text().count("\n") + 1 for text in picture.texts)
+    picture.set_figheight((8 + LINE * lines + sum(heights)) / 25.4)
     return picture
 
 
-def _share_limits(axes: list[Axes]) -> None:
-    """Gives all of them the same limits."""
-    boxes = np.array([[*axis.get_xlim(), *axis.get_ylim()] for axis in axes])
-    low, high = boxes.min(axis=0), boxes.max(axis=0)
-    for axis in axes:
-        axis.set(xlim=(low[0], high[1]), ylim=(low[2], high[3]))
+def _across(count: int, page: bool, ratio: float) -> int:
+    """How many paths are beside one another: those that are wide as roads lie below each other."""
+    if ratio > 1.6:
+        return 1
+    return min(count, 3 if count == 3 else math.ceil(math.sqrt(count))) if page and count > 2 else min(count, 2)

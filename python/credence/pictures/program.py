@@ -40,7 +40,7 @@ def said(words: list[str], program: str | None = None) -> Any:
     try:
         done = subprocess.run([found, *words], capture_output=True, text=True)
     except OSError as problem:
-        raise NoProgram(str(problem)) from None
+        raise NoProgram(f"{problem}.") from None
     if done.returncode != 0:
         raise NoProgram(done.stderr.strip())
     return json.loads(done.stdout)

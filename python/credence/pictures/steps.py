@@ -38,7 +38,7 @@ def band(degrees: FloatArray, level: float = 0.95) -> tuple[FloatArray, FloatArr
 def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str, width: float) -> Picture:
     """A ratio that is 1 for a consistent filter, with its 95 % interval and the classical band."""
     picture, axis = style.one_panel(width)
-    outside, steps, drawn, widest = {}, 0, [], 0.0
+    found, drawn, widest = {}, [], 0.0
     for name, (place, arm) in arms.items():
         degrees = arm.degrees(series[name])
         measured = degrees > 0
@@ -46,7 +46,8 @@ def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str
         ratio = means.over(np.where(measured, degrees / max(arm.counted_trials, 1), np.nan))
         mean, low, high = (values[measured] for values in (ratio.mean, *ratio.interval()))
         bounds = band(degrees[measured])
-        outside[name], steps = float(np.sum((mean < bounds[0]) | (mean > bounds[1]))), step.size
+        if step.size:
+            found[name] = float(np.average(mean, weights=degrees[measured])), float(mean.min()), float(mean.max())
         shown = style.thinned(mean, low, high)
         line = style.arm_line(place, len(arms), shown.size)
         style.interval(axis, step[shown], mean[shown], low[shown], high[shown], line, len(arms))
@@ -61,10 +62,10 @@ def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str
     style.spread_out(axis.yaxis, drawn)
     axis.set_ylabel(label)
     style.key(axis, [*style.arm_entries(places(arms)), style.band_entry("95 % if consistent")], width)
-    what = label.split(" / ")[0]
-    picture.title(f"{what} leaves the band of a consistent filter: "
-                  + style.ranked(outside, lambda count: f"at {count:.0f} of {steps} steps"),
-                  f"{source(scenario)}; shades or bars: 95 % intervals of the means")
+    picture.title(f"{label} over all steps (by step): "
+                  + style.ranked(found, lambda of: f"{of[0]:.2f} ({of[1]:.2f} to {of[2]:.2f})"),
+                  f"{source(scenario)}; shades or bars: 95 % intervals of the means; a consistent filter is outside "
+                  "the grey band at 1 step of 20")
     return picture
 
 
@@ -129,7 +130,8 @@ def chi_square(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) 
              xlim=(0, 1), ylim=(0, None))
     style.key(axis, style.arm_entries(places(arms)), width)
     picture.title("NEES exceeds the 95 % quantile of χ²: " + style.ranked(tails, lambda share: f"in {share:.1f} %")
-                  + " of trials and steps", f"{source(scenario)}; {bins} bins of equal probability")
+                  + " of trials and steps; if consistent, in 5 %",
+                  f"{source(scenario)}; {bins} bins of equal probability")
     return picture
 
 

@@ -3,11 +3,13 @@ thinned curves, and files that come out the same each time."""
 
 from __future__ import annotations
 
+import contextlib
 import io
 import itertools
 import os
+import pathlib
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -53,6 +55,23 @@ class Picture(Figure):
         self.suptitle(textwrap.fill(message, int(letters / 1.85)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
         self.supxlabel(textwrap.fill(source, int(letters / 1.5)), x=0.01, ha="left", fontsize=7, color=GREY)
 
+    def leave_title_out(self) -> None:
+        """Removes the message and the line below the picture, for a page that says both in its caption."""
+        for text in list(self.texts):
+            text.remove()
+        self._suptitle = self._supxlabel = None
+
+    def fit_labels(self) -> None:
+        """Breaks the labels that are longer than their panel."""
+        self.draw_without_rendering()
+        for axes in self.axes:
+            for label, room, across in ((axes.xaxis.label, axes.bbox.width, True),
+                                        (axes.yaxis.label, axes.bbox.height, False)):
+                extent, text = label.get_window_extent(), label.get_text()
+                length = extent.width if across else extent.height
+                if length > room and "\n" not in text:
+                    label.set_text(textwrap.fill(text, int(len(text) * room / length)))
+
     def draw(self, renderer: Any) -> None:
         with matplotlib.rc_context(PRINT):
             super().draw(renderer)
@@ -60,20 +79,33 @@ class Picture(Figure):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a .pdf, .svg or .png, the same bytes each time; a .png with 128 colours, which make it small."""
         ending = os.path.splitext(path)[1].lower()
-        if ending == ".png":
-            with Image.open(io.BytesIO(self._repr_png_())) as picture:
-                small = picture.convert("RGB").quantize(COLOURS, Image.Quantize.FASTOCTREE)
-                small.save(os.fspath(path), optimize=True, dpi=picture.info["dpi"])
-            return
-        date = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(ending)
-        with matplotlib.rc_context(PRINT):
-            self.savefig(path, metadata=date)
+        with whole(path) as part:
+            if ending == ".png":
+                with Image.open(io.BytesIO(self._repr_png_())) as picture:
+                    small = picture.convert("RGB").quantize(COLOURS, Image.Quantize.FASTOCTREE)
+                    small.save(part, optimize=True, dpi=picture.info["dpi"])
+                return
+            date = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(ending)
+            with matplotlib.rc_context(PRINT):
+                self.savefig(part, metadata=date)
 
     def _repr_png_(self) -> bytes:
         picture = io.BytesIO()
         with matplotlib.rc_context(PRINT):
             self.savefig(picture, format="png", metadata={"Software": None})
         return picture.getvalue()
+
+
+@contextlib.contextmanager
+def whole(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
+    """A name to write to, which becomes `path` once all is written: what is interrupted leaves nothing behind."""
+    target = pathlib.Path(os.path.realpath(path))
+    part = target.with_name(f".{target.stem}.part{target.suffix}")
+    try:
+        yield part
+        part.replace(target)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def one_panel(width: float, height: float = 82) -> tuple[Picture, Axes]:
@@ -140,7 +172,7 @@ def interval(axis: Axes, x: FloatArray, mean: FloatArray, low: FloatArray, high:
                   ecolor=line["color"], elinewidth=0.8)
 
 
-def ranked(values: Mapping[str, float], say: Callable[[float], str]) -> str:
+def ranked(values: Mapping[str, Any], say: Callable[[Any], str]) -> str:
     """The part of a message that names the arms: all of them up to three, else the lowest and the highest."""
     if len(values) <= 3:
         return ", ".join(f"{name} {say(value)}" for name, value in values.items())

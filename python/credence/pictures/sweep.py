@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -44,21 +43,21 @@ def slices(grid: Grid) -> Iterator[tuple[str, npt.NDArray[Any]]]:
         yield ", ".join(f"{key}={value}" for key, value in zip(others, values, strict=True)), names[place]
 
 
-def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray]) -> None:
+def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray], places: dict[str, int]) -> None:
     """`curves` {name: [value, (mean, low, high)]}: lines with bands over numbers, else marks with whiskers."""
     values = grid.coordinates[curve_key(grid)]
     numbers = values.dtype.kind == "f" and values.size > 1
     x = values if values.dtype.kind == "f" else np.arange(values.size, dtype=float)
-    for index, found in enumerate(curves.values()):
+    for index, (name, found) in enumerate(curves.items()):
         mean, low, high = found.T
         if numbers:
             shown = style.thinned(mean, low, high)
-            line = style.arm_line(index, len(curves), x.size) | {"markevery": (0, 1)}
+            line = style.arm_line(places[name], len(curves), x.size) | {"markevery": (0, 1)}
             style.interval(axis, x[shown], mean[shown], low[shown], high[shown], line, len(curves))
             axis.plot(x[shown], mean[shown], **line)
         else:
             axis.errorbar(x + style.aside(index, len(curves)), mean, yerr=np.abs([mean - low, high - mean]),
-                          linestyle="none", elinewidth=1.1, **style.arm_mark(index))
+                          linestyle="none", elinewidth=1.1, **style.arm_mark(places[name]))
     axis.set_xlabel(curve_key(grid))
     if values.dtype.kind != "f":
         axis.set_xticks(range(values.size), [str(value)[:14] for value in values])
@@ -67,23 +66,24 @@ def _draw(axis: Axes, grid: Grid, curves: dict[str, FloatArray]) -> None:
         style.logarithmic(axis.xaxis, values.min() / 1.1, values.max() * 1.1)
 
 
-def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: bool = False) -> Picture:
-    """A column along a swept key, with 95 % intervals; or its differences planned - fixed. A panel for each value of
-    the other keys, the first four of them."""
+def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: bool = False,
+          wanted: Sequence[str] | None = None) -> Picture:
+    """A column along a swept key, with 95 % intervals, of all arms or of those wanted; or its differences A - B. A
+    panel for each value of the other keys, the first four of them."""
     study, panels = grid.study, list(slices(grid))
     shown = panels[:MOST_PANELS if width >= style.PAGE else 1]
     first = study[next(name for name in grid.names.flat if name)]
-    drawn: dict[str, tuple[str, str | None]] = {arm: (arm, None) for arm in first}
+    names, all_arms = wanted or list(first), list(first)
+    drawn: dict[str, tuple[str, str | None]] = {arm: (arm, None) for arm in names}
     if difference:
-        drawn = {f"{planned} \N{MINUS SIGN} {fixed}": (planned, fixed) for planned, fixed in trials.pairs(list(first))}
-    if not drawn:
-        raise ValueError("invalid difference=True (there is no arm with a fixed one of its estimator). Leave it out.")
+        drawn = {f"{a} \N{MINUS SIGN} {b}": (a, b) for a, b in trials.need_pairs(names, wanted, "difference=True")}
+    places = {name: all_arms.index(arms[0]) for name, arms in drawn.items()}
     picture = Picture(width, 84)
     axes = picture.subplots(ncols=len(shown), sharey=True, squeeze=False)[0]
     found = [{name: np.array([mean_and_ends(study[point], arms[0], column, arms[1]) if point else [np.nan] * 3
                               for point in names]) for name, arms in drawn.items()} for _, names in shown]
     for axis, (title, _), curves in zip(axes, shown, found, strict=True):
-        _draw(axis, grid, curves)
+        _draw(axis, grid, curves, places)
         if len(shown) > 1:
             axis.set_title(title)
         if difference or column.endswith("_ratio"):
@@ -91,8 +91,8 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
     if not difference:
         style.spread_out(axes[0].yaxis, [values for curves in found for values in curves.values()])
     what = ("difference of " if difference else "") + trials.name_of(column, first)
-    axes[0].set_ylabel(textwrap.fill(what, 42))
-    entries = style.arm_entries({name: index for index, name in enumerate(drawn)})
+    axes[0].set_ylabel(what)
+    entries = style.arm_entries(places)
     if len(shown) > 1:
         style.beside(axes[-1], entries)
     else:

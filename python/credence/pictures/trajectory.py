@@ -14,7 +14,8 @@ from ..trajectory import Trajectory
 from . import style
 from .style import Picture
 
-FEATURE_COLOURS = [style.GREEN, style.PURPLE, style.ORANGE]
+FEATURES = [(style.GREEN, "o"), (style.PURPLE, "s"), (style.ORANGE, "^")]  # of more than these all look like the first
+TRUE_PATH = {"color": "#A8A8A8", "linewidth": 2.6, "markerfacecolor": "black", "markeredgecolor": "black"}
 SIGMA = "\N{GREEK SMALL LETTER SIGMA}"
 ELLIPSES = {"1-sigma": (1.0, f"1-{SIGMA} ellipses"), "95": (float(np.sqrt(stats.chi2.ppf(0.95, 2))), "95 % ellipses")}
 
@@ -47,53 +48,63 @@ def block(covariance: FloatArray, first: int) -> FloatArray:
     return covariance[:, first:first + 2, first:first + 2]
 
 
-def limits(axis: Axes, trial: Trajectory, scale: float) -> float:
-    """Sets the limits to what the trial holds, estimates with their ellipses included as far as they are within a sixth
-    of its size from the truth, and returns width / height."""
+def extent(trial: Trajectory, scale: float) -> FloatArray:
+    """[low x, high x, low y, high y] of what the trial holds: all true places, and estimates with their ellipses as far
+    as they are within a sixth of its size from the truth, with room for their marks."""
     first = trial.components.index("r_x")
     mean, truth = trial["mean"][:, first:], trial["truth"][:, first:]
-    size = float(np.ptp(truth[:, :2], axis=0).max())
+    true_places = truth.reshape(-1, 2)
+    size = float(np.ptp(true_places[np.isfinite(true_places).all(axis=1)], axis=0).max())
     reach = scale * np.sqrt(np.diagonal(trial["covariance"], axis1=1, axis2=2)[:, first:])
     near = np.abs(mean - truth) + reach < size / 6
     ends = [np.where(near, end, truth).reshape(-1, 2) for end in (mean - reach, mean + reach, truth)]
     places = np.concatenate(ends)
     places = places[np.isfinite(places).all(axis=1)]
-    low, high = places.min(axis=0) - 0.02 * size, places.max(axis=0) + 0.02 * size
+    low, high = places.min(axis=0) - 0.03 * size, places.max(axis=0) + 0.03 * size
+    return np.stack([low, high], axis=1).ravel()
+
+
+def shape(box: FloatArray) -> float:
+    """Width / height of an extent."""
+    return float((box[1] - box[0]) / (box[3] - box[2]))
+
+
+def show(axis: Axes, trial: Trajectory, box: FloatArray) -> None:
+    """Shows that extent, with the same scale in both directions."""
     unit = trial.scenario.group.attrs["length_unit"]
     unit = unit.decode() if isinstance(unit, bytes) else unit
-    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-    return float((high[0] - low[0]) / (high[1] - low[1]))
+    axis.set(xlim=box[:2], ylim=box[2:], aspect="equal", xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
 
 
-def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> float:
-    """True and estimated path, features, edges, ellipses, and lines of sight to what was seen; width / height."""
+def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> None:
+    """True and estimated path, features, edges, ellipses, and lines of sight to what was seen."""
     (robot, features), (estimate, estimates) = trial.positions("truth"), trial.positions("mean")
     seen, covariance, scale = trial["seen"], trial["covariance"], ELLIPSES[ellipse][0]
-    colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURE_COLOURS)
+    colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURES)
     if "edge" in trial:
         ends = np.stack([features[:, trial["edge_from"]], features[:, trial["edge_to"]]], axis=2).reshape(-1, 2, 2)
         axis.add_collection(LineCollection(list(ends), colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
     sights = [(robot[pose], features[pose, feature]) for pose, feature in np.argwhere(seen == 1)]
     axis.add_collection(LineCollection(sights, colors=style.SKY, linewidths=0.6 if few else 0.2, zorder=1.5,
                                        label="lines of sight"))
-    for feature in range(features.shape[1]):
-        own = FEATURE_COLOURS[feature % len(FEATURE_COLOURS)]
-        drawn = slice(None) if few else slice(-1, None)  # many stand still: their last ellipse says it all
-        ellipses(estimates[drawn, feature], block(covariance, first + 2 + 2 * feature)[drawn], scale, axis,
-                 edgecolors=own, linewidths=0.5, zorder=2.2)
-        axis.plot(*features[:, feature].T, ".-", color=own, linewidth=0.5, markersize=3, zorder=2.4,
-                  label=f"feature {feature}" if few else ("features" if feature == 0 else None))
     shown = style.thinned(*robot.T, *estimate.T)
     short = len(robot) <= 60
-    axis.plot(*robot[shown].T, color="black", marker="." if short else "", markersize=2.5, linewidth=0.9, zorder=3,
-              label="true path")
-    axis.plot(*estimate[shown].T, color=colour, marker="+" if short else "", markersize=3.5, markeredgewidth=0.7,
-              linewidth=0.8, linestyle="--", zorder=3.2, label="estimated path")
+    for feature in range(features.shape[1]):
+        own, mark = FEATURES[feature if few else 0]
+        drawn = slice(None) if few else slice(-1, None)  # many stand still: their last ellipse says it all
+        ellipses(estimates[drawn, feature], block(covariance, first + 2 + 2 * feature)[drawn], scale, axis,
+                 edgecolors=own, linewidths=0.5, zorder=3.3)
+        axis.plot(*features[:, feature].T, mark, linestyle="-", color=own, linewidth=0.5, markersize=2.6, zorder=3.4,
+                  markerfacecolor="none", markeredgewidth=0.7,
+                  label=f"feature {feature}" if few else ("features" if feature == 0 else None))
+    axis.plot(*robot[shown].T, marker="." if short else "", markersize=2.5, zorder=2.8, label="true path",
+              **TRUE_PATH)  # type: ignore[arg-type]
+    axis.plot(*estimate[shown].T, color=colour, marker="+" if short else "", markersize=5, markeredgewidth=0.7,
+              linewidth=0.9, linestyle="--", zorder=3.2, label="estimated path")
     some = np.unique(np.linspace(0, len(robot) - 1, min(len(robot), 30)).astype(int))
     ellipses(estimate[some], block(covariance, first)[some], scale, axis, edgecolors=colour, linewidths=0.6, zorder=3.1)
     axis.plot([], [], "o", color=style.GREY, markersize=6, markerfacecolor="none", markeredgewidth=0.6,
               label=ELLIPSES[ellipse][1])
-    return limits(axis, trial, scale)
 
 
 def need_path(trial: Trajectory) -> None:
@@ -105,7 +116,10 @@ def path(trial: Trajectory, width: float, *, ellipse: str = "95") -> Picture:
     """The trial in the plane, in a picture as high as the path asks for."""
     need_path(trial)
     picture, axis = style.one_panel(width)
-    ratio = draw_path(axis, trial, ellipse)
+    draw_path(axis, trial, ellipse)
+    box = extent(trial, ELLIPSES[ellipse][0])
+    show(axis, trial, box)
+    ratio = shape(box)
     entries = list(zip(*axis.get_legend_handles_labels(), strict=True))
     if ratio > 1.6 or width < style.PAGE:
         picture.set_figheight((34 + (width - 22) / ratio) / 25.4)
@@ -139,9 +153,15 @@ def errors(trial: Trajectory, width: float) -> Picture:
         outside[trial.components[component]] = float(np.sum(np.abs(error) > half))
     style.step_axis(axes[-1], pose, "pose")
     style.key(axes[0], [style.band_entry("95 % of what P says")], width)
+    measured = int(np.isfinite(trial.errors[:, 0]).sum())
     picture.title("Errors leave the 95 % of what P says: " + style.ranked(outside, lambda count: f"at {count:.0f}")
-                  + f" of {np.isfinite(trial.errors[:, 0]).sum()} poses", source(trial))
+                  + f" of {measured} poses{_by_chance(measured)}", source(trial))
     return picture
+
+
+def _by_chance(poses: int) -> str:
+    """What a consistent filter has of that."""
+    return f" (a consistent filter: at about {poses / 20:.0f})"
 
 
 def nees(trial: Trajectory, width: float) -> Picture:
@@ -157,5 +177,5 @@ def nees(trial: Trajectory, width: float) -> Picture:
     style.key(axis, [style.band_entry(f"95 % of χ²({n})")], width)
     there = np.isfinite(values)
     picture.title(f"NEES lies outside the 95 % of χ²({n}) at {np.sum((values < low) | (values > high))} of "
-                  f"{there.sum()} poses", source(trial))
+                  f"{there.sum()} poses{_by_chance(there.sum())}", source(trial))
     return picture

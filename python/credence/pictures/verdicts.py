@@ -17,7 +17,8 @@ from .steps import Arms, source
 from .style import Picture
 
 GAPS_UP_TO = 30  # steps with a white gap between them; of more, the gaps would be all that is seen
-DARKEST = 2.0  # log2 of the ratio: a factor of 4
+REACH = np.log2(1.25), 2.0  # the least and the largest log2 of the ratio with the darkest colour: factors of 1.25 and 4
+TICKS = (1, 2, 0.5, 4, 0.25, 1.4, 0.7, 1.2, 0.85, 1.1, 0.9, 1.25, 0.8)  # the sooner, the rather it is labelled
 
 
 def _report(scenario: Scenario, arms: Arms, credence: str | None) -> dict[str, dict[str, Any]]:
@@ -72,14 +73,24 @@ def ratio_map(scenario: Scenario, arms: Arms, width: float, *, arm: str | None =
     ratios = np.array([group["anees"]["ratio"] for group in part["groups"]], dtype=float)
     logs = np.log2(np.where(ratios > 0, ratios, np.nan))
     picture, axis = style.one_panel(width, 40 + 6.5 * len(groups))
-    reach = float(np.clip(np.nanmax(np.abs(logs)), 0.25, DARKEST))
+    reach = float(np.clip(np.nanmax(np.abs(logs)), *REACH))
     _cells(picture, axis, _thinned_columns(logs), arms[name][1], reach)
     axis.set_yticks(range(len(groups)), groups)
     axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group")
     row, column = np.unravel_index(np.nanargmax(np.abs(logs)), logs.shape)
-    picture.title(f"{name} is {part['verdict']}: {groups[row]} is off most, NEES is {ratios[row, column]:.2f} of its "
-                  f"dimension at step {int(arms[name][1]['step'][column])}", source(scenario))
+    picture.title(f"{name} is {part['verdict']}: NEES / dimension is farthest from 1 with {ratios[row, column]:.2f}, "
+                  f"of {groups[row]} at step {int(arms[name][1]['step'][column])}", source(scenario))
     return picture
+
+
+def _ticks(reach: float, height: float) -> list[float]:
+    """The labelled levels of a colour bar of so many millimetres: those that have room for their text."""
+    kept: list[float] = []
+    for tick in TICKS:
+        level = np.log2(tick)
+        if abs(level) <= 1.001 * reach and all(abs(level - np.log2(other)) > 8 * reach / height for other in kept):
+            kept.append(tick)
+    return sorted(kept)
 
 
 def _thinned_columns(logs: FloatArray) -> FloatArray:
@@ -102,7 +113,7 @@ def _cells(picture: Picture, axis: Any, logs: FloatArray, arm: Arm, reach: float
         gaps = {"edgecolors": "white", "linewidth": 0.3}
     image = axis.pcolormesh(edges, np.arange(rows + 1) - 0.5, logs, cmap="RdBu_r", vmin=-reach, vmax=reach, **gaps)
     style.step_axis(axis, steps)
-    ticks = [tick for tick in (0.25, 0.5, 0.7, 0.85, 1, 1.2, 1.4, 2, 4) if abs(np.log2(tick)) <= reach * 1.001]
+    ticks = _ticks(reach, 12 + 6.5 * rows)
     bar = picture.colorbar(image, ax=axis, ticks=np.log2(ticks), extend="both", aspect=18, pad=0.02)
     bar.ax.set_yticklabels([f"{tick:g}" for tick in ticks])
     bar.ax.minorticks_off()
