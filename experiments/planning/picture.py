@@ -7,7 +7,7 @@ import csv
 import sys
 from pathlib import Path
 
-from credence.pictures.style import ARM_COLOURS, ARM_MARKERS, BAND, GREY, PAGE, Picture, PRINT
+from credence.pictures.style import BAND, BLUE, PAGE, VERMILION, Picture, PRINT
 from matplotlib import rc_context
 
 WORLDS = {"document": "σ_head = 0.001", "0.01": "σ_head = 0.01", "0.1": "σ_head = 0.1", "landmarks": "landmark loop"}
@@ -24,32 +24,32 @@ def interval(report: Path, arm: str, column: str) -> tuple[float, float]:
     raise SystemExit(f"{report} has no {column} of {arm}")
 
 
-def main(folder: Path, output: Path) -> None:
-    picture = Picture(PAGE, 78)
-    axes = picture.subplots(1, len(WORLDS), sharex=True, sharey=True)
+def draw(folder: Path) -> Picture:
+    """A row for each controller, so that no mark hides another, and in it both measures on one scale."""
+    rows = [(name, "{}-baselines.csv", f"{name}.ekf") for name in BASELINES]
+    rows += [(f"greedy, {name}", f"{{}}-{name}.csv", "greedy.ekf") for name in CRITERIA]
+    picture = Picture(PAGE, 92)
+    axes = picture.subplots(1, len(WORLDS), sharey=True)
     for panel, (stem, title) in zip(axes, WORLDS.items()):
-        points = [(name, folder / f"criteria-{stem}-baselines.csv", f"{name}.ekf") for name in BASELINES]
-        points += [(name, folder / f"criteria-{stem}-{name}.csv", "greedy.ekf") for name in CRITERIA]
-        for i, (name, report, arm) in enumerate(points):
-            planned = i >= len(BASELINES)
-            place = i - len(BASELINES) if planned else i
-            colour = ARM_COLOURS[place] if planned else GREY
-            (x, x_half), (y, y_half) = interval(report, arm, "trace_P"), interval(report, arm, "pose_error")
-            panel.errorbar(x, y, y_half, x_half, color=colour, marker=ARM_MARKERS[place],
-                           markersize=5, linestyle="", elinewidth=0.8, markerfacecolor=colour if planned else "none",
-                           label=f"greedy, {name}" if planned else name)
-        panel.set(xscale="log", yscale="log", title=title, xlabel="trace(P)")
+        for column, label, mark, colour, aside in (("trace_P", "trace(P)", "o", BLUE, -0.18),
+                                                   ("pose_error", "squared pose error", "s", VERMILION, 0.18)):
+            found = [interval(folder / f"criteria-{report.format(stem)}", arm, column) for _, report, arm in rows]
+            panel.errorbar([mean for mean, _ in found], [row + aside for row in range(len(rows))],
+                           xerr=[half for _, half in found], color=colour, marker=mark, markersize=4.5, linestyle="",
+                           elinewidth=0.8, markerfacecolor=colour if mark == "o" else "white", label=label)
+        panel.set(xscale="log", title=title)
         panel.grid(color=BAND, linewidth=0.5)
-    axes[0].set_ylabel("squared pose error")
-    handles, labels = axes[0].get_legend_handles_labels()
-    picture.legend(handles, labels, loc="outside right center")
+        panel.axhline(len(BASELINES) - 0.5, color="black", linewidth=0.5)
+    axes[0].set_yticks(range(len(rows)), [name for name, _, _ in rows])
+    axes[0].set(ylim=(len(rows) - 0.5, -0.5))
+    picture.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     picture.title("Planning by trace(P) buys trace(P), which following the features does nearly as well; planning for "
                   "the pose buys the pose's accuracy and gives up the features",
                   "dm² + rad²; heading model, ranged noise: bash experiments/planning/criteria.sh; means with 95 % "
                   "intervals")
-    picture.save(output)
+    return picture
 
 
 if __name__ == "__main__":
     with rc_context(PRINT):
-        main(Path(sys.argv[1]), Path(sys.argv[2]))
+        draw(Path(sys.argv[1])).save(Path(sys.argv[2]))

@@ -15,6 +15,7 @@ import h5py
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SEED = ROOT / "experiments" / "seed"
+CONTROLLERS = ("fixed", "greedy", "horizon", "follow", "nearest", "random", "waypoints")
 CREDENCE = os.environ.get("CREDENCE")  # the program, where the package has no compiled module
 
 
@@ -61,6 +62,23 @@ def single_arm():
     return made("single", "ekf-circle-ranged", "--trials=10", "--set=arms.controllers=fixed")
 
 
+def arms(count: int):
+    """A study of one estimator under so many controllers."""
+    options = ["--set=control.waypoints=2 0, 4 2"] if "waypoints" in CONTROLLERS[:count] else []
+    return made(f"arms-{count}", "ekf-circle-ranged", "--trials=40",
+                f"--set=arms.controllers={','.join(CONTROLLERS[:count])}", *options)
+
+
+def waypoints():
+    return made("waypoints", "ekf-circle-ranged", "--trials=40", "--set=control.waypoints=2 0, 4 2",
+                "--set=arms.controllers=waypoints,greedy")
+
+
+def landmarks():
+    """Landmarks about a loop, of which the planner's robot leaves out most."""
+    return made("landmarks", "../planning/landmark-loop", "--trials=10")
+
+
 def swept():
     return made("swept", "ekf-circle-ranged", "--trials=60", "--set=scenario.name=base",
                 "--sweep=noise.heading=0.01,0.1", "--sweep=sensor.noise=constant,ranged")
@@ -72,9 +90,10 @@ def many_steps():
 
 
 @functools.cache
-def trajectory(arm: str = "greedy.ekf", trial: int = 17) -> pathlib.Path:
-    path = folder() / f"{arm}-{trial}.h5"
-    program("replay", two_scenarios(), "--scenario=ekf-circle-ranged", f"--arm={arm}", f"--trial={trial}", "-o", path)
+def trajectory(arm: str = "greedy.ekf", trial: int = 17, of: str = "") -> pathlib.Path:
+    path = folder() / f"{of}{arm}-{trial}.h5"
+    study, scenario = (landmarks(), "landmark-loop") if of else (two_scenarios(), "ekf-circle-ranged")
+    program("replay", study, f"--scenario={scenario}", f"--arm={arm}", f"--trial={trial}", "-o", path)
     return path
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib.util
 import itertools
 import shutil
 import subprocess
@@ -13,11 +15,12 @@ import pytest
 import studies
 
 import credence
-from credence.pictures import style, trials
+from credence.pictures import style, trials, verdicts
 from credence.pictures.__main__ import main
 from credence.pictures.drawing import OF_SCENARIO, OF_TRIAL
 
-MAKERS = {1: studies.single_arm, 2: studies.one_scenario, 12: studies.twelve_arms}
+MAKERS = {1: studies.single_arm, 2: studies.one_scenario, 12: studies.twelve_arms,
+          **{count: functools.partial(studies.arms, count) for count in (3, 5, 7)}}
 
 
 def drawn(*given, **options):
@@ -92,15 +95,16 @@ def test_thinned_curves_keep_their_extremes():
     assert style.thinned(np.arange(7)).tolist() == list(range(7))
 
 
-SIZES = [(1, style.PAGE), (2, style.PAGE), (2, style.COLUMN), (12, style.PAGE), (12, style.COLUMN)]
-CASES = [(kind, *size) for kind in OF_SCENARIO for size in SIZES if kind != "place" or size in SIZES[:2]]
+SIZES = [(1, style.PAGE), (2, style.PAGE), (2, style.COLUMN), (3, style.PAGE), (3, style.COLUMN), (5, style.PAGE),
+         (7, style.PAGE), (12, style.PAGE), (12, style.COLUMN)]
+CASES = [(kind, *size) for kind in OF_SCENARIO for size in SIZES]
 
 
 @pytest.mark.parametrize(("kind", "count", "width"), CASES)
-def test_every_kind_is_drawn_with_one_two_and_twelve_arms(kind, count, width):
+def test_every_kind_is_drawn_with_any_number_of_arms(kind, count, width):
     options = {"credence": studies.CREDENCE} if kind in ("verdicts", "map", "place") else {}
     if count == 1 and kind == "paired":
-        with pytest.raises(ValueError, match="there is no arm with a fixed one"):
+        with pytest.raises(ValueError, match="no arm has that of a simpler controller"):
             credence.plot(MAKERS[count](), kind)
         return
     picture = drawn(MAKERS[count](), kind, width=width, **options)
@@ -112,6 +116,138 @@ def test_every_kind_is_drawn_with_one_two_and_twelve_arms(kind, count, width):
         arms = [f"{planned} \N{MINUS SIGN} {fixed}" for planned, fixed in trials.pairs(arms)]
     if kind not in ("map", "place"):
         assert [name for name in names if name in arms] == arms
+
+
+@pytest.mark.parametrize("make", [*MAKERS.values(), studies.waypoints])
+def test_pairs_are_those_of_compare(make):
+    with credence.open(make()) as study:
+        found = trials.pairs([arm.name for arm in study.arms])
+    expected = [] if make is studies.single_arm else studies.printed("compare", make())
+    assert found == [(part["a"], part["b"]) for part in expected]
+
+
+def test_two_arms_that_are_named_are_subtracted():
+    for names in (("fixed.ekf", "greedy.ekf"), ("nearest", "random")):  # a controller with one arm stands for it
+        picture = drawn(studies.arms(7), "paired", arms=names)
+        a, b = (name if "." in name else f"{name}.ekf" for name in names)
+        with credence.open(studies.arms(7)) as study:
+            less = 100 * np.mean(study[a].trace_P < study[b].trace_P)
+        assert [entry.split(":")[0] for entry in legend(picture)] == [f"{a} \N{MINUS SIGN} {b}"]
+        assert f"{a} than {b} in {less:.0f} %" in picture._suptitle.get_text().replace("\n", " ")
+    picture = drawn(studies.swept(), column="trace_P", difference=True, arms=("fixed", "greedy"))
+    assert legend(picture) == ["fixed.ekf \N{MINUS SIGN} greedy.ekf"]
+    with pytest.raises(ValueError, match=r"invalid arm fixed \(in ekf-circle-ranged it is fixed.ekf or fixed.ideal"):
+        credence.plot(studies.twelve_arms(), "paired", arms=("fixed", "greedy"))
+    with pytest.raises(ValueError, match=r"invalid arm nix \(ekf-circle-ranged has no such arm\). It has waypoints.ekf"):
+        credence.plot(studies.waypoints(), "nees", arms=["nix"])
+
+
+@pytest.mark.parametrize("kind", ["distribution", "paired"])
+@pytest.mark.parametrize("column", ["trace_P", "unseen", "pose_error"])
+def test_the_labels_of_every_column_fit_into_a_column_of_a_page(kind, column):
+    drawn(studies.one_scenario(), kind, column=column, width=style.COLUMN)
+
+
+def test_no_place_is_cut_at_the_edge_of_a_path():
+    for arm in ("fixed.ekf", "greedy.ekf"):  # the planner's robot stays near the edge of what there is
+        for width in (style.COLUMN, style.PAGE):
+            (trial,) = credence.open_trajectories(studies.trajectory(arm, 0, "landmarks"))
+            picture = drawn(trial, "path", width=width)
+            (axis,) = picture.axes
+            robot, features = trial.positions("truth")
+            shown = axis.transData.transform(np.concatenate([robot, features.reshape(-1, 2)]))
+            mark = 2.5 * picture.dpi / 72  # half of the longest mark, the cross of an estimate: five points
+            assert (shown - mark >= axis.bbox.min).all()
+            assert (shown + mark <= axis.bbox.max).all()
+
+
+def test_no_mark_of_a_path_hides_another():
+    picture = drawn(studies.trajectory(), "path")
+    lines = {line.get_label(): line for line in picture.axes[0].lines}
+    true, estimated = lines["true path"], lines["estimated path"]
+    assert true.get_zorder() < estimated.get_zorder()
+    assert true.get_linewidth() > 2 * estimated.get_linewidth()
+    assert estimated.get_marker() == "+"  # its true place is seen between the bars
+    features = [lines[f"feature {feature}"] for feature in range(3)]
+    assert len({line.get_marker() for line in features}) == 3  # also in a print without colours
+    assert all(line.get_markerfacecolor() == "none" for line in features)
+    picture = drawn(studies.two_scenarios(), "place", credence=studies.CREDENCE)
+    marks = [line for line in picture.axes[-1].lines if len(line.get_xdata()) == 1]
+    assert len(marks) == 4
+    assert all(line.get_markerfacecolor() == "none" for line in marks)
+
+
+def test_the_caption_of_a_ratio_says_how_far_it_is_from_1_and_what_chance_does():
+    with credence.open(studies.one_scenario()) as study:
+        picture = drawn(study, "nees")
+        title = picture._suptitle.get_text().replace("\n", " ")
+        assert title.startswith("NEES / dimension over all steps (by step): ")
+        for arm in study.arms:
+            ratio = arm.nees / arm.dimension("nees")
+            expected = f"{arm.name} {ratio.mean():.2f} ({ratio.min():.2f} to {ratio.max():.2f})"
+            assert expected in title
+    assert "outside the grey band at 1 step of 20" in picture._supxlabel.get_text().replace("\n", " ")
+    for kind in ("nees", "errors"):
+        title = drawn(studies.trajectory(), kind)._suptitle.get_text().replace("\n", " ")
+        assert title.endswith("poses (a consistent filter: at about 1)")
+
+
+def test_a_map_of_a_consistent_filter_is_pale_and_labelled(monkeypatch):
+    def report(scenario, arms, credence):
+        steps = arms["fixed.ekf"][1]["step"].size
+        ratios = 1 + 0.06 * np.sin(np.arange(steps))
+        return {"fixed.ekf": {"verdict": "consistent", "groups": [
+            {"group": name, "anees": {"ratio": ratios.tolist()}} for name in ("all", "pose")]}}
+
+    monkeypatch.setattr(verdicts, "_report", report)
+    for width in (style.PAGE, style.COLUMN):
+        picture = drawn(studies.one_scenario(), "map", arm="fixed.ekf", width=width)
+        (cells,) = [one for one in picture.axes[0].collections if one.get_array() is not None]
+        red, green, blue, _ = cells.cmap(cells.norm(np.log2([0.94, 1.06]))).T
+        assert min(red.min(), green.min(), blue.min()) > 0.65  # near white: of the darkest cells, 0.02 to 0.4
+        labels = [float(label.get_text()) for label in picture.axes[1].get_yticklabels()]
+        assert len(labels) >= 3
+        assert 1 in labels
+        assert min(labels) < 1 < max(labels)
+
+
+def test_the_levels_of_a_colour_bar_do_not_touch():
+    for reach in (np.log2(1.25), 0.6, 1, 2):
+        for height in (18, 45, 90):
+            ticks = np.log2(verdicts._ticks(reach, height))
+            assert len(ticks) >= 3
+            assert np.diff(ticks).min() * height / (2 * reach) > 3  # millimetres; the text is 2.6 high
+
+
+def test_the_title_can_be_left_out(tmp_path):
+    picture = credence.plot(studies.one_scenario(), "nees", title=False)
+    assert picture.texts == []
+    assert main(given(studies.one_scenario(), "-o", tmp_path, "--kind", "nees", "--no-title")) == 0
+    assert (tmp_path / "ekf-circle-ranged-nees.png").read_bytes() == saved(picture, tmp_path)
+
+
+def saved(picture, folder):
+    picture.save(folder / "one.png")
+    return (folder / "one.png").read_bytes()
+
+
+def test_no_mark_of_the_planning_page_hides_another(tmp_path):
+    found = importlib.util.spec_from_file_location("picture", studies.ROOT / "experiments/planning/picture.py")
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    for world in module.WORLDS:  # all controllers have the same means
+        for name in ("baselines", *module.CRITERIA):
+            arms = [f"{one}.ekf" for one in module.BASELINES] if name == "baselines" else ["greedy.ekf"]
+            rows = [f"s,{arm},,,{column},,1,,0.9,1.1" for arm in arms for column in ("trace_P", "pose_error")]
+            (tmp_path / f"criteria-{world}-{name}.csv").write_text("\n".join(rows))
+    picture = module.draw(tmp_path)
+    picture.canvas.draw()
+    for axis in picture.axes:
+        places = np.concatenate([line.get_xydata() for line in axis.lines if line.get_marker() in ("o", "s")])
+        shown = axis.transData.transform(places)
+        apart = np.linalg.norm(shown[:, None] - shown[None], axis=2) + np.eye(len(shown)) * 1e6
+        assert len(shown) == 20
+        assert apart.min() > 4.5 * picture.dpi / 72  # a mark's size
 
 
 def test_an_arm_looks_the_same_when_it_is_drawn_alone():
@@ -142,7 +278,7 @@ def test_the_message_has_the_numbers_of_the_study():
         assert all(f"{name} {value:.4g}" in title for name, value in medians.items()), title
         difference = study["greedy.ekf"].trace_P - study["fixed.ekf"].trace_P
         title = drawn(study, "paired")._suptitle.get_text()
-        assert f"greedy.ekf in {100 * np.mean(difference < 0):.0f} %" in title, title
+        assert f"greedy.ekf than fixed.ekf in {100 * np.mean(difference < 0):.0f} %" in title, title
 
 
 def test_the_percentile_of_a_published_run_is_that_of_the_report():
@@ -162,6 +298,11 @@ def test_a_map_has_the_colours_of_its_values():
     ratios = np.array([group["anees"]["ratio"] for group in parts["fixed.ekf"]["groups"]])
     np.testing.assert_allclose(np.asarray(cells.get_array()).reshape(ratios.shape), np.log2(ratios))
     assert picture.axes[1].get_yticklabels()[0].get_text()
+
+
+def test_a_swept_arm_looks_the_same_when_it_is_drawn_alone():
+    colours = [[line.get_color() for line in drawn(studies.swept(), arms=arms).axes[0].lines] for arms in (None, ["greedy"])]
+    assert colours[0][1] == colours[1][0] != colours[0][0]
 
 
 @pytest.mark.parametrize("width", [style.PAGE, style.COLUMN])
@@ -201,6 +342,30 @@ def test_a_trial_moves(tmp_path, monkeypatch):
     assert again.read_bytes() == path.read_bytes()
     with pytest.raises(ValueError, match="must end in"):
         credence.animate(trajectory, path=tmp_path / "trial.png")
+
+
+def test_a_film_says_how_far_it_is(tmp_path, capsys):
+    credence.animate(studies.trajectory(), path=tmp_path / "trial.gif", progress=True)
+    said = capsys.readouterr().err
+    assert "trial.gif: 0 of 28 frames" in said
+    assert "trial.gif: 27 of 28 frames" in said
+    credence.animate(studies.trajectory(), path=tmp_path / "trial.gif")
+    assert capsys.readouterr().err == ""  # not a terminal
+
+
+@pytest.mark.parametrize(("words", "place"), [(["--kind", "animation"], "credence.pictures.animation.PillowWriter"),
+                                              (["--kind", "path"], "credence.pictures.style.Picture")])
+def test_what_is_interrupted_leaves_nothing_behind(words, place, tmp_path, monkeypatch, capsys):
+    def interrupted(*given, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(f"{place}.{'grab_frame' if 'Pillow' in place else 'savefig'}", interrupted)
+    assert main([str(studies.trajectory()), "-o", str(tmp_path), *words]) == 130
+    assert capsys.readouterr().err == "credence.pictures: interrupted (0 files are written). Run it again.\n"
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(KeyboardInterrupt):
+        credence.animate(studies.trajectory(), path=tmp_path / "trial.gif")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_film_needs_ffmpeg(tmp_path, monkeypatch):
@@ -248,6 +413,38 @@ def test_the_command_says_what_aggregates_do_not_hold(tmp_path, capsys):
     assert "keeps aggregates. They need the trials" in capsys.readouterr().err
     assert not list(tmp_path.glob("*distribution*"))
     assert list(tmp_path.glob("*verdicts*"))
+
+
+def test_the_command_draws_the_pairs_of_any_arms(tmp_path):
+    assert main(given(studies.waypoints(), "-o", tmp_path, "--kind", "paired", "--vector", "svg")) == 0
+    assert len(list(tmp_path.glob("*-paired-*.png"))) == 3
+    assert main(given(studies.arms(7), "-o", tmp_path / "two", "--kind", "paired", "--arms", "random,follow")) == 0
+    assert len(list((tmp_path / "two").glob("*-paired-*.png"))) == 3
+
+
+def test_the_command_films_a_trial(tmp_path):
+    words = ["--kind", "animation", "--scenario", "ekf-circle-ranged", "--arms", "greedy", "--trial", "17"]
+    assert main(given(studies.two_scenarios(), "-o", tmp_path, *words)) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["ekf-circle-ranged-animation-greedy.ekf.gif"]
+
+
+@pytest.mark.parametrize(("make", "words", "said"), [
+    (studies.single_arm, ["--kind", "paired"], "no picture of paired (no arm has that of a simpler controller and the "
+                                               "same estimator beside it). Choose two by --arms A,B."),
+    (studies.single_arm, ["--kind", "sweep"], "no picture of sweep (it is of a grid). Give a study of credence run "),
+    (studies.single_arm, ["--kind", "path"], "no picture of path (it is of a trial). Give what credence replay -o wrote."),
+    (studies.swept, ["--kind", "nees"], "no picture of nees (it is of single scenarios). Name points of the grid by "),
+    (studies.trajectory, ["--kind", "verdicts"], "no picture of verdicts (it is of a study). Give what credence run -o "),
+    (studies.aggregates, ["--kind", "paired"], "keeps aggregates. They need the trials (credence run --keep trials)."),
+    (studies.single_arm, ["--arms", "nix"], "invalid arm nix (ekf-circle-ranged has no such arm). It has fixed.ekf.")])
+def test_a_command_that_draws_nothing_says_why(make, words, said, tmp_path, capsys):
+    assert main(given(make(), "-o", tmp_path / "none", *words)) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("credence.pictures: no picture")
+    assert said in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "none").exists()
 
 
 def test_the_command_refuses_bad_input(tmp_path, capsys):

@@ -83,7 +83,7 @@ def main(arguments: Sequence[str]) -> int:
               "copy.", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"credence.pictures: interrupted. The {written} files that are written are whole.", file=sys.stderr)
+        print(f"credence.pictures: interrupted ({written} files are written). Run it again.", file=sys.stderr)
         return 130
     if not written:
         print("credence.pictures:", " ".join(dict.fromkeys(left_out)), file=sys.stderr)

@@ -83,7 +83,8 @@ def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> None:
     colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURES)
     if "edge" in trial:
         ends = np.stack([features[:, trial["edge_from"]], features[:, trial["edge_to"]]], axis=2).reshape(-1, 2, 2)
-        axis.add_collection(LineCollection(list(ends), colors="#B8B8B8", linewidths=0.5, zorder=1, label="edges"))
+        axis.add_collection(LineCollection(list(ends), colors="#A0A0A0", linewidths=0.6, linestyles=":",
+                                           zorder=1, label="edges"))
     sights = [(robot[pose], features[pose, feature]) for pose, feature in np.argwhere(seen == 1)]
     axis.add_collection(LineCollection(sights, colors=style.SKY, linewidths=0.6 if few else 0.2, zorder=1.5,
                                        label="lines of sight"))
