@@ -71,6 +71,21 @@ std::string start_of(const std::string& path, std::size_t most) {
     }
 }
 
+/// A merge has up to a thousand files open, so the library's cache for each must be small. It has a fixed size: to evict what
+/// is closed, the library searches all of its cache each time an object is closed.
+void limit_cache(const Handle& access) {
+    constexpr std::size_t size = 128 << 10;
+    H5AC_cache_config_t config;
+    config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    check(H5Pget_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
+    config.set_initial_size = true;
+    config.initial_size = config.min_size = config.max_size = size;
+    config.incr_mode = H5C_incr__off;
+    config.flash_incr_mode = H5C_flash_incr__off;
+    config.decr_mode = H5C_decr__off;
+    check(H5Pset_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
+}
+
 }  // namespace
 
 Handle open_file(const std::string& path) {
@@ -84,8 +99,7 @@ Handle open_file(const std::string& path) {
     // No lock is needed: finished files appear whole under their name, and locking fails on some file systems.
     check(H5Pset_file_locking(access.id(), false, true), "/", "HDF5 refuses its access properties");
 #endif
-    // A merge has up to a thousand files open, so the library's cache for each must be small.
-    check(H5Pset_evict_on_close(access.id(), true), "/", "HDF5 refuses its access properties");
+    limit_cache(access);
     if (const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()); file >= 0)
         return {file, H5Fclose, whole, ""};
     const Error refused = failure(whole, "is truncated or damaged");
