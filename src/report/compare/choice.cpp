@@ -64,8 +64,8 @@ public:
         }
         if (pairs_.empty())
             throw InputError("nothing to compare in " + files_[0].path +
-                             " (no arm has that of a simpler controller and the same estimator beside it). Give --arms A,B: " +
-                             contents(files_[0]) + ".");
+                             " (no arm has that of a simpler controller and the same estimator beside it). " + remedy_of_one() +
+                             ": " + contents(files_[0]) + ".");
     }
 
     /// Pairs every arm of a later file with the first file's arm of the same name.
@@ -108,6 +108,14 @@ private:
         const ChosenPair pair{{in_a, a, label(file_a, a)}, {in_b, b, label(file_b, b)}, files_[file_a], files_[file_b]};
         if (file_a != file_b) check_same_world(pair);
         pairs_.push_back(pair);
+    }
+
+    /// An option that compares two arms of the only file, or what to do where no scenario of it has two.
+    std::string remedy_of_one() const {
+        for (const ScenarioResults& results : files_[0].study.scenarios)
+            if (results.arms.size() > 1)
+                return "Choose two arms, such as --arms " + results.arms[0].name + "," + results.arms[1].name;
+        return "Give a further file to compare its arm with";
     }
 
     void leave_out(const ScenarioResults& results, const std::string& why) {
