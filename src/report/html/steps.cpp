@@ -8,6 +8,7 @@
 #include "report/words.hpp"
 
 #include <cmath>
+#include <numeric>
 
 namespace credence::page {
 
@@ -15,20 +16,26 @@ namespace {
 
 constexpr std::size_t most_rows = 60;
 
-/// The caption, and the steps that have a row.
-std::string captioned(const std::string& caption, int steps) {
-    const std::size_t count = static_cast<std::size_t>(steps);
+/// The caption, and how many of the steps have a row.
+std::string captioned(const std::string& caption, std::size_t count) {
     if (count <= most_rows) return caption;
     return caption + " (every " + std::to_string((count + most_rows - 1) / most_rows) + " steps; JSON has all)";
 }
 
+/// A row for each of these steps, or for some of them.
+template <class Cells>
+Html by_step(const std::string& caption, const std::vector<std::size_t>& steps, std::vector<std::string> heads, const Cells& cells) {
+    heads.insert(heads.begin(), "step");
+    Table table(captioned(caption, steps.size()), std::move(heads));
+    for (const std::size_t i : thinned(steps.size(), most_rows)) table.row(std::to_string(steps[i] + 1), cells(steps[i]));
+    return html_of(table);
+}
+
 template <class Cells>
 Html by_step(const std::string& caption, int steps, std::vector<std::string> heads, const Cells& cells) {
-    heads.insert(heads.begin(), "step");
-    Table table(captioned(caption, steps), std::move(heads));
-    for (const std::size_t k : thinned(static_cast<std::size_t>(steps), most_rows))
-        table.row(std::to_string(k + 1), cells(k));
-    return html_of(table);
+    std::vector<std::size_t> all(static_cast<std::size_t>(steps));
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return by_step(caption, all, std::move(heads), cells);
 }
 
 std::string name_of(const ArmReport& arm) { return arm.scenario + ", " + arm.arm; }
@@ -67,7 +74,7 @@ Html chart_table(const ArmReport& arm, const ChartEvidence& chart) {
 }
 
 Html nis_table(const ArmReport& arm, const NisEvidence& nis) {
-    return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", arm.evidence.steps,
+    return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", observed(nis.nis.ratio),
                    {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Cell> {
                        return {short_cell(nis.nis.ratio[k]), short_cell(nis.nis.degrees[k]), range_cell(nis.nis.band[k]),
                                range_cell(nis.nis.simultaneous_band[k])};

@@ -2,6 +2,8 @@
 
 #include "report/html/charts/chart.hpp"
 
+#include "report/format.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -49,6 +51,17 @@ std::string outline(std::size_t series) {
 }
 
 }  // namespace
+
+std::string shortened(const std::string& text, std::size_t most) {
+    if (characters(text) <= static_cast<int>(most)) return text;
+    std::string start;
+    for (std::size_t i = 0, count = 0; i < text.size(); ++i) {
+        if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80 && ++count == most) break;
+        start += text[i];
+    }
+    const std::size_t blank = start.find_last_of(' ');
+    return start.substr(0, blank == std::string::npos || blank < start.size() / 2 ? start.size() : blank) + "…";
+}
 
 std::string series_class(std::size_t series) { return "s" + std::to_string(series % distinct); }
 
@@ -101,8 +114,13 @@ void Svg::mark(ChartPoint at, std::size_t series, const std::string& hover, cons
 
 void Svg::text(ChartPoint at, Anchor anchor, const std::string& text, const std::string& classes) {
     const char* const anchors[] = {"start", "middle", "end"};
-    body_ += "<text" + attribute("class", classes) + attribute("x", at.x) + attribute("y", at.y) +
-             attribute("text-anchor", anchors[static_cast<int>(anchor)]) + ">" + escaped(text).text() + "</text>\n";
+    constexpr double of_character = 6.2;  // about, in a wide font
+    const double room = width_ - 4, asked = of_character * characters(text), length = std::min(room, asked),
+                 before = length * static_cast<int>(anchor) / 2, x = std::clamp(at.x, 2 + before, 2 + before + room - length);
+    body_ += "<text" + attribute("class", classes) + attribute("x", x) + attribute("y", at.y) +
+             attribute("text-anchor", anchors[static_cast<int>(anchor)]) +
+             (asked > room ? attribute("textLength", room) + attribute("lengthAdjust", "spacingAndGlyphs") : "") + ">" +
+             escaped(text).text() + "</text>\n";
 }
 
 Html Svg::html(const std::string& id, const std::string& title, const std::string& description) const {
@@ -131,9 +149,7 @@ void Axes::draw(Svg& svg) const {
     }
     for (std::size_t i = 0; i < across.size(); ++i) {
         svg.line({x(across[i]), y.from}, {x(across[i]), y.from + 4}, "axis");
-        const double half =
-            3.3 * static_cast<double>(across_texts[i].size());  // about; a long text stays in the drawing
-        svg.text({std::clamp(x(across[i]), half, svg.width() - half), y.from + 15}, Anchor::middle, across_texts[i]);
+        svg.text({x(across[i]), y.from + 15}, Anchor::middle, across_texts[i]);
     }
     svg.line({x.from, y.from}, {x.to, y.from}, "axis");
     if (!x_label.empty()) svg.text({(x.from + x.to) / 2, y.from + 29}, Anchor::middle, x_label, "label name");

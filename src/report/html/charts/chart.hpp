@@ -21,7 +21,11 @@ struct Scale {
     double operator()(double value) const;
 };
 
-/// Round numbers within [low, high], about `about` of them: multiples of 1, 2 or 5 times a power of ten; on a
+/// A scale over these ends, which are moved where there would be none: a logarithmic one begins above 0, none ends beyond
+/// what doubles can subtract, and its ends differ.
+Scale scale_between(ScaleKind kind, double low, double high, double from, double to);
+
+/// Round numbers within [low, high], about `about` of them and few more: multiples of 1, 2 or 5 times a power of ten; on a
 /// logarithmic scale of more than a decade 1, 2 and 5 times powers of ten, or only those.
 std::vector<double> ticks(const Scale& scale, int about);
 
@@ -41,7 +45,10 @@ struct Range {
 /// Which of `count` points in a row to draw: all, or about `most` at equal distances, the first and the last included.
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most);
 
-/// The same for a line: of each stretch its lowest and its highest value are kept.
+/// The steps of a series at which it has a value.
+std::vector<std::size_t> observed(const std::vector<double>& values);
+
+/// The same for a line through values that are numbers: of each stretch its lowest and its highest are kept.
 std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most);
 
 struct ChartPoint {
@@ -53,6 +60,9 @@ enum class Anchor { start, middle, end };
 /// The class of a series by its number, s0 ... s11: colour and dash of its lines. The first six have a colour each; the
 /// second six have these once more, with other dashes and hollow marks.
 std::string series_class(std::size_t series);
+
+/// The first words of a text, and a sign that more follow, where it has more than `most` characters.
+std::string shortened(const std::string& text, std::size_t most);
 
 /// One drawing. `classes` are names from the style sheet; a `hover` text appears under the pointer.
 class Svg {
@@ -67,6 +77,7 @@ public:
     void box(ChartPoint corner, ChartPoint opposite, const std::string& classes, const std::string& hover = {});
     /// A mark of a series, by its number: one of six shapes, filled or hollow, of the series' class if of no other.
     void mark(ChartPoint at, std::size_t series, const std::string& hover, const std::string& classes = {});
+    /// It is moved, and made narrower where it must be, so that it lies within the drawing.
     void text(ChartPoint at, Anchor anchor, const std::string& text, const std::string& classes = "label");
     /// With `title` and `description` as its text alternative; `id` is unique on the page.
     Html html(const std::string& id, const std::string& title, const std::string& description) const;

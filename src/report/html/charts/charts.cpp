@@ -31,10 +31,8 @@ struct Rows {
     void draw(Svg& svg) const {
         constexpr std::size_t longest = 14;
         for (std::size_t row = 0; row < names.size(); ++row) {
-            const std::string& name = names[row];
             const double middle = top + row_height() * (static_cast<double>(row) + 0.5);
-            svg.text({left - 8, middle + 4}, Anchor::end,
-                     name.size() > longest ? name.substr(0, longest - 1) + "…" : name, "label row");
+            svg.text({left - 8, middle + 4}, Anchor::end, shortened(names[row], longest), "label row");
         }
     }
 };

@@ -49,11 +49,8 @@ private:
         Axes{x_, y_, axis_.key, label, has_numbers() ? 6 : 0, 5}.draw(svg_);
         if (has_numbers()) return;
         constexpr std::size_t longest = 12;
-        for (std::size_t i = 0; i < axis_.values.size(); ++i) {
-            const std::string& value = axis_.values[i];
-            svg_.text({across(i), bottom + 15}, Anchor::middle,
-                      value.size() > longest ? value.substr(0, longest - 1) + "…" : value);
-        }
+        for (std::size_t i = 0; i < axis_.values.size(); ++i)
+            svg_.text({across(i), bottom + 15}, Anchor::middle, shortened(axis_.values[i], longest));
     }
 
     /// A line through the means with its band; marks and whiskers at single points, and where values are missing.

@@ -40,7 +40,7 @@ Html spectrum_chart(const Part& part) {
     for (std::size_t i = 0; i < part.arms.size(); ++i) {
         const DirectionsFound& found = part.arms[i]->consistency.directions;
         const double y = top + row * (static_cast<double>(i) + 0.5);
-        svg.text({left - 8, y + 4}, Anchor::end, part.arms[i]->arm.substr(0, 14), "label row");
+        svg.text({left - 8, y + 4}, Anchor::end, shortened(part.arms[i]->arm, 14), "label row");
         if (found.spectrum.empty()) continue;
         const std::string says = part.arms[i]->arm + ": " + short_number(found.spectrum.front()) + " to " +
                                  short_number(found.spectrum.back()) + ", all within " + short_number(found.range.low) +
@@ -71,6 +71,7 @@ Html ellipse_chart(const Part& part, std::size_t i) {
     const DirectionOfGroup *largest = of_state(found.largest), *smallest = of_state(found.smallest);
     if (largest == nullptr || smallest == nullptr) return {};
     constexpr double width = 360, height = 250, room = 88;
+    constexpr std::size_t most = 72;
     const ChartPoint centre{width / 2, 112};
     const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio), unit = room / std::max({1.0, wide, high});
     Svg svg(width, height);
@@ -80,8 +81,8 @@ Html ellipse_chart(const Part& part, std::size_t i) {
         svg.mark({centre.x + side * unit * wide, centre.y}, i, largest->name + ": " + short_number(wide));
         svg.mark({centre.x, centre.y + side * unit * high}, i, smallest->name + ": " + short_number(high));
     }
-    svg.text({width / 2, height - 26}, Anchor::middle, "→ " + largest->name.substr(0, 56));
-    svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + smallest->name.substr(0, 56));
+    svg.text({width / 2, height - 26}, Anchor::middle, "→ " + shortened(largest->name, most));
+    svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + shortened(smallest->name, most));
     const std::string says = arm.arm + ": the errors are " + short_number(wide) + " times as large as P says along " +
                              largest->name + ", and " + short_number(high) + " times along " + smallest->name;
     return chart(arm.arm + ": errors (line) against P (circle)",

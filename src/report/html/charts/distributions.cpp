@@ -56,14 +56,13 @@ void draw_bars(Svg& svg, const Scale& x, const Histogram& histogram, double foot
 }
 
 /// The whole range; wider where it is only a bin or two, such as for values that do not vary.
-Scale scale_over(Range edges, BinWidths widths, std::size_t bins) {
-    const bool ratio = widths == BinWidths::ratio;
+Scale scale_over(Range edges, bool ratio, std::size_t bins) {
     if (bins < 5) {
         const double spread = edges.high - edges.low;
         edges.include(ratio ? edges.low / 2 : edges.low - 4 * spread);
         edges.include(ratio ? edges.high * 2 : edges.high + 4 * spread);
     }
-    return {ratio ? ScaleKind::logarithmic : ScaleKind::linear, edges.low, edges.high, left, right};
+    return scale_between(ratio ? ScaleKind::logarithmic : ScaleKind::linear, edges.low, edges.high, left, right);
 }
 
 void draw_published(Svg& svg, const Scale& x, const ColumnReport& column, double foot) {
@@ -105,10 +104,14 @@ Html distribution(const Part& part, const std::string& name, const std::vector<S
         bins = std::max(bins, sample.column->histogram->counts.size());
         edges.include(sample.column->histogram->edges.front());
         edges.include(sample.column->histogram->edges.back());
-        if (sample.column->published) edges.include(sample.column->published->value);
     }
+    const bool ratio = std::ranges::all_of(
+        samples, [](const Sample& sample) { return sample.column->histogram->widths == BinWidths::ratio; });
+    for (const Sample& sample : samples)  // a logarithmic axis has no place for what is not positive: it is at the end
+        if (const auto& published = sample.column->published; published && (!ratio || published->value > 0))
+            edges.include(published->value);
     const std::string title = column_words(name, samples.front().column->unit);
-    const Scale x = scale_over(edges, samples.front().column->histogram->widths, bins);
+    const Scale x = scale_over(edges, ratio, bins);
     const double foot = top + row * static_cast<double>(samples.size()) - 14;
     Svg svg(width, foot + 48);
     std::string described;
@@ -124,7 +127,7 @@ Html difference(const Comparison& pair, const ComparedColumn& column, const std:
     Range edges;
     for (const double value : {paired.histogram.edges.front(), paired.histogram.edges.back(), 0.0})
         edges.include(value);
-    const Scale x = scale_over(edges, BinWidths::equal, paired.histogram.counts.size());
+    const Scale x = scale_over(edges, false, paired.histogram.counts.size());
     constexpr double foot = top + row - 18;
     Svg svg(width, foot + 58);
     const std::string shares = percent(paired.wins_a) + " below, " + percent(paired.wins_b) + " above" +

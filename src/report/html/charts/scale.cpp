@@ -19,14 +19,16 @@ double measure(ScaleKind kind, double value) {
     return value;
 }
 
+/// The numbers are counted by an integer: beyond 2^53 a double stays the same when 1 is added.
 std::vector<double> linear_ticks(double low, double high, int about) {
-    const double rough = (high - low) / std::max(1, about), power = std::pow(10, std::floor(std::log10(rough)));
+    const double rough = high / about - low / about, power = std::pow(10, std::floor(std::log10(rough)));
     double step = 10 * power;
     for (const double factor : {5.0, 2.0, 1.0})
         if (factor * power >= 0.999 * rough) step = factor * power;
+    if (!(step > 0)) return {};  // it is below every double
+    const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
     std::vector<double> found;
-    for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
-        found.push_back(i == 0 ? 0 : i * step);
+    for (int i = 0; i <= about && first + i <= last; ++i) found.push_back((first + i) * step + 0.0);
     return found;
 }
 
@@ -54,6 +56,19 @@ std::string power_text(double tick) {
 
 }  // namespace
 
+Scale scale_between(ScaleKind kind, double low, double high, double from, double to) {
+    constexpr double least = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max() / 4,
+                     nearest = 1e-12;  // closer ends could not be told apart, neither by ticks nor by their texts
+    if (kind == ScaleKind::logarithmic) {
+        low = std::clamp(low, least, most / 2);
+        return {kind, low, std::clamp(high, low * (1 + nearest), most), from, to};
+    }
+    low = std::clamp(low, -most, most);
+    high = std::clamp(high, -most, most);
+    const double lacking = std::max({1e-300, nearest * std::abs(low), nearest * std::abs(high)}) - (high - low);
+    return lacking > 0 ? Scale{kind, low - lacking, high + lacking, from, to} : Scale{kind, low, high, from, to};
+}
+
 double Scale::operator()(double value) const {
     const double first = measure(kind, low), last = measure(kind, high);
     const double share = (measure(kind, std::clamp(value, low, high)) - first) / (last - first);
@@ -61,8 +76,9 @@ double Scale::operator()(double value) const {
 }
 
 std::vector<double> ticks(const Scale& scale, int about) {
-    if (about <= 0 || !(scale.low < scale.high)) return {};
-    if (scale.kind == ScaleKind::logarithmic && scale.high > 10 * scale.low)
+    const bool logarithmic = scale.kind == ScaleKind::logarithmic;
+    if (about <= 0 || !(scale.low < scale.high) || std::isinf(scale.high) || (logarithmic && !(scale.low > 0))) return {};
+    if (logarithmic && scale.high > 10 * scale.low)
         return logarithmic_ticks(scale.low, scale.high, about);
     return linear_ticks(scale.low, scale.high, about);
 }
@@ -93,11 +109,10 @@ Scale Range::scale(double from, double to, double logarithmic_from) const {
     constexpr double margin = 0.04;
     if (known && low > 0 && high > logarithmic_from * low) {
         const double more = std::exp(margin * (std::log(high) - std::log(low)));
-        return {ScaleKind::logarithmic, std::max(low / more, std::numeric_limits<double>::min()),
-                std::min(high * more, std::numeric_limits<double>::max()), from, to};
+        return scale_between(ScaleKind::logarithmic, low / more, high * more, from, to);
     }
     const double spread = high > low ? high - low : std::max(1e-9, std::abs(low));
-    return {ScaleKind::linear, low - margin * spread, high + margin * spread, from, to};
+    return scale_between(ScaleKind::linear, low - margin * spread, high + margin * spread, from, to);
 }
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
@@ -106,6 +121,13 @@ std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
     for (std::size_t i = 0; i < count; i += apart) chosen.push_back(i);
     if (count > 0 && chosen.back() != count - 1) chosen.push_back(count - 1);
     return chosen;
+}
+
+std::vector<std::size_t> observed(const std::vector<double>& values) {
+    std::vector<std::size_t> steps;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (!std::isnan(values[k])) steps.push_back(k);
+    return steps;
 }
 
 std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most) {

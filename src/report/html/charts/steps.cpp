@@ -44,12 +44,21 @@ Scale upward(const std::vector<Panel>& panels) {
     return range.scale(bottom, top, 5);
 }
 
+/// The steps through which a line is drawn, of those with a value: a sensor may speak at every tenth step.
+std::vector<std::size_t> line_steps(const std::vector<double>& values) {
+    const std::vector<std::size_t> steps = observed(values);
+    std::vector<double> known;
+    for (const std::size_t k : steps) known.push_back(values[k]);
+    std::vector<std::size_t> chosen;
+    for (const std::size_t i : thinned_line(known, most_line_points)) chosen.push_back(steps[i]);
+    return chosen;
+}
+
 void draw_band(Svg& svg, const Axes& axes, const std::vector<Interval>& band, const std::string& classes) {
     std::vector<double> heights;
     for (const Interval& interval : band) heights.push_back(interval.high);
     std::vector<ChartPoint> upper, lower;
-    for (const std::size_t k : thinned_line(heights, most_line_points)) {
-        if (std::isnan(band[k].low)) continue;
+    for (const std::size_t k : line_steps(heights)) {
         const double step = static_cast<double>(k) + 1;
         for (const double x : {step - 0.5, step + 0.5}) {
             upper.push_back({axes.x(x), axes.y(band[k].high)});
@@ -79,16 +88,14 @@ std::string hover(const Series& series, std::size_t k) {
 /// another, and at the last.
 void draw_series(Svg& svg, const Axes& axes, const Series& series, std::size_t place, std::size_t among) {
     const std::vector<double>& values = series.ratio->ratio;
-    const auto at = [&](std::size_t k) {
-        return ChartPoint{axes.x(static_cast<double>(k) + 1), std::isnan(values[k]) ? values[k] : axes.y(values[k])};
-    };
+    const auto at = [&](std::size_t k) { return ChartPoint{axes.x(static_cast<double>(k) + 1), axes.y(values[k])}; };
     std::vector<ChartPoint> line;
-    for (const std::size_t k : thinned_line(values, most_line_points)) line.push_back(at(k));
+    for (const std::size_t k : line_steps(values)) line.push_back(at(k));
     svg.path(line, "line " + series_class(series.number));
-    const std::vector<std::size_t> places = thinned(values.size(), most_marks);
+    const std::vector<std::size_t> steps = observed(values), places = thinned(steps.size(), most_marks);
     for (std::size_t i = 0; i < places.size(); ++i)
         if (among <= 2 || i % among == place || i + 1 == places.size())
-            svg.mark(at(places[i]), series.number, hover(series, places[i]));
+            svg.mark(at(steps[places[i]]), series.number, hover(series, steps[places[i]]));
 }
 
 std::string description(const Panel& panel, const std::string& measure) {
