@@ -26,6 +26,12 @@ std::string padded(const std::string& text, int width, bool right) {
 std::string number(double value, int digits) {
     if (!std::isfinite(value)) return "-";
     char buffer[64];
+    if (digits > 6 && std::abs(value) < 1e6) {
+        if (value == 0) return "0";
+        const int significant = digits + 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
+        std::snprintf(buffer, sizeof buffer, "%#.*g", std::clamp(significant, 2, 10), value);
+        return buffer;
+    }
     const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -digits) && digits >= 6;
     if (vanishes) std::snprintf(buffer, sizeof buffer, "%.2g", value);
     else if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
@@ -42,15 +48,20 @@ std::string short_number(double value) {
     return std::string(buffer, end);
 }
 
-int decimals_for(double uncertainty) {
-    if (!(uncertainty > 0) || std::isinf(uncertainty)) return 4;
-    return std::clamp(1 - static_cast<int>(std::floor(std::log10(uncertainty))), 0, 6);
+int decimals_for(double uncertainty, double value) {
+    const auto decimals = [](double of, int digits) {
+        return std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(of))));
+    };
+    if (uncertainty > 0 && std::isfinite(uncertainty)) return decimals(uncertainty, 2);
+    return value != 0 && std::isfinite(value) ? std::max(4, decimals(std::abs(value), 4)) : 4;
 }
+
+std::string half_width_text(double half, int digits) { return half == 0 ? "0" : number(half, digits); }
 
 std::string with_interval(double mean, const Interval& interval) {
     const double half = half_width(interval);
-    const int digits = decimals_for(half);
-    return !std::isfinite(half) ? number(mean, digits) : number(mean, digits) + " ± " + number(half, digits);
+    const int digits = decimals_for(half, mean);
+    return number(mean, digits) + (std::isfinite(half) ? " ± " + half_width_text(half, digits) : "");
 }
 
 std::string duration_text(double seconds) {

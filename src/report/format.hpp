@@ -20,16 +20,20 @@ std::string aligned(const std::string& text, int width, bool right = true);
 /// The same, with at least one blank.
 std::string padded(const std::string& text, int width, bool right = true);
 
-/// A number; `-` where it is not finite, so that neither `nan` nor `inf` appears in a sentence.
+/// A number to so many decimals, beyond six of them to ten significant digits at most; `-` where it is not finite, so that
+/// neither `nan` nor `inf` appears in a sentence.
 std::string number(double value, int digits);
 
 /// Five significant digits, whole numbers in full; `-` for values that are not finite. The same in every locale.
 std::string short_number(double value);
 
-/// Decimals that show two digits of the uncertainty, at most 6.
-int decimals_for(double uncertainty);
+/// Decimals that show two digits of the uncertainty; of a value without one four, or as many as show four of its digits.
+int decimals_for(double uncertainty, double value = 0);
 
 inline double half_width(const Interval& interval) { return (interval.high - interval.low) / 2; }
+
+/// A half-width to two significant digits at least, and 0 as `0`.
+std::string half_width_text(double half, int digits);
 
 /// `mean ± half-width`
 std::string with_interval(double mean, const Interval& interval);

@@ -78,7 +78,7 @@ Cell number_cell_as(double value, const std::string& shown) {
 
 Cell number_cell(double value, int digits) { return number_cell_as(value, number(value, digits)); }
 
-Cell number_cell_within(double value, double uncertainty) { return number_cell(value, decimals_for(uncertainty)); }
+Cell number_cell_within(double value, double uncertainty) { return number_cell(value, decimals_for(uncertainty, value)); }
 
 Cell count_cell(double value) { return number_cell_as(value, short_number(value)); }
 
@@ -96,9 +96,9 @@ Cell interval_cell(const Interval& interval, int digits) {
 
 Cell mean_cell(double mean, const Interval& interval) {
     const double half = half_width(interval);
-    const int digits = decimals_for(half);
+    const int digits = decimals_for(half, mean);
     if (!std::isfinite(mean) || !std::isfinite(half)) return number_cell(mean, digits);
-    return number_cell(mean, digits) + " ± " + number(half, digits);
+    return number_cell(mean, digits) + " ± " + half_width_text(half, digits);
 }
 
 Cell share_cell(double share) { return number_cell_as(share, percent(share)); }

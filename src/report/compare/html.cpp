@@ -36,8 +36,8 @@ Html means_table(const ComparedPair& pair) {
                     {"column", "A = " + pair.comparison.a, "B = " + pair.comparison.b});
     for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
         const ComparedColumn& one = pair.comparison.columns[f];
-        const Interval& interval = one.paired.difference.ci95;
-        const int digits = decimals_for(half_width(interval));
+        const Summary& difference = one.paired.difference;
+        const int digits = decimals_for(half_width(difference.ci95), difference.mean);
         table.row(column_words(one.name, one.unit),
                   {number_cell(pair.a.mean[f], digits), number_cell(pair.b.mean[f], digits)});
     }

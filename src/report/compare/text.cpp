@@ -18,7 +18,7 @@ namespace {
 
 /// Decimals that show two digits of the mean difference's uncertainty.
 int decimals_of(const PairedComparison& paired) {
-    return decimals_for(half_width(paired.difference.ci95));
+    return decimals_for(half_width(paired.difference.ci95), paired.difference.mean);
 }
 
 /// `10000 pairs`, or the lowest and highest number; of several comparisons also the number of those that have run.

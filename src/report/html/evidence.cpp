@@ -33,8 +33,8 @@ Html groups_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const GroupEvidence* group : shown_groups(evidence)) {
             const Interval over_steps = over_steps95(*group);
-            const int digits = decimals_for(half_width(over_steps)),
-                      ratio_digits = decimals_for(half_width(group->accuracy.ratio_ci95));
+            const int digits = decimals_for(half_width(over_steps), group->run.mean),
+                      ratio_digits = decimals_for(half_width(group->accuracy.ratio_ci95), group->accuracy.ratio);
             rows.row(
                 group->name,
                 {count_cell(group->dimension), number_cell(group->run.mean, digits), interval_cell(over_steps, digits),
@@ -66,7 +66,7 @@ Html charts_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const ChartEvidence& chart : evidence.charts) {
             const Interval over_steps = t_interval(chart.run);
-            const int digits = decimals_for(half_width(over_steps));
+            const int digits = decimals_for(half_width(over_steps), chart.run.mean);
             rows.row(chart.name,
                      {chart.chart, number_cell(chart.run.mean, digits), interval_cell(over_steps, digits),
                       number_cell_within(chart.run.standard_error, chart.run.standard_error),
@@ -101,7 +101,7 @@ Html nis_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const NisEvidence& nis : evidence.nis) {
             const double half = half_width(std::isnan(nis.ratio95.low) ? nis.scale95 : nis.ratio95);
-            const int digits = decimals_for(half);
+            const int digits = decimals_for(half, nis.ratio);
             rows.row(nis.part, {count_cell(nis.degrees), number_cell(nis.ratio, digits),
                                          interval_cell(nis.ratio95, digits), interval_cell(nis.scale95, digits + 1),
                                          of_steps(nis.nis.outside_simultaneous, nis.nis.observed),

@@ -60,7 +60,7 @@ Html arms_table(const Part& part) {
     Table table(part.scenario.name + ": columns of the trials", heads);
     add_rows(part, table, [&](const ColumnReport& one) {
         const Summary& s = one.summary;
-        const int digits = decimals_for(half_width(s.ci95));
+        const int digits = decimals_for(half_width(s.ci95), s.mean);
         std::vector<Cell> cells{number_cell(s.mean, digits), interval_cell(s.ci95, digits),
                                 one.bootstrap95 ? interval_cell(*one.bootstrap95, digits) : Cell(),
                                 number_cell(s.median, digits), number_cell(s.standard_deviation, digits)};
@@ -75,7 +75,7 @@ Html spread_table(const Part& part) {
     for (const double p : reported_quantiles) heads.push_back(number(100 * p, 0) + " % quantile");
     Table table(part.scenario.name + ": how the columns are distributed", heads);
     add_rows(part, table, [](const ColumnReport& one) {
-        const int digits = decimals_for(half_width(one.summary.ci95));
+        const int digits = decimals_for(half_width(one.summary.ci95), one.summary.mean);
         std::vector<Cell> cells{count_cell(static_cast<double>(one.summary.count)),
                                 number_cell_within(one.summary.standard_error, one.summary.standard_error)};
         for (const double quantile : one.quantiles) cells.push_back(number_cell(quantile, digits));
@@ -95,7 +95,7 @@ Html difference_table(const Comparison& pair) {
         const PairedComparison& paired = one.paired;
         if (paired.pairs == 0) continue;
         const Summary& s = paired.difference;
-        const int digits = decimals_for(half_width(s.ci95));
+        const int digits = decimals_for(half_width(s.ci95), s.mean);
         table.row(column_words(one.name, one.unit),
                   {number_cell(s.mean, digits), interval_cell(s.ci95, digits), interval_cell(paired.bootstrap95, digits),
                    number_cell(s.median, digits), share_cell(paired.wins_a), share_cell(paired.wins_b), share_cell(paired.ties),
@@ -113,7 +113,7 @@ Html difference_spread_table(const Comparison& pair) {
         table.row(
             column_words(one.name, one.unit),
             {count_cell(static_cast<double>(one.paired.pairs)), number_cell_within(s.standard_error, s.standard_error),
-             number_cell(s.standard_deviation, decimals_for(half_width(s.ci95))), number_cell(one.paired.wilcoxon_z, 2),
+             number_cell(s.standard_deviation, decimals_for(half_width(s.ci95), s.mean)), number_cell(one.paired.wilcoxon_z, 2),
              p_cell(one.paired.wilcoxon_p)});
     }
     return html_of(table);

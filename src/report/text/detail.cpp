@@ -18,7 +18,7 @@ std::string published_text(const PublishedPlace& published) {
 
 std::vector<Cell> column_cells(const std::string& label, const Summary& s, const std::optional<Interval>& bootstrap,
                                const std::string& last) {
-    const int digits = decimals_for(half_width(s.ci95));
+    const int digits = decimals_for(half_width(s.ci95), s.mean);
     return {label, mean_cell(s.mean, s.ci95), bootstrap ? interval_cell(*bootstrap, digits) : Cell(),
             number_cell(s.median, digits), number_cell(s.standard_deviation, digits), last};
 }
