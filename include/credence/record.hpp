@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,6 +24,17 @@ struct RecordTrouble {
     Status status = Status::non_finite;  ///< a diverged trial stays in the series, the others are left out
 };
 
+/// Steps within a record's runs that do not exist: their error and covariance are NaN. Of the runs that did not fail.
+struct RecordGaps {
+    std::int64_t steps = 0, missing = 0;   ///< of all runs
+    std::int64_t runs = 0;                 ///< that lack a step
+    std::int64_t trial = 0, of_trial = 0;  ///< the run that lacks most, and how many steps it lacks
+    std::vector<std::int64_t> by_step;     ///< runs that lack the step
+    /// NEES/dim of the whole state at the steps beside a gap and at the others, means over the runs that have both, and the
+    /// difference over its standard error; NaN for fewer than ten such runs.
+    double beside = std::numeric_limits<double>::quiet_NaN(), elsewhere = beside, difference = beside;
+};
+
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
 /// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
 /// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and
@@ -30,7 +42,8 @@ struct RecordTrouble {
 ///   the file;
 /// - NIS and its series are only there with innovations, and `products` are of all trials;
 /// - of version 2, a series may lack a value at some steps of a trial: its own `present` and `runs` count [results.hpp];
-/// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state;
+/// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state; it and trace(P)
+///   are of the components that have the unit of most of them, where units are given;
 /// - `distribution_distance` is exact up to 2^24 values; beyond, it is empty and `cells` are used, but over 4096 steps
 ///   `cells` are empty, and `distribution_distance` is NaN where the values were too many.
 struct Record {
@@ -38,6 +51,7 @@ struct Record {
     bool has_innovations = false;
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
+    RecordGaps gaps{};
     std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
     std::function<Record()> in_other_chart{};  ///< reads the record again, with its errors in the other chart; else empty
 };

@@ -31,6 +31,15 @@ struct ColumnReport {
     std::optional<Histogram> histogram;     ///< of the columns that may have a published value; none likewise
 };
 
+/// How most of an arm's failed trials ended, and at which pose most of these did.
+struct FailureCause {
+    Status status = Status::completed;
+    std::int64_t trials = 0;                ///< that ended so
+    std::int64_t pose = -1;                 ///< -1 where no trial is kept
+    std::int64_t at_pose = 0;               ///< trials that ended so at this pose
+    std::string place;                      ///< what a pose is called: `pose`, or `step` of a record
+};
+
 struct ArmReport {
     std::string scenario, arm;
     std::int64_t trials = 0;                ///< all that are present; 0: the arm has not run yet
@@ -39,6 +48,8 @@ struct ArmReport {
     std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
+    std::optional<FailureCause> cause{};    ///< none where no trial failed
+    RecordGaps gaps{};                      ///< of a record
 
     bool not_run() const { return trials == 0; }
     /// The largest share of failed trials without the verdict `failed`.

@@ -26,6 +26,15 @@ void hint_at_known_start(const Record& record, Consistency& verdict) {
             "step are left out where their errors are 0 too");
 }
 
+/// Steps that were left out because their errors were large leave large ones beside them.
+void hint_at_gaps(const RecordGaps& gaps, Consistency& verdict) {
+    constexpr double surely = 4, clearly = 1.2;
+    if (gaps.difference > surely && gaps.beside > clearly * gaps.elsewhere)
+        verdict.hints.push_back("steps are missing beside large errors: NEES/dim is " + number(gaps.beside, 2) +
+                                " at the steps beside a gap and " + number(gaps.elsewhere, 2) +
+                                " at the others; write the steps with large errors, too");
+}
+
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
 void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vector<std::string>& sentences) {
     if (!evidence.joint || evidence.trials == 0) return;
@@ -75,7 +84,9 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     report.arms.push_back(report_arm(results, results.arms.front(), bootstrap_seed, limits));
     results.arms.clear();  // large, and of no further use
     ArmReport& arm = report.arms.front();
+    arm.gaps = record.gaps;
     hint_at_known_start(record, arm.consistency);
+    hint_at_gaps(arm.gaps, arm.consistency);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_chart(record, arm);
     return report;

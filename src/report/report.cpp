@@ -3,6 +3,8 @@
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
+#include <map>
+#include <tuple>
 
 #include "base/nan.hpp"
 #include "report/words.hpp"
@@ -53,6 +55,21 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
     return report;
 }
 
+std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmResults& arm) {
+    const std::vector<std::int64_t> counts = status_counts(results, arm);
+    const auto most = std::max_element(counts.begin() + 1, counts.end());  // after `completed`
+    if (*most == 0) return std::nullopt;
+    FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0, results.blocks.empty() ? "step" : "pose"};
+    if (results.keep == Keep::aggregates) return cause;
+    const std::size_t column = status_column(results.columns);
+    const std::vector<double> statuses = column_values(results, arm, column), poses = column_values(results, arm, column + 1);
+    std::map<std::int64_t, std::int64_t> at;
+    for (std::size_t i = 0; i < statuses.size(); ++i)
+        if (statuses[i] == static_cast<double>(cause.status)) ++at[static_cast<std::int64_t>(poses[i])];
+    std::tie(cause.pose, cause.at_pose) = *std::ranges::max_element(at, {}, [](const auto& one) { return one.second; });
+    return cause;
+}
+
 /// Rounding may have changed it too much.
 void leave_out_nees(std::vector<ColumnReport>& columns) {
     for (ColumnReport& column : columns) {
@@ -72,6 +89,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std:
     leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
     report.diverged = report.evidence.diverged;
+    report.cause = cause_of(results, arm);
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));
     if (!report.evidence.groups.empty() && is_rounded(report.evidence.groups.front(), limits))

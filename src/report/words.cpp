@@ -45,12 +45,23 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
     return parts;
 }
 
-/// How many trials failed, where that decides the verdict.
+/// `: 512 with status non_finite, 400 of these at pose 1`
+std::string cause_text(const ArmReport& arm) {
+    if (!arm.cause) return {};
+    const FailureCause& cause = *arm.cause;
+    const std::string text = ": " + std::to_string(cause.trials) + " with status " +
+                             status_names()[static_cast<std::size_t>(cause.status)];
+    if (cause.at_pose == 0) return text;
+    return text + ", " + (cause.at_pose == cause.trials ? "all" : std::to_string(cause.at_pose)) + " of these at " +
+           cause.place + " " + std::to_string(cause.pose);
+}
+
+/// How many trials failed, and how, where that decides the verdict.
 std::string failed_text(const ArmReport& arm) {
     if (arm.consistency.verdict != Verdict::failed) return {};
     return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) + " trials failed" +
            (arm.diverged > 0 ? " (" + std::to_string(arm.diverged) + " of them diverged)" : "") + ", more than " +
-           short_number(100 * arm.consistency.limits.failed) + " %";
+           short_number(100 * arm.consistency.limits.failed) + " %" + cause_text(arm);
 }
 
 std::string needed_text(const TrialsNeeded& needed) {
@@ -94,23 +105,6 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     std::ranges::copy(suspicion_texts(verdict.suspicions), std::back_inserter(reasons));
     if (const std::string text = needed_text(verdict.trials_needed); !text.empty()) reasons.push_back(text);
     return reasons;
-}
-
-/// The trials of a record that are left out of the numbers, the first of them by name.
-void add_troubles(const Report& report, std::vector<std::string>& lines) {
-    constexpr std::size_t most = 5;
-    const std::size_t shown = std::min(most, report.troubles.size());
-    for (std::size_t i = 0; i < shown; ++i) {
-        const RecordTrouble& trouble = report.troubles[i];
-        const std::string trial = std::to_string(trouble.trial);
-        lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
-                        std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status) ? "; the trial is left out of the numbers." : "; the trial is kept in the numbers."));
-    }
-    std::int64_t failed = 0;
-    for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
-    if (shown > 0 && failed > static_cast<std::int64_t>(shown))
-        lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
 }
 
 }  // namespace
@@ -167,10 +161,10 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
     const Consistency& verdict = arm.consistency;
     std::vector<Reason> reasons;
-    if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}});
+    if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}, true});
     const auto list = [&](const std::string& what, const std::string& measure, bool directions = false) {
         if (auto parts = findings_parts(verdict.findings, what, directions); !parts.empty())
-            reasons.push_back({what + " (" + measure + "):", std::move(parts)});
+            reasons.push_back({what + " (" + measure + "):", std::move(parts), true});
     };
     list("optimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
     list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
@@ -191,42 +185,6 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     for (const Finding& caution : verdict.cautions) reasons.push_back({"note, " + sentence(caution), {}});
     for (const std::string& text : undecided_reasons(arm)) reasons.push_back({text, {}});
     return reasons;
-}
-
-std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
-                                       const FailureWords& words) {
-    std::vector<std::string> lines;
-    const std::int64_t failed = counts.left_out + counts.diverged;
-    const std::string of = " trials of " + arm;
-    if (too_many_failed(failed, counts.trials, limit))
-        lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of + " failed" +
-                        (counts.diverged == 0   ? " and " + words.left_out
-                         : counts.left_out == 0 ? ""
-                                                : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) + ".");
-    if (counts.diverged > 0)
-        lines.push_back("note: " + std::to_string(counts.diverged) + of + " diverged; they " + words.diverged + ".");
-    return lines;
-}
-
-std::vector<std::string> warnings_of(const Report& report) {
-    std::vector<std::string> lines;
-    for (const ArmReport& arm : report.arms) {
-        const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
-        std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                             {"are left out of its numbers", "are kept in the numbers"}), std::back_inserter(lines));
-    }
-    add_troubles(report, lines);
-    for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
-    if (!report.complete) {
-        const auto not_run = std::count_if(report.arms.begin(), report.arms.end(),
-                                           [](const ArmReport& arm) { return arm.not_run(); });
-        lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
-                        " trials of each arm" +
-                        (not_run == 0 ? "." : ", and " + std::to_string(not_run) + " of " +
-                                                  std::to_string(report.arms.size()) + " arms are not run yet."));
-    }
-    if (report.keep == Keep::aggregates) lines.push_back("note: " + no_trials_note());
-    return lines;
 }
 
 const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name) {

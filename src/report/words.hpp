@@ -15,6 +15,7 @@ namespace credence {
 struct Reason {
     std::string head;
     std::vector<std::string> parts;
+    bool decides = false;  ///< the verdict rests on it: a finding, or failed trials
 };
 
 /// The reasons for an arm's verdict: the share of failed trials, the worst findings, notes, and the trials that would

@@ -4,6 +4,7 @@
 #include <credence/study.hpp>
 #include <credence/text.hpp>
 
+#include "files/record/alike.hpp"
 #include "files/record/results.hpp"
 
 #include "base/nan.hpp"
@@ -25,11 +26,12 @@ std::string scenario_name(const std::string& path) {
 
 /// In the order of RecordColumn.
 std::vector<Column> record_columns(const RecordShape& shape) {
-    const std::string unit = "unit of error squared", of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
+    const std::string unit = unit_of_squares(shape, 0), of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
     std::vector<Column> columns{
         {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
         {"unseen", "not known of a record", "1", ColumnType::integer, nan},
-        {"pose_error", "squared error of " + of + ", summed over the steps", unit, ColumnType::real, nan},
+        {"pose_error", "squared error of " + of + ", summed over the steps", unit_of_squares(shape, pose_group(shape)),
+         ColumnType::real, nan},
         {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
         {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
         {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan}};
@@ -75,6 +77,11 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
                             joined(shape.known) + ".");
     if (!shape.known_groups.empty())
         sentences.push_back("Groups of nothing else are left out: " + joined(shape.known_groups) + ".");
+    const ComponentGroup whole = alike(shape, shape.groups[0]), pose = alike(shape, shape.groups[pose_group(shape)]);
+    const auto unit_of = [&](const ComponentGroup& group) { return shape.components[static_cast<std::size_t>(group.component(0))].unit; };
+    if (shape.has_errors && whole.count < shape.n)
+        sentences.push_back("Squares of different units are not added: trace(P) is of the components in " + unit_of(whole) +
+                            " alone, and the pose error of those in " + unit_of(pose) + ".");
     if (shape.has_variances)
         sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
                             "between components is.");
@@ -92,12 +99,6 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
 }
 
 }  // namespace
-
-std::size_t pose_group(const RecordShape& shape) {
-    const auto found = std::find_if(shape.groups.begin(), shape.groups.end(),
-                                    [](const ComponentGroup& group) { return group.name == "pose"; });
-    return found == shape.groups.end() ? 0 : static_cast<std::size_t>(found - shape.groups.begin());
-}
 
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path) {

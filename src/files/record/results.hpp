@@ -16,9 +16,6 @@ enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, s
 }
 inline constexpr std::size_t record_column_count = RecordColumn::status_pose + 1;
 
-/// Index of the group `pose`, or 0, the whole state, if there is no such group.
-std::size_t pose_group(const RecordShape& shape);
-
 /// Results with one arm: all totals 0, columns filled, details NaN; without distribution cells and distances.
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path);

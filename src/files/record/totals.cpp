@@ -24,8 +24,10 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     : shape_(shape),
       all_series_(record_series(shape_)),
+      alike_(shape_),
       judge_(shape_, all_series_),
       presence_(shape_),
+      gaps_(size(shape_.steps)),
       products_(size(lag_count(shape_.steps + 1)), size(shape_.m), shape_.version == 1 ? Lags::in_steps : Lags::in_measurements),
       moments_(shape_.n, shape_.groups.size()) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
@@ -103,6 +105,7 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     }
     add_rounding(k);
     judge_.forget_unknown(values);
+    alike_.keep(k, checked);
     set_dimension(k);
     present_.push_back(k);
     keep_details(step.trial, k, checked);
@@ -165,7 +168,11 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const std::vector<double> moments = moments_.moments();
         std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
-    if (!failed(status_)) return add_totals();
+    if (!failed(status_)) {
+        gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
+        add_totals();
+    }
+    if (!failed(status_)) return;
     if (trial >= record_.results.detailed()) return;
     const auto forget = [&](std::vector<double>& values, std::size_t row) {
         const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
@@ -179,20 +186,26 @@ void RecordTotals::add_columns(std::int64_t trial) {
     double row[record_column_count];
     std::fill(std::begin(row), std::end(row), nan);
     // Sums and means are over the steps at which the series has a value; NaN where it has none.
+    const auto at = [&](std::size_t f, std::size_t k) {
+        const double all = series(f, k);
+        return f == all_series_.variance                                ? alike_.variance(k, all)
+               : f == all_series_.squared_error + pose_group(shape_) ? alike_.error(k, all)
+                                                                        : all;
+    };
     const auto count = [&](std::size_t f) {
-        return static_cast<double>(std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(series(f, k)); }));
+        return static_cast<double>(std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(at(f, k)); }));
     };
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;
         for (const std::size_t k : present_)
-            if (const double value = series(f, k); !std::isnan(value)) sum += value;
+            if (const double value = at(f, k); !std::isnan(value)) sum += value;
         return count(f) > 0 ? sum : nan;
     };
     row[RecordColumn::status] = static_cast<double>(status_);
     row[RecordColumn::status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     if (!fill_failed(record_.results.columns, row)) {
         if (shape_.has_errors) {
-            row[RecordColumn::trace_P] = series(all_series_.variance, present_.back());
+            row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
@@ -266,6 +279,7 @@ void RecordTotals::add_distribution() {
 
 Record RecordTotals::finish() {
     finish_rounding();
+    record_.gaps = gaps_.finish();
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");

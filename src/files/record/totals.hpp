@@ -3,6 +3,8 @@
 
 #include <credence/record.hpp>
 
+#include "files/record/alike.hpp"
+#include "files/record/gaps.hpp"
 #include "files/record/reader.hpp"
 #include "files/record/presence.hpp"
 #include "worlds/own/step.hpp"
@@ -55,8 +57,10 @@ private:
 
     RecordShape shape_;
     StateSeries all_series_;
+    AlikeSums alike_;
     StepEvaluator judge_;
     PresenceChecker presence_;                   ///< of version 2
+    GapCounter gaps_;
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials

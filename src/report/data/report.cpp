@@ -36,6 +36,19 @@ Json figure_json(const ColumnReport& column) {
     return json;
 }
 
+Json cause_json(const FailureCause& cause) {
+    Json json{{"status", status_names()[static_cast<std::size_t>(cause.status)]}, {"trials", cause.trials}};
+    if (cause.at_pose > 0) json.update({{cause.place, cause.pose}, {"trials_there", cause.at_pose}});
+    return json;
+}
+
+Json gaps_json(const RecordGaps& gaps) {
+    return {{"steps", gaps.steps}, {"missing", gaps.missing},
+            {"share", static_cast<double>(gaps.missing) / static_cast<double>(gaps.steps)}, {"trials", gaps.runs},
+            {"worst_trial", {{"trial", gaps.trial}, {"missing", gaps.of_trial}}}, {"by_step", gaps.by_step},
+            {"nees_ratio_beside", gaps.beside}, {"nees_ratio_elsewhere", gaps.elsewhere}};
+}
+
 Json findings_json(const std::vector<Finding>& findings) {
     Json json = Json::array();
     for (const Finding& finding : findings)
@@ -90,6 +103,8 @@ Json directions_json(const DirectionsFound& directions) {
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
               {"diverged", arm.diverged}, {"failed_trials", arm.failed_trials()}};
+    if (arm.gaps.missing > 0) json["missing_steps"] = gaps_json(arm.gaps);
+    if (arm.cause) json["failed_most"] = cause_json(*arm.cause);
     for (const Scenario& scenario : report.scenarios)
         if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
     for (const ColumnReport& column : arm.columns) json[column.name] = figure_json(column);
