@@ -32,7 +32,11 @@ SweptReport::SweptReport(const Report& report) : report_(report) {
     std::vector<SweepPoint> places;
     for (const Scenario& scenario : report.scenarios) places.push_back(scenario.sweep);
     grids_ = grids_of(places);
-    for (const ArmReport& arm : report.arms) arms_[{arm.scenario, arm.arm}] = &arm;
+    for (const ArmReport& arm : report.arms) {
+        arms_[{arm.scenario, arm.arm}] = &arm;
+        if (!arm.not_run()) run_.insert(arm.scenario);
+    }
+    points_have_sections_ = credence::points_have_sections(swept_scenarios(report));
     for (const Comparison& pair : report.pairs) pairs_[{pair.scenario, pair.name()}] = &pair;
 }
 

@@ -28,6 +28,10 @@ public:
     /// Names of the arms and of the pairs of all points, in the order of their first appearance.
     std::vector<std::string> arm_names(const Grid& grid) const;
     std::vector<std::string> pair_names(const Grid& grid) const;
+    /// Whether the point has a section on a page.
+    bool points_have_sections() const { return points_have_sections_; }
+    /// Whether the file has trials of a point.
+    bool has_run(const GridPoint& point) const { return run_.count(scenario(point)) > 0; }
     /// Whether a scenario is a point of a sweep.
     static bool swept(const Scenario& scenario) { return !scenario.sweep.at.empty(); }
 
@@ -40,6 +44,8 @@ private:
     std::vector<Grid> grids_;
     std::map<Key, const ArmReport*> arms_;
     std::map<Key, const Comparison*> pairs_;
+    std::set<std::string> run_;
+    bool points_have_sections_ = true;
 };
 
 /// A quantity of a point as its tables and curves show it.
@@ -66,9 +72,11 @@ private:
     std::vector<std::string> keys_;
 };
 
-/// Whether a page has a section for the scenario: points of sweeps have one only where there are few, because the page
-/// would be too long.
-bool has_section(const Report& report, const std::string& scenario);
+/// The names of the scenarios that are points of sweeps.
+std::set<std::string> swept_scenarios(const Report& report);
+
+/// Whether a page has sections for the points of sweeps: only where there are few, because the page would be too long.
+bool points_have_sections(const std::set<std::string>& swept);
 
 /// The columns' means and the verdict of an arm at every point of a grid, and those of a pair.
 Table arm_table(const SweptReport& swept, const Grid& grid, const std::string& name);

@@ -17,7 +17,7 @@ std::vector<Cell> keys_of(const SweptReport& swept, const Grid& grid, const Grid
     const std::string& scenario = swept.scenario(point);
     for (std::size_t a = 0; a < grid.axes.size(); ++a) {
         const std::string& value = grid.axes[a].values[point.place[a]];
-        const bool leads = a == 0 && has_section(swept.report(), scenario);
+        const bool leads = a == 0 && swept.points_have_sections();
         cells.push_back(Cell::Piece{value, to_number(value), leads ? "scenario:" + scenario : ""});
     }
     return cells;
@@ -45,12 +45,16 @@ std::vector<SweptColumn> columns_of(const Grid& grid, const Find& find) {
 
 }  // namespace
 
-bool has_section(const Report& report, const std::string& scenario) {
-    constexpr std::ptrdiff_t most = 12;
-    const auto swept = [](const Scenario& one) { return SweptReport::swept(one); };
-    const auto same = [&](const Scenario& one) { return one.name == scenario && swept(one); };
-    return std::count_if(report.scenarios.begin(), report.scenarios.end(), swept) <= most ||
-           std::none_of(report.scenarios.begin(), report.scenarios.end(), same);
+std::set<std::string> swept_scenarios(const Report& report) {
+    std::set<std::string> swept;
+    for (const Scenario& scenario : report.scenarios)
+        if (SweptReport::swept(scenario)) swept.insert(scenario.name);
+    return swept;
+}
+
+bool points_have_sections(const std::set<std::string>& swept) {
+    constexpr std::size_t most = 12;
+    return swept.size() <= most;
 }
 
 Table arm_table(const SweptReport& swept, const Grid& grid, const std::string& name) {
@@ -78,7 +82,7 @@ Table pair_table(const SweptReport& swept, const Grid& grid, const std::string& 
     for (const GridPoint& point : grid.points) {
         const Comparison* pair = find(point);
         if (pair == nullptr) continue;
-        const bool run = has_run(swept.report(), swept.scenario(point));
+        const bool run = swept.has_run(point);
         std::vector<Cell> cells = keys_of(swept, grid, point);
         for (const SweptColumn& one : swept_columns(*pair))
             cells.push_back(run ? mean_cell(one.summary.mean, one.summary.ci95) : Cell("not run yet"));

@@ -87,8 +87,7 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     }
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
         html += "<p>The file was made by</p>\n"_html + command(line);
-    const bool all_shown = std::all_of(report.scenarios.begin(), report.scenarios.end(),
-                                       [&](const Scenario& one) { return has_section(report, one.name); });
+    const bool all_shown = points_have_sections(swept_scenarios(report));
     html += all_shown
                 ? "<p>Without the scenario files: save the scenarios of this page, each under its name, and run the same "
                   "trials. Any number of threads gives the same bits, which the second command checks.</p>\n"_html +

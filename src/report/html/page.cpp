@@ -49,11 +49,12 @@ Html intro(const Report& report, const PageOrigin& origin) {
     return html;
 }
 
+/// The scenarios by themselves; the tables of a sweep lead to its points.
 Html contents(const Report& report) {
     if (report.scenarios.size() < 2) return {};
     Html items;
     for (const Scenario& scenario : report.scenarios) {
-        if (!has_section(report, scenario.name)) continue;
+        if (SweptReport::swept(scenario)) continue;
         std::set<std::string> shown;  // each badge once
         Html badges;
         for (const ArmReport* arm : part_of(report, scenario).arms)
@@ -68,16 +69,18 @@ Html contents(const Report& report) {
 
 /// All sections on the trials of a scenario.
 Html evidence_of_trials(const Part& part) {
-    if (!has_run(part.report, part.scenario.name)) return {};
+    if (std::ranges::all_of(part.arms, &ArmReport::not_run)) return {};
     return column_tables(part) + evidence_tables(part) + charts(part) + step_tables(part);
 }
 
+/// A point of a sweep is folded: the page would be too long to find the curves.
 Html scenario_section(const Part& part) {
     const std::string& title = part.scenario.title;
+    const Html body = findings(part) + evidence_of_trials(part) + scenario_part(part);
     return "<section class=\"scenario\" aria-labelledby=\""_html + section_id(part.scenario.name) + "\">\n"_html +
            element("h2", escaped(part.scenario.name), "id=\""_html + section_id(part.scenario.name) + "\""_html) +
-           "\n"_html + (title.empty() ? Html() : paragraph(title)) + findings(part) + evidence_of_trials(part) +
-           scenario_part(part) + "</section>\n"_html;
+           "\n"_html + (title.empty() ? Html() : paragraph(title)) +
+           (SweptReport::swept(part.scenario) ? folded("Everything of this point", body, InPrint::open) : body) + "</section>\n"_html;
 }
 
 }  // namespace
@@ -99,8 +102,9 @@ std::string document(const std::string& title, const Html& header, const Html& m
 std::string report_html(const Report& report, const PageOrigin& origin) {
     using namespace page;
     Html body = verdicts(report) + contents(report) + sweeps(report);
+    const bool points_too = points_have_sections(swept_scenarios(report));
     for (const Scenario& scenario : report.scenarios)
-        if (has_section(report, scenario.name)) body += scenario_section(part_of(report, scenario));
+        if (points_too || !SweptReport::swept(scenario)) body += scenario_section(part_of(report, scenario));
     body += provenance(report, origin) + reproduction(report, origin) + terms();
     return document("credence: " + origin.file, intro(report, origin), body);
 }

@@ -10,12 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace credence::page {
 
 namespace {
 
-/// The reasons for an arm's verdict, in one line.
+/// What an arm's verdict rests on, all of it; of none, the first reason why there is none.
 std::string why(const ArmReport& arm) {
     if (arm.not_run()) return no_claim_text(arm);
     const std::vector<Reason> reasons = reasons_of(arm);
@@ -23,6 +24,10 @@ std::string why(const ArmReport& arm) {
         return "NEES/dim of the whole state and of every group is within 1 ± " + to_text(arm.consistency.limits.margin) +
                ", the squared error of every direction within 1 ± " + to_text(arm.consistency.limits.direction) +
                " of P's, every bias within " + to_text(arm.consistency.limits.bias) + " sigma";
+    std::vector<std::string> deciding;
+    for (const Reason& reason : reasons)
+        if (reason.decides) deciding.push_back(reason_text(reason));
+    if (!deciding.empty()) return joined(deciding, "; ");
     return reasons.empty() ? "no interval lies wholly within the margin or wholly outside"
                            : reason_text(reasons.front());
 }
@@ -52,7 +57,7 @@ Table findings_table(const std::string& caption, const std::vector<Finding>& fin
         const double half = half_width(finding.interval);
         table.row(finding.what,
                   {finding.where, when_text(finding), number_cell_within(finding.value, half),
-                   interval_cell(finding.interval, decimals_for(half))});
+                   interval_cell(finding.interval, decimals_for(half, finding.value))});
     }
     return table;
 }
@@ -110,9 +115,10 @@ std::string verdict_counts(const Report& report) {
 }
 
 Html verdicts(const Report& report) {
+    const std::set<std::string> swept = swept_scenarios(report);
     Html lines;
     for (const ArmReport& arm : report.arms)
-        if (has_section(report, arm.scenario)) lines += verdict_line(arm);
+        if (swept.count(arm.scenario) == 0) lines += verdict_line(arm);  // those of a sweep are in its table
     return "<section aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">Verdict</h2>\n<p>A consistent filter has "
            "NEES/dim 1 "
            "in every group of components and at every step; the verdict holds all of them against 1 ± "_html +

@@ -25,9 +25,7 @@ std::string why(const ArmReport& arm) {
 
 /// Arms of scenarios that are not in a sweep: a sweep has a table of its own.
 std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
-    std::set<std::string> swept;
-    for (const Scenario& scenario : report.scenarios)
-        if (SweptReport::swept(scenario)) swept.insert(scenario.name);
+    const std::set<std::string> swept = swept_scenarios(report);
     std::vector<const ArmReport*> arms;
     for (const ArmReport& arm : report.arms)
         if (swept.count(arm.scenario) == 0) arms.push_back(&arm);
