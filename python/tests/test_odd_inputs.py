@@ -90,7 +90,8 @@ def contradicting_dimensions():
 
 def matrices():
     joint = {"innovation": ERROR[0], "innovation_covariance": COVARIANCE[0]}
-    with warnings.catch_warnings(action="ignore", category=PendingDeprecationWarning):  # NumPy's own
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PendingDeprecationWarning)  # NumPy's own
         matrix = np.matrix(ERROR[0])
     verdict = credence.judge(matrix, COVARIANCE[0], **joint)
     assert verdict.json == credence.judge(ERROR[0], COVARIANCE[0], **joint).json
