@@ -296,15 +296,3 @@ TEST_CASE("lanes: what a world does wrong is said in the same words as of one tr
             CHECK(message([&] { one_by_one<Troubled>(scenario, s, target, 5); }) == expected);
     }
 }
-
-TEST_CASE("lanes: a world of which a group has gaps runs one trial at a time") {
-    Scenario scenario = read_scenario_text("[scenario]\nworld = troubled\n", "test", "mine");
-    const auto settings = std::make_shared<const Troubled::Settings>();
-    const auto in_lanes = [&] {
-        const Forced forced("portable");
-        return lane_simulation(scenario, report_of<Troubled>(*settings), linked_lanes<Troubled>(), settings);
-    };
-    CHECK(in_lanes() != nullptr);
-    scenario.groups.push_back({"turned", 1, 2, {1, 0}});
-    CHECK(in_lanes() == nullptr);
-}
