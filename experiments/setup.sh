@@ -47,7 +47,7 @@ show_progress() {
   done
 }
 
-# build DIRECTORY TARGET [cmake arguments]: configures and builds, with its progress, showing the log only where it fails.
+# build DIRECTORY TARGET [cmake arguments]: configures and builds, saying its progress; shows the log where it fails.
 build() {
   local directory=$1 target=$2 log progress status=0
   shift 2
@@ -57,8 +57,8 @@ build() {
   echo "building $target in $directory"
   show_progress "$log" &
   progress=$!
-  { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"; } \
-    >"$log" 2>&1 || status=1
+  { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" &&
+      cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1 || status=1
   kill "$progress" 2>/dev/null || true
   wait "$progress" 2>/dev/null || true
   [ $status -eq 0 ] && return 0

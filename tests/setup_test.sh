@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# setup_test.sh SOURCE: a build says how far it is, shows its log where it fails, and says what to install where a package
-# is missing.
+# setup_test.sh SOURCE: a build says how far it is, shows its log where it fails, and says what to install where a
+# package is missing.
 set -euo pipefail
 cd "$1"
 work=$(mktemp -d)

@@ -70,7 +70,8 @@ std::vector<const World*> all_worlds();
 /// The world of this name; nullptr where there is none.
 const World* find_world(const std::string& name);
 
-/// The same; throws InputError where there is none, so that the program that has it must be used, or where there are two.
+/// The same; throws InputError where there is none, so that the program that has it must be used, or where there are
+/// two.
 const World& world_of(const Scenario& scenario);
 
 /// The scenario made ready by its world. Throws like world_of.

@@ -238,7 +238,8 @@ void say_notes(const std::vector<Scenario>& scenarios, const std::string& comman
     std::set<std::string> said;  // keys: a sweep may have many such values of one
     for (const Scenario& scenario : scenarios)
         for (const std::string& note : notes_on(scenario))
-            if (said.insert(note.substr(0, note.find('='))).second) say("credence " + command + ": note: " + note + "\n");
+            if (said.insert(note.substr(0, note.find('='))).second)
+                say("credence " + command + ": note: " + note + "\n");
 }
 
 void write_output(const Parsed& parsed, const std::string& text) {

@@ -53,7 +53,8 @@ std::size_t metric_column(const StoppingGoal& goal, const std::vector<Column>& c
         if (columns[c].name == goal.metric) return c;
         names.push_back(columns[c].name);
     }
-    throw refused(goal.text, "there is no column " + goal.metric, did_you_mean(goal.metric, names) + "There are " + joined(names));
+    throw refused(goal.text, "there is no column " + goal.metric,
+                  did_you_mean(goal.metric, names) + "There are " + joined(names));
 }
 
 /// The scenario's arm of that name, or its only arm of that controller; nothing where it has no such arm.
@@ -77,7 +78,8 @@ InputError no_such_pair(const StoppingGoal& goal, const Study& study) {
                 if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const std::string& name : {goal.minuend, goal.subtrahend})
         if (std::find(known.begin(), known.end(), name) == known.end())
-            return refused(goal.text, "no scenario has an arm " + name, did_you_mean(name, known) + "There are " + joined(known));
+            return refused(goal.text, "no scenario has an arm " + name,
+                           did_you_mean(name, known) + "There are " + joined(known));
     return refused(goal.text, "no scenario has both " + goal.minuend + " and " + goal.subtrahend,
                    "There are " + joined(known));
 }

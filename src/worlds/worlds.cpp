@@ -64,8 +64,9 @@ const World& world_of(const Scenario& scenario) {
         throw invalid_value(world_key, scenario.world, "this program has two worlds of that name",
                             "Give the one that was added another name");
     if (const World* world = find_world(scenario.world)) return *world;
-    throw invalid_value(world_key, printable(scenario.world), "this program has no such world",
-                        did_you_mean(scenario.world, names) + "Use the program that has it, or give one of " + joined(names));
+    throw invalid_value(
+        world_key, printable(scenario.world), "this program has no such world",
+        did_you_mean(scenario.world, names) + "Use the program that has it, or give one of " + joined(names));
 }
 
 std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario) {

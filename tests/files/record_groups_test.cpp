@@ -206,7 +206,8 @@ TEST_CASE("record 2: what its attributes and times cannot mean is refused by nam
     check_refused(time({3}, {0, 1, 2}), "/time: does not fit: it is [3], and there are 3 trials and 4 steps");
     check_refused(time({4}, {0, not_a_number, 0.2, 0.5}),
                   "/time: trial 0, step 1 (both counted from 0) is there and has no time: it is NaN");
-    check_refused(time({3, 4}, {0, 1, 2, 3, 0, 1, 2, 3, 0, 5, 6, not_a_number}), "/time: trial 2, step 3 (both counted from 0)");
+    check_refused(time({3, 4}, {0, 1, 2, 3, 0, 1, 2, 3, 0, 5, 6, not_a_number}),
+                  "/time: trial 2, step 3 (both counted from 0)");
     DrawnRecord shorter = drawn;
     for (int j = 0; j < 4; ++j) shorter.hide(2, 3, j);
     CHECK_NOTHROW(read_written([&](const Handle& root) {  // a step that does not exist needs no time

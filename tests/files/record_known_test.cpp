@@ -1,5 +1,5 @@
-// Components that a record knows exactly, such as the height, roll and pitch of a planar robot: they are left out, and the
-// rest is judged as a record without them is.
+// Components that a record knows exactly, such as the height, roll and pitch of a planar robot: they are left out, and
+// the rest is judged as a record without them is.
 
 #include <credence/report.hpp>
 
@@ -12,7 +12,8 @@ namespace {
 
 const std::vector<int> flat_components{0, 1, 5}, known_components{2, 3, 4};
 const std::string names = "x, y, z, roll, pitch, yaw", flat_names = "x, y, yaw";
-const std::string left_out = "Not in the state, because their errors and variances are 0 at every step: z, roll, pitch.";
+const std::string left_out =
+    "Not in the state, because their errors and variances are 0 at every step: z, roll, pitch.";
 
 DrawnRecord planar() { return DrawnRecord(40, 3, 3, 2, 5); }
 
@@ -59,7 +60,8 @@ Judged judged(const DrawnRecord& drawn, const std::string& component_names, cons
 void write_variances(const Handle& root, const DrawnRecord& drawn) {
     write_errors(root, drawn);
     std::vector<double> values;
-    for (const Eigen::MatrixXd& P : drawn.covariance) values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
+    for (const Eigen::MatrixXd& P : drawn.covariance)
+        values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
     write_values(root, "covariance", extents_of(drawn, {drawn.n}), values);
 }
 
@@ -157,7 +159,8 @@ TEST_CASE("record 1: components that are known exactly are left out") {
     CHECK(left.results.not_judged.front() ==
           "Not in the state, because their errors and variances are 0 at every step: x2, x3, x4.");
     CHECK(left.results.scenario.components.back().name == "x5");
-    for (const std::size_t c : {0, 2, 3, 4, 5}) CHECK(left.results.arms[0].columns[c] == flat.results.arms[0].columns[c]);
+    for (const std::size_t c : {0, 2, 3, 4, 5})
+        CHECK(left.results.arms[0].columns[c] == flat.results.arms[0].columns[c]);
     for (std::size_t f = 0; f < 3; ++f)
         for (std::size_t k = 0; k < 3; ++k)
             CHECK(left.results.arms[0].totals[f].sum[k].rounded() == flat.results.arms[0].totals[f].sum[k].rounded());
@@ -196,18 +199,22 @@ TEST_CASE("record: planar poses of SE(3) are judged as poses in the plane, in ei
         const Record space = read("SE3", 7, truth, estimate, in_space(plane)),
                      flat = read("SE2", 3, flat_truth, flat_estimate, plane);
         CHECK(space.trouble_count == 0);
-        CHECK(space.results.not_judged == std::vector<std::string>{
-            "Not in the state, because their errors and variances are 0 at every step: translation_z, rotation_x, rotation_y."});
+        CHECK(space.results.not_judged ==
+              std::vector<std::string>{"Not in the state, because their errors and variances are 0 at every step: "
+                                       "translation_z, rotation_x, rotation_y."});
         const Record other = space.in_other_chart(), flat_other = flat.in_other_chart();
         for (std::size_t k = 0; k < 3; ++k)  // the exponentials of the plane and of space differ in rounding
             for (const auto& [a, b] : {std::pair{&space, &flat}, std::pair{&other, &flat_other}})
-                CHECK(relative(totals_named(*a, "nees").sum[k].rounded(), totals_named(*b, "nees").sum[k].rounded()) < 1e-10);
+                CHECK(relative(totals_named(*a, "nees").sum[k].rounded(), totals_named(*b, "nees").sum[k].rounded()) <
+                      1e-10);
     }
     const DrawnRecord space = in_space(plane);
     const std::vector<double> error = flat(space.error), covariance = flat(space.covariance);
-    const RecordArrays arrays{{{"error", error.data(), RecordArray::Type::real64, {40, 3, 6}, {18, 6, 1}, 1e-16},
-                               {"covariance", covariance.data(), RecordArray::Type::real64, {40, 3, 6, 6}, {108, 36, 6, 1}, 1e-16}},
-                              {{"component_names", names}}, {}};
+    const RecordArrays arrays{
+        {{"error", error.data(), RecordArray::Type::real64, {40, 3, 6}, {18, 6, 1}, 1e-16},
+         {"covariance", covariance.data(), RecordArray::Type::real64, {40, 3, 6, 6}, {108, 36, 6, 1}, 1e-16}},
+        {{"component_names", names}},
+        {}};
     const Judged in_memory = judged(read_record(arrays, "record"));
     CHECK(in_memory.troubles == 0);
     CHECK(in_memory.sentences == std::vector<std::string>{left_out});

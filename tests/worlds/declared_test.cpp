@@ -1,4 +1,5 @@
-// What a user's own world declares is checked before any work: what could not be stored, read back or judged is refused.
+// What a user's own world declares is checked before any work: what could not be stored, read back or judged is
+// refused.
 
 #include "catch.hpp"
 #include "lane_worlds.hpp"
@@ -68,24 +69,31 @@ TEST_CASE("own world: a declaration that no file could hold is refused with a se
           "cannot use world a/b (its name is none of letters, digits, _ and -). Give it another name.");
     CHECK_THAT(refused([](Declaration& d) { d.name = "<b>"; }), Contains("its name is none of"));
     CHECK_THAT(refused([](Declaration& d) { d.name = ""; }), Contains("its name is none of"));
-    CHECK(refused([](Declaration& d) { d.arms = {"one", "two", "one"}; }) ==
-          start + "one is there twice among its arms). Give its arms other names.");
+    CHECK(refused([](Declaration& d) {
+              d.arms = {"one", "two", "one"};
+          }) == start + "one is there twice among its arms). Give its arms other names.");
     CHECK(refused([](Declaration& d) { d.arms = {}; }) == start + "it has no arms). Name one or more.");
     CHECK_THAT(refused([](Declaration& d) { d.arms = {"a b"}; }), Contains("'a b' among its arms is no name"));
     CHECK_THAT(refused([](Declaration& d) { d.components = {}; }), Contains("it has no components"));
-    CHECK_THAT(refused([](Declaration& d) { d.components[1].name = "a"; }), Contains("a is there twice among its components"));
-    CHECK_THAT(refused([](Declaration& d) { d.components[1].name = ""; }), Contains("'' among its components is no name"));
-    CHECK_THAT(refused([](Declaration& d) { d.components[1].unit = "m s"; }), Contains("the unit 'm s' of b is no word"));
+    CHECK_THAT(refused([](Declaration& d) { d.components[1].name = "a"; }),
+               Contains("a is there twice among its components"));
+    CHECK_THAT(refused([](Declaration& d) { d.components[1].name = ""; }),
+               Contains("'' among its components is no name"));
+    CHECK_THAT(refused([](Declaration& d) { d.components[1].unit = "m s"; }),
+               Contains("the unit 'm s' of b is no word"));
     CHECK_THAT(refused([](Declaration& d) {
                    d.components.clear();
                    for (int j = 0; j < 1001; ++j) d.components.push_back({"x" + std::to_string(j), "m"});
                }),
                Contains("its state has 1001 components). Give at most 1000."));
-    CHECK_THAT(refused([](Declaration& d) { d.groups[0].name = "all"; }), Contains("all is there twice among its groups"));
-    CHECK_THAT(refused([](Declaration& d) { d.groups[0].count = 3; }), Contains("group first is not in the state of 2"));
+    CHECK_THAT(refused([](Declaration& d) { d.groups[0].name = "all"; }),
+               Contains("all is there twice among its groups"));
+    CHECK_THAT(refused([](Declaration& d) { d.groups[0].count = 3; }),
+               Contains("group first is not in the state of 2"));
     CHECK_THAT(refused([](Declaration& d) { d.groups[0].count = -1; }), Contains("group first is not in the state"));
     CHECK_THAT(refused([](Declaration& d) { d.rows = -1; }), Contains("its innovations have -1 rows). Give 0 to 2000"));
-    CHECK_THAT(refused([](Declaration& d) { d.rows = 2'000'000'000; }), Contains("its innovations have 2000000000 rows"));
+    CHECK_THAT(refused([](Declaration& d) { d.rows = 2'000'000'000; }),
+               Contains("its innovations have 2000000000 rows"));
     CHECK(refused([](Declaration& d) { d.rows = 2000; }) == "");
 }
 
@@ -100,7 +108,8 @@ TEST_CASE("own world: keys that clash, or whose values no file could be read bac
     for (const char* key : {"sigma", "point.", ".sigma", "point.si gma", "point.sigma=", "[point].sigma", ""})
         CHECK_THAT(refused([&](Declaration& d) { d.keys = {key}; }), Contains("among its keys is no name"));
     CHECK(refused([](Declaration& d) { d.keys = {"point.of.sigma"}; }) == "");
-    CHECK_THAT(refused([](Declaration& d) { d.words[0] = "# 1"; }), Contains("point.word=# 1 cannot be read back from a file"));
+    CHECK_THAT(refused([](Declaration& d) { d.words[0] = "# 1"; }),
+               Contains("point.word=# 1 cannot be read back from a file"));
     CHECK(refused([](Declaration& d) { d.sigma = 11; }) ==
           "invalid point.sigma=11 (must be at least 0 and at most 10). Give a number in that range.");
     CHECK_THAT(refused([](Declaration& d) { d.sigma = std::nan(""); }), Contains("invalid point.sigma=nan"));
@@ -108,13 +117,14 @@ TEST_CASE("own world: keys that clash, or whose values no file could be read bac
 }
 
 TEST_CASE("own world: columns that clash, or that no file could hold, are refused") {
-    const auto with = [](const Column& column) {
-        return refused([&](Declaration& d) { d.columns = {column}; });
-    };
-    CHECK(with({"trace_P", "", "1"}) == start + "trace_P is there twice among its columns). Give its columns other names.");
+    const auto with = [](const Column& column) { return refused([&](Declaration& d) { d.columns = {column}; }); };
+    CHECK(with({"trace_P", "", "1"}) ==
+          start + "trace_P is there twice among its columns). Give its columns other names.");
     CHECK_THAT(with({"a b", "", "1"}), Contains("'a b' among its columns is no name"));
-    CHECK_THAT(with({"end", "", "1", ColumnType::status}), Contains("column end has the type status). Make it an integer."));
-    CHECK_THAT(with({"count", "", "1", ColumnType::integer, std::nan("")}), Contains("column count is filled with nan"));
+    CHECK_THAT(with({"end", "", "1", ColumnType::status}),
+               Contains("column end has the type status). Make it an integer."));
+    CHECK_THAT(with({"count", "", "1", ColumnType::integer, std::nan("")}),
+               Contains("column count is filled with nan"));
     CHECK_THAT(with({"count", "", "1", ColumnType::integer, 1e18}), Contains("column count is filled with 1e+18"));
     CHECK_THAT(with({"size", "", "m, m"}), Contains("the unit 'm, m' of column size is no word"));
     CHECK_THAT(with({"size", "", ""}), Contains("is no word"));
@@ -201,8 +211,9 @@ TEST_CASE("own world: names of which two datasets would be one are refused befor
     const std::string said = test::refusal([&] {
         StoredRun(folder / "mine.h5", new_study(std::vector<Scenario>{scenario_of("clashing")}, 1), Start::fresh);
     });
-    CHECK(said == "cannot store scenario mine (its world clashing names columns, groups or components so that two datasets "
-                  "would be nees_square_total). Rename one of them in the world.");
+    CHECK(said ==
+          "cannot store scenario mine (its world clashing names columns, groups or components so that two datasets "
+          "would be nees_square_total). Rename one of them in the world.");
     CHECK(folder.entries() == 0);
 }
 

@@ -47,23 +47,36 @@ TEST_CASE("scenario: what a refusal says to do leads to a scenario that is accep
         {{{"sensor.sigma", "1e-120"}}, {{"sensor.sigma", "1.1e-100"}}, "Give a standard deviation above 1e-100."},
         {ranged + Overrides{{"sensor.range_max", "inf"}}, {{"sensor.range_max", "5"}}, "Give a finite range or "},
         {ranged + Overrides{{"sensor.range_max", "inf"}}, {{"sensor.noise", "constant"}}, "or sensor.noise=constant."},
-        {ranged + Overrides{{"sensor.sigma_near", "0"}}, {{"sensor.sigma_near", "1.1e-100"}}, "deviation above 1e-100."},
-        {ranged + Overrides{{"sensor.sigma_near", "1"}, {"sensor.sigma_far", "0.5"}}, {{"sensor.sigma_far", "1"}},
+        {ranged + Overrides{{"sensor.sigma_near", "0"}},
+         {{"sensor.sigma_near", "1.1e-100"}},
+         "deviation above 1e-100."},
+        {ranged + Overrides{{"sensor.sigma_near", "1"}, {"sensor.sigma_far", "0.5"}},
+         {{"sensor.sigma_far", "1"}},
          "Give at least sigma_near."},
         {{{"noise.heading", "1e-120"}}, {{"noise.heading", "1.1e-100"}}, "deviation above 1e-100, or"},
-        {{{"noise.heading", "0"}}, {{"noise.initial_heading", "1.1e-100"}}, "or set noise.initial_heading above 1e-100."},
-        {{{"noise.heading", "0"}, {"noise.initial_heading", "1e-120"}}, {{"noise.initial_heading", "1.1e-100"}},
+        {{{"noise.heading", "0"}},
+         {{"noise.initial_heading", "1.1e-100"}},
+         "or set noise.initial_heading above 1e-100."},
+        {{{"noise.heading", "0"}, {"noise.initial_heading", "1e-120"}},
+         {{"noise.initial_heading", "1.1e-100"}},
          "or set noise.initial_heading above 1e-100."},
         {{{"filter.heading", "0"}}, {{"filter.heading", "1"}}, "Give a larger factor, or "},
-        {{{"filter.heading", "0"}}, {{"noise.initial_heading", "1.1e-100"}}, "or set noise.initial_heading above 1e-100."},
-        {{{"noise.odometry", "0"}}, {{"noise.initial_position", "1.1e-100"}}, "or set noise.initial_position above 1e-100."},
-        {{{"noise.deformation", "0"}}, {{"noise.deformation", "1.1e-100"}}, "Give a standard deviation above 1e-100, or "},
+        {{{"filter.heading", "0"}},
+         {{"noise.initial_heading", "1.1e-100"}},
+         "or set noise.initial_heading above 1e-100."},
+        {{{"noise.odometry", "0"}},
+         {{"noise.initial_position", "1.1e-100"}},
+         "or set noise.initial_position above 1e-100."},
+        {{{"noise.deformation", "0"}},
+         {{"noise.deformation", "1.1e-100"}},
+         "Give a standard deviation above 1e-100, or "},
         {{{"noise.deformation", "0"}}, {{"edges.graph", "none"}}, "or set edges.graph=none."},
         {{{"filter.edges", "0"}}, {{"edges.graph", "none"}}, "or set edges.graph=none."},
         {{{"filter.measurement", "1e-120"}}, {{"filter.measurement", "1.1e-100"}}, "Give a factor above 1e-100."},
         {{{"filter.covariance", "0"}}, {{"filter.covariance", "1.1e-100"}}, "Give a factor above 1e-100."},
         {no_heading + Overrides{{"noise.initial_heading", "0.1"}}, {{"noise.initial_heading", "0"}}, "Set it to 0 or "},
-        {no_heading + Overrides{{"noise.initial_heading", "0.1"}}, {{"model.process", "heading"}},
+        {no_heading + Overrides{{"noise.initial_heading", "0.1"}},
+         {{"model.process", "heading"}},
          "or use model.process=heading."},
         {one_feature + Overrides{{"edges.graph", "0-1"}}, {{"edges.graph", "none"}}, "Set it to none."},
         {two_features + Overrides{{"edges.graph", "0-2"}}, {{"edges.graph", "0-1"}}, "Name features 0 to 1."},
@@ -73,30 +86,42 @@ TEST_CASE("scenario: what a refusal says to do leads to a scenario that is accep
         {{{"edges.graph", ""}}, {{"edges.graph", "none"}}, "Write none for no edges."},
         {{{"features.count", "4"}}, {{"features.placement", "ring"}}, "or set features.placement=box or ring."},
         {{{"features.count", "4"}}, {{"features.count", "default"}}, "Leave it out, or "},
-        {{{"features.placement", "ring"}, {"features.radius_min", "3"}}, {{"features.radius_max", "3"}}, "Give at least that."},
-        {{{"features.positions", "4 0 4 4"}}, {{"features.positions", "4 0, 4 4"}},
+        {{{"features.placement", "ring"}, {"features.radius_min", "3"}},
+         {{"features.radius_max", "3"}},
+         "Give at least that."},
+        {{{"features.positions", "4 0 4 4"}},
+         {{"features.positions", "4 0, 4 4"}},
          "Write pairs `x y` separated by commas, such as `4 0, 4 4`."},
         {{{"planner.turns", "none"}}, {{"planner.turns", "0.1"}}, "Give turns in radians."},
         {no_heading + Overrides{{"planner.turns", "0"}}, {{"planner.turns", "none"}}, "Set it to none."},
         {{{"planner.horizon", "2"}}, {{"arms.controllers", "horizon"}}, "Add horizon to arms.controllers, or "},
         {{{"planner.horizon", "2"}}, {{"planner.horizon", "default"}}, "or leave planner.horizon out."},
-        {{{"arms.controllers", "horizon"}, {"features.path", "circle"}, {"planner.horizon", "4"}}, {{"planner.horizon", "1"}},
+        {{{"arms.controllers", "horizon"}, {"features.path", "circle"}, {"planner.horizon", "4"}},
+         {{"planner.horizon", "1"}},
          "Give fewer steps, "},
         {{{"arms.controllers", "waypoints"}}, {{"control.waypoints", "1 1"}}, "Give control.waypoints."},
         {{{"control.waypoints", "1 1"}}, {{"arms.controllers", "waypoints"}}, "Add waypoints to arms.controllers, or "},
         {{{"control.waypoints", "1 1"}}, {{"control.waypoints", "none"}}, "or leave control.waypoints out."},
         {{{"arms.estimators", "kf"}}, {{"arms.estimators", "ekf"}}, "Give some of ekf, "},
         {{{"arms.estimators", "kf"}}, no_heading, ", or set model.process=translation."},
-        {no_heading + Overrides{{"arms.estimators", "iekf"}}, {{"model.process", "heading"}}, ", or set model.process=heading."},
-        {{{"arms.estimators", "ekf, kf"}}, {{"arms.estimators", "ekf, iekf"}}, "Give some of ekf, ideal, fej, riekf, iekf."},
+        {no_heading + Overrides{{"arms.estimators", "iekf"}},
+         {{"model.process", "heading"}},
+         ", or set model.process=heading."},
+        {{{"arms.estimators", "ekf, kf"}},
+         {{"arms.estimators", "ekf, iekf"}},
+         "Give some of ekf, ideal, fej, riekf, iekf."},
         {{{"arms.controllers", "greedy, greedy"}}, {{"arms.controllers", "greedy"}}, "Name each once."},
         {{{"published.unseen", "greedy.ekv 3"}}, {{"published.unseen", "greedy.ekf 3"}}, "Did you mean greedy.ekf? "},
         {{{"scenario.name", "run"}}, {{"scenario.name", "mine"}}, "Give another text."},
         {{{"scenario.world", "landmark"}}, landmarks, "Did you mean landmarks? "},
-        {landmarks + Overrides{{"noise.heading", "1e-120"}}, {{"noise.heading", "1.1e-100"}}, "deviation above 1e-100."},
+        {landmarks + Overrides{{"noise.heading", "1e-120"}},
+         {{"noise.heading", "1.1e-100"}},
+         "deviation above 1e-100."},
         {landmarks + Overrides{{"loop.step", "1e-3"}}, {{"landmarks.offset", "1e-3"}}, "Give less, or "},
         {landmarks + Overrides{{"loop.step", "1e-3"}}, {{"loop.step", "1"}}, "or a larger loop."},
-        {landmarks + Overrides{{"arms.estimators", "kf"}}, {{"arms.estimators", "iekf"}}, "Give some of ekf, ideal, fej, riekf, iekf."},
+        {landmarks + Overrides{{"arms.estimators", "kf"}},
+         {{"arms.estimators", "iekf"}},
+         "Give some of ekf, ideal, fej, riekf, iekf."},
     };
     for (const Refused& one : all) {
         CAPTURE(text_of(one.settings), text_of(one.remedy));
@@ -128,7 +153,8 @@ TEST_CASE("scenario: a key that stands in its section with its section is told h
     };
     CHECK(told("[features]\nfeatures.path = static\n") ==
           "x.ini:2: unknown key features.features.path. Under [features] write path.");
-    CHECK(told("[features]\nnoise.heading = 0.1\n") == "x.ini:2: unknown key features.noise.heading. Under [noise] write heading.");
+    CHECK(told("[features]\nnoise.heading = 0.1\n") ==
+          "x.ini:2: unknown key features.noise.heading. Under [noise] write heading.");
 }
 
 TEST_CASE("scenario: points that are not pairs are told their form") {
@@ -136,5 +162,6 @@ TEST_CASE("scenario: points that are not pairs are told their form") {
           "--set control.waypoints: invalid control.waypoints=4 0 4 4 ('4 0 4 4' is not a point). Write pairs `x y` "
           "separated by commas, such as `4 0, 4 4`.");
     CHECK_THAT(read({{"features.positions", "1 1, 2"}}), Catch::Contains("('2' is not a point). Write pairs `x y`"));
-    CHECK_THAT(read({{"features.positions", "1 1, 2 2e9"}}), Catch::Contains("=2e9 (must be at least -1e+09 and at most 1e+09)"));
+    CHECK_THAT(read({{"features.positions", "1 1, 2 2e9"}}),
+               Catch::Contains("=2e9 (must be at least -1e+09 and at most 1e+09)"));
 }

@@ -29,9 +29,9 @@ std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const
 std::unique_ptr<const Simulation> one_at_a_time_simulation(const Scenario& scenario, const OwnReport& report,
                                                            std::function<void(OwnTrial&)> run);
 
-/// Throws InputError where a declaration cannot be stored, read back or judged: names that no file can have, or that are
-/// there twice; keys of sections that mean something else in every world; a group beyond the state; a column of the type
-/// status; rows of an innovation that are negative or more than 2000.
+/// Throws InputError where a declaration cannot be stored, read back or judged: names that no file can have, or that
+/// are there twice; keys of sections that mean something else in every world; a group beyond the state; a column of the
+/// type status; rows of an innovation that are negative or more than 2000.
 void check_declared(const Scenario& scenario, const OwnReport& report);
 
 }  // namespace credence

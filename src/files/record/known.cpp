@@ -121,7 +121,8 @@ RemainingState::RemainingState(const std::vector<char>& left_out, RecordLayout& 
             members.push_back(place[index(before[i])]);
         }
         if (members.empty()) {
-            if (std::ranges::count(shape.known, all.groups[b].name) == 0) shape.known_groups.push_back(all.groups[b].name);
+            if (std::ranges::count(shape.known, all.groups[b].name) == 0)
+                shape.known_groups.push_back(all.groups[b].name);
             continue;
         }
         shape.groups.push_back(group_of(all.groups[b].name, std::move(members)));

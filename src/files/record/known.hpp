@@ -1,6 +1,7 @@
 #pragma once
 // Components that a record knows exactly, such as the height, roll and pitch of a planar robot in a record of poses in
-// space: where their error and their rows and columns of every covariance are 0 at every step, they are not in the state.
+// space: where their error and their rows and columns of every covariance are 0 at every step, they are not in the
+// state.
 
 #include "files/record/layout/layout.hpp"
 

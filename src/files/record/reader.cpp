@@ -10,7 +10,8 @@ namespace credence {
 using hdf5::Error;
 using hdf5::Extents;
 
-void for_each_step(const RecordPart& part, const RecordValues& values, const std::function<void(const RecordStep&)>& use) {
+void for_each_step(const RecordPart& part, const RecordValues& values,
+                   const std::function<void(const RecordStep&)>& use) {
     const std::size_t steps = static_cast<std::size_t>(part.trials) * static_cast<std::size_t>(part.steps);
     std::size_t i = 0;
     const auto at = [&](const std::vector<double>& all) -> const double* {
@@ -67,7 +68,8 @@ int RecordReader::longest_trial() const {
     int longest = 0;
     std::vector<double> values;
     each_part([&](const RecordPart& part) {
-        for (const RecordDataset* dataset : layout_.data.leading()) longest = std::max(longest, last_step(*dataset, part, values));
+        for (const RecordDataset* dataset : layout_.data.leading())
+            longest = std::max(longest, last_step(*dataset, part, values));
         return longest < layout_.shape.steps;
     });
     return longest;

@@ -30,7 +30,8 @@ struct RecordValues {
 };
 
 /// The values of a part's step, one step after the other.
-void for_each_step(const RecordPart& part, const RecordValues& values, const std::function<void(const RecordStep&)>& use);
+void for_each_step(const RecordPart& part, const RecordValues& values,
+                   const std::function<void(const RecordStep&)>& use);
 
 /// Shape and values are those without components that are known exactly. All functions throw hdf5::Error.
 class RecordReader {

@@ -73,8 +73,8 @@ std::string groups_of(const RecordShape& shape, GroupSource source) {
 std::vector<std::string> not_judged(const RecordShape& shape) {
     std::vector<std::string> sentences;
     if (!shape.known.empty())
-        sentences.push_back("Not in the state, because their errors and variances are 0 at every step: " +
-                            joined(shape.known) + ".");
+        sentences.push_back(
+            "Not in the state, because their errors and variances are 0 at every step: " + joined(shape.known) + ".");
     if (!shape.known_groups.empty())
         sentences.push_back("Groups of nothing else are left out: " + joined(shape.known_groups) + ".");
     const ComponentGroup whole = alike(shape, shape.groups[0]), pose = alike(shape, shape.groups[pose_group(shape)]);

@@ -149,8 +149,7 @@ private:
         }
         std::string there = contents(files_[choice.a.file]);
         if (choice.a.file != choice.b.file) there += "; " + contents(files_[choice.b.file]);
-        throw invalid_value("--arms", choice.text, why,
-                            nearest + "The arms there are: " + there);
+        throw invalid_value("--arms", choice.text, why, nearest + "The arms there are: " + there);
     }
 
     const std::vector<StudyFile>& files_;

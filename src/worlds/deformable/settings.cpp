@@ -65,8 +65,8 @@ void check_sensor(const SensorSettings& sensor) {
             "Give at least sigma_near");
 }
 
-/// A believed sigma of 0 is refused where it makes P or S singular [docs/model.md, What is refused]; `otherwise` is what
-/// else would make it harmless.
+/// A believed sigma of 0 is refused where it makes P or S singular [docs/model.md, What is refused]; `otherwise` is
+/// what else would make it harmless.
 void check_believed(const char* key, double sigma, double factor, bool harmful, const std::string& why,
                     const std::string& otherwise) {
     if (!harmful || has_variance(sigma * factor)) return;
@@ -98,10 +98,9 @@ void check_edges(const DeformableSettings& s) {
     const int features = feature_count(s);
     for (const Edge& edge : s.edges.list)
         if (edge.to >= features)
-            throw invalid_value("edges.graph", graph_text(s.edges),
-                                "the features are " + std::to_string(features) + ", counted from 0",
-                                features == 1 ? "Set it to none"
-                                              : "Name features 0 to " + std::to_string(features - 1));
+            throw invalid_value(
+                "edges.graph", graph_text(s.edges), "the features are " + std::to_string(features) + ", counted from 0",
+                features == 1 ? "Set it to none" : "Name features 0 to " + std::to_string(features - 1));
 }
 
 void check_horizon(const DeformableSettings& s) {
@@ -147,15 +146,16 @@ void check_arms(const DeformableSettings& s) {
     for (std::size_t i = 0; i < estimator_names().size(); ++i)
         if (process_of(static_cast<Estimator>(i)) == s.process) fitting.push_back(estimator_names()[i]);
     const std::vector<Estimator> asked = *resolved(s).arms.estimators;
-    const bool all_fit_the_other = std::ranges::none_of(asked, [&](Estimator one) { return process_of(one) == s.process; });
+    const bool all_fit_the_other =
+        std::ranges::none_of(asked, [&](Estimator one) { return process_of(one) == s.process; });
     const std::string other = s.process == Process::heading ? "translation" : "heading";
     const std::string otherwise = all_fit_the_other ? ", or set model.process=" + other : "";
     for (const Estimator estimator : asked)
         if (process_of(estimator) != s.process)
-            throw invalid_value("arms.estimators", names_text(asked, estimator_names()),
-                                estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" +
-                                    process,
-                                "Give some of " + joined(fitting) + otherwise);
+            throw invalid_value(
+                "arms.estimators", names_text(asked, estimator_names()),
+                estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" + process,
+                "Give some of " + joined(fitting) + otherwise);
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);

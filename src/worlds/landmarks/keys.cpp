@@ -55,7 +55,8 @@ std::vector<LandmarkKey> all_keys() {
 
 void check_variance(const char* key, double sigma) {
     if (!has_variance(sigma))
-        throw invalid_value(key, to_text(sigma), "its square is 0 and P or S singular", "Give a standard deviation " + above_least);
+        throw invalid_value(key, to_text(sigma), "its square is 0 and P or S singular",
+                            "Give a standard deviation " + above_least);
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ void check_names(const Scenario& scenario, const std::string& what, const std::v
     const std::string remedy = "Give its " + what + " other names";
     if (names.empty()) throw refused(scenario, "it has no " + what, "Name one or more");
     for (const std::string& one : names)
-        if (!is_name(one)) throw refused(scenario, "'" + one + "' among its " + what + " is no name of letters, digits, _ and -", remedy);
+        if (!is_name(one))
+            throw refused(scenario, "'" + one + "' among its " + what + " is no name of letters, digits, _ and -",
+                          remedy);
     std::ranges::sort(names);
     if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
         throw refused(scenario, *twice + " is there twice among its " + what, remedy);
@@ -49,7 +51,8 @@ bool names_key(const std::string& text) {
 
 /// Each key must be read back from a file to the same value, by this program and by others.
 void check_keys(const Scenario& scenario) {
-    check_names(scenario, "keys", scenario.settings, [](const Setting& one) { return one.key; }, names_key);
+    check_names(
+        scenario, "keys", scenario.settings, [](const Setting& one) { return one.key; }, names_key);
     for (const auto& [key, value, later_default] : scenario.settings) {
         if (key.starts_with("sweep.") || key.starts_with("published."))
             throw refused(scenario, key + " means something else in every world", "Give the key another section");
@@ -109,7 +112,8 @@ void check_declared(const Scenario& scenario, const OwnReport& report) {
     if (!names_something(scenario.world))
         throw refused(scenario, "its name is none of letters, digits, _ and -", "Give it another name");
     check_keys(scenario);
-    check_names(scenario, "arms", scenario.arms, [](const std::string& arm) { return arm; }, names_arm);
+    check_names(
+        scenario, "arms", scenario.arms, [](const std::string& arm) { return arm; }, names_arm);
     check_names(scenario, "components", scenario.components, [](const Component& one) { return one.name; });
     if (n > largest_state)
         throw refused(scenario, "its state has " + std::to_string(n) + " components", "Give at most 1000");
@@ -120,11 +124,13 @@ void check_declared(const Scenario& scenario, const OwnReport& report) {
     check_names(scenario, "groups", scenario.groups, [](const ComponentGroup& one) { return one.name; });
     for (const ComponentGroup& group : scenario.groups)
         if (!is_part_of(group, n))
-            throw refused(scenario, "group " + group.name + " is not in the state of " + std::to_string(n) + " components",
+            throw refused(scenario,
+                          "group " + group.name + " is not in the state of " + std::to_string(n) + " components",
                           "Give it components of the state, each once");
     const int m = report.largest_innovation;
     if (m < 0 || m > largest_innovation)
-        throw refused(scenario, "its innovations have " + std::to_string(m) + " rows", "Give 0 to 2000 as innovation_rows");
+        throw refused(scenario, "its innovations have " + std::to_string(m) + " rows",
+                      "Give 0 to 2000 as innovation_rows");
     check_columns(scenario, report);
 }
 

@@ -189,8 +189,7 @@ std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, cons
 
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run) {
-    if (!are_contiguous(scenario.groups))
-        return one_at_a_time_simulation(scenario, report, std::move(run));
+    if (!are_contiguous(scenario.groups)) return one_at_a_time_simulation(scenario, report, std::move(run));
     const Target target = best_target();
     auto one_by_one = std::make_shared<const OneByOne>(OneByOne{std::move(run), target.lanes});
     return std::make_unique<LaneSimulation>(scenario, report, target, run_one_by_one, std::move(one_by_one));

@@ -78,7 +78,8 @@ public:
 
     /// After the last step: notes the trials of which a column of whole numbers is none of 32 bits.
     void note_columns() {
-        constexpr double largest = 2147483647, rounding = 6755399441055744;  // 1.5 * 2^52 leaves no place for a fraction
+        constexpr double largest = 2147483647,
+                         rounding = 6755399441055744;  // 1.5 * 2^52 leaves no place for a fraction
         for (int c = 0; c < view_.own_column_count; ++c) {
             if (!view_.whole[c]) continue;
             const Real value = load<Real>(own_columns + c * lanes<Real>);
