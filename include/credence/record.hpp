@@ -4,7 +4,6 @@
 // alike.
 
 #include <credence/study.hpp>
-
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -30,8 +29,8 @@ struct RecordGaps {
     std::int64_t runs = 0;                 ///< that lack a step
     std::int64_t trial = 0, of_trial = 0;  ///< the run that lacks most, and how many steps it lacks
     std::vector<std::int64_t> by_step;     ///< runs that lack the step
-    /// NEES/dim of the whole state at the steps beside a gap and at the others, means over the runs that have both, and the
-    /// difference over its standard error; NaN for fewer than ten such runs.
+    /// NEES/dim of the whole state at the steps beside a gap and at the others, means over the runs that have both, and
+    /// the difference over its standard error; NaN for fewer than ten such runs.
     double beside = std::numeric_limits<double>::quiet_NaN(), elsewhere = beside, difference = beside;
 };
 
@@ -41,8 +40,10 @@ struct RecordGaps {
 ///   `run_square_sum` of real series (but NIS) are of the trial's mean over its own steps times the number of steps in
 ///   the file;
 /// - NIS and its series are only there with innovations, and `products` are of all trials;
-/// - of version 2, a series may lack a value at some steps of a trial: its own `present` and `runs` count [results.hpp];
-/// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state; it and trace(P)
+/// - of version 2, a series may lack a value at some steps of a trial: its own `present` and `runs` count
+/// [results.hpp];
+/// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state; it and
+/// trace(P)
 ///   are of the components that have the unit of most of them, where units are given;
 /// - `distribution_distance` is exact up to 2^24 values; beyond, it is empty and `cells` are used, but over 4096 steps
 ///   `cells` are empty, and `distribution_distance` is NaN where the values were too many.

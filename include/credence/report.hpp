@@ -34,10 +34,10 @@ struct ColumnReport {
 /// How most of an arm's failed trials ended, and at which pose most of these did.
 struct FailureCause {
     Status status = Status::completed;
-    std::int64_t trials = 0;                ///< that ended so
-    std::int64_t pose = -1;                 ///< -1 where no trial is kept
-    std::int64_t at_pose = 0;               ///< trials that ended so at this pose
-    std::string place;                      ///< what a pose is called: `pose`, or `step` of a record
+    std::int64_t trials = 0;   ///< that ended so
+    std::int64_t pose = -1;    ///< -1 where no trial is kept
+    std::int64_t at_pose = 0;  ///< trials that ended so at this pose
+    std::string place;         ///< what a pose is called: `pose`, or `step` of a record
 };
 
 struct ArmReport {
@@ -48,8 +48,8 @@ struct ArmReport {
     std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
-    std::optional<FailureCause> cause{};    ///< none where no trial failed
-    RecordGaps gaps{};                      ///< of a record
+    std::optional<FailureCause> cause{};  ///< none where no trial failed
+    RecordGaps gaps{};                    ///< of a record
 
     bool not_run() const { return trials == 0; }
     /// The largest share of failed trials without the verdict `failed`.

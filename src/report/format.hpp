@@ -20,14 +20,15 @@ std::string aligned(const std::string& text, int width, bool right = true);
 /// The same, with at least one blank.
 std::string padded(const std::string& text, int width, bool right = true);
 
-/// A number to so many decimals, beyond six of them to ten significant digits at most; `-` where it is not finite, so that
-/// neither `nan` nor `inf` appears in a sentence.
+/// A number to so many decimals, beyond six of them to ten significant digits at most; `-` where it is not finite, so
+/// that neither `nan` nor `inf` appears in a sentence.
 std::string number(double value, int digits);
 
 /// Five significant digits, whole numbers in full; `-` for values that are not finite. The same in every locale.
 std::string short_number(double value);
 
-/// Decimals that show two digits of the uncertainty; of a value without one four, or as many as show four of its digits.
+/// Decimals that show two digits of the uncertainty; of a value without one four, or as many as show four of its
+/// digits.
 int decimals_for(double uncertainty, double value = 0);
 
 inline double half_width(const Interval& interval) { return (interval.high - interval.low) / 2; }

@@ -59,10 +59,12 @@ std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmRe
     const std::vector<std::int64_t> counts = status_counts(results, arm);
     const auto most = std::max_element(counts.begin() + 1, counts.end());  // after `completed`
     if (*most == 0) return std::nullopt;
-    FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0, results.blocks.empty() ? "step" : "pose"};
+    FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0,
+                       results.blocks.empty() ? "step" : "pose"};
     if (results.keep == Keep::aggregates) return cause;
     const std::size_t column = status_column(results.columns);
-    const std::vector<double> statuses = column_values(results, arm, column), poses = column_values(results, arm, column + 1);
+    const std::vector<double> statuses = column_values(results, arm, column),
+                              poses = column_values(results, arm, column + 1);
     std::map<std::int64_t, std::int64_t> at;
     for (std::size_t i = 0; i < statuses.size(); ++i)
         if (statuses[i] == static_cast<double>(cause.status)) ++at[static_cast<std::int64_t>(poses[i])];

@@ -78,7 +78,9 @@ Cell number_cell_as(double value, const std::string& shown) {
 
 Cell number_cell(double value, int digits) { return number_cell_as(value, number(value, digits)); }
 
-Cell number_cell_within(double value, double uncertainty) { return number_cell(value, decimals_for(uncertainty, value)); }
+Cell number_cell_within(double value, double uncertainty) {
+    return number_cell(value, decimals_for(uncertainty, value));
+}
 
 Cell count_cell(double value) { return number_cell_as(value, short_number(value)); }
 

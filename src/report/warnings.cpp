@@ -1,13 +1,12 @@
 // What a report says before everything else: trials that failed, steps that are missing, what is not judged.
 
-#include "report/words.hpp"
-
-#include "report/format.hpp"
-#include "verdict/consistency_parts.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+
+#include "report/format.hpp"
+#include "report/words.hpp"
+#include "verdict/consistency_parts.hpp"
 
 namespace credence {
 
@@ -22,7 +21,8 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status) ? "; the trial is left out of the numbers." : "; the trial is kept in the numbers."));
+                        (failed(trouble.status) ? "; the trial is left out of the numbers."
+                                                : "; the trial is kept in the numbers."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
@@ -40,8 +40,8 @@ std::string gaps_text(const ArmReport& arm) {
     const RecordGaps& gaps = arm.gaps;
     if (gaps.missing == 0) return {};
     const auto missing = static_cast<double>(gaps.missing);
-    std::string text = "note: " + percent(missing / static_cast<double>(gaps.steps)) + " of the steps of " + arm.scenario +
-                       "/" + arm.arm + " are missing (" + std::to_string(gaps.missing) + " of " +
+    std::string text = "note: " + percent(missing / static_cast<double>(gaps.steps)) + " of the steps of " +
+                       arm.scenario + "/" + arm.arm + " are missing (" + std::to_string(gaps.missing) + " of " +
                        std::to_string(gaps.steps) + ", in " + std::to_string(gaps.runs) + " of " +
                        std::to_string(arm.evidence.trials) + " trials): error and covariance are NaN there.";
     if (stands_out(gaps.of_trial, missing / static_cast<double>(arm.evidence.trials)))
@@ -65,9 +65,11 @@ std::vector<std::string> failure_lines(const std::string& arm, const FailureCoun
     const std::string of = " trials of " + arm;
     if (too_many_failed(failed, counts.trials, limit))
         lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of + " failed" +
-                        (counts.diverged == 0   ? " and " + words.left_out
-                         : counts.left_out == 0 ? ""
-                                                : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) + ".");
+                        (counts.diverged == 0 ? " and " + words.left_out
+                         : counts.left_out == 0
+                             ? ""
+                             : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) +
+                        ".");
     if (counts.diverged > 0)
         lines.push_back("note: " + std::to_string(counts.diverged) + of + " diverged; they " + words.diverged + ".");
     return lines;
@@ -78,19 +80,21 @@ std::vector<std::string> warnings_of(const Report& report) {
     for (const ArmReport& arm : report.arms) {
         const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                             {"are left out of its numbers", "are kept in the numbers"}), std::back_inserter(lines));
+                                        {"are left out of its numbers", "are kept in the numbers"}),
+                          std::back_inserter(lines));
     }
     for (const ArmReport& arm : report.arms)
         if (const std::string text = gaps_text(arm); !text.empty()) lines.push_back(text);
     add_troubles(report, lines);
     for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
     if (!report.complete) {
-        const auto not_run = std::count_if(report.arms.begin(), report.arms.end(),
-                                           [](const ArmReport& arm) { return arm.not_run(); });
+        const auto not_run =
+            std::count_if(report.arms.begin(), report.arms.end(), [](const ArmReport& arm) { return arm.not_run(); });
         lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
                         " trials of each arm" +
-                        (not_run == 0 ? "." : ", and " + std::to_string(not_run) + " of " +
-                                                  std::to_string(report.arms.size()) + " arms are not run yet."));
+                        (not_run == 0 ? "."
+                                      : ", and " + std::to_string(not_run) + " of " +
+                                            std::to_string(report.arms.size()) + " arms are not run yet."));
     }
     if (report.keep == Keep::aggregates) lines.push_back("note: " + no_trials_note());
     return lines;

@@ -49,8 +49,8 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, co
 std::string cause_text(const ArmReport& arm) {
     if (!arm.cause) return {};
     const FailureCause& cause = *arm.cause;
-    const std::string text = ": " + std::to_string(cause.trials) + " with status " +
-                             status_names()[static_cast<std::size_t>(cause.status)];
+    const std::string text =
+        ": " + std::to_string(cause.trials) + " with status " + status_names()[static_cast<std::size_t>(cause.status)];
     if (cause.at_pose == 0) return text;
     return text + ", " + (cause.at_pose == cause.trials ? "all" : std::to_string(cause.at_pose)) + " of these at " +
            cause.place + " " + std::to_string(cause.pose);

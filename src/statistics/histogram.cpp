@@ -34,7 +34,8 @@ std::vector<double> edges_of(double first, double last, const Edge& edge) {
 }
 
 std::vector<double> equal_edges(double low, double high, int about, bool whole) {
-    const double spread = high > low ? std::max(high - low, 1e-12 * std::abs(high)) : std::max(1e-6, std::abs(high) / 1000),
+    const double spread =
+                     high > low ? std::max(high - low, 1e-12 * std::abs(high)) : std::max(1e-6, std::abs(high) / 1000),
                  width = whole ? std::max(1.0, round_width(spread / about)) : round_width(spread / about),
                  shift = whole ? -0.5 : 0;
     return edges_of(std::floor((low - shift) / width), std::floor((high - shift) / width) + 1,

@@ -1,9 +1,9 @@
 // A file with many objects is read in time proportional to their number.
 
+#include <ctime>
+
 #include "catch.hpp"
 #include "record_support.hpp"
-
-#include <ctime>
 
 using namespace credence;
 using namespace credence::test;
@@ -19,7 +19,8 @@ TEST_CASE("hdf5: opening and closing an object takes no longer after thousands o
     const auto seconds = [&](int first) {  // of the processor, so that other programs do not count
         const std::clock_t start = std::clock();
         for (int i = first; i < first + part; ++i) {
-            const Handle one(H5Dopen2(file.id(), ("d" + std::to_string(i)).c_str(), H5P_DEFAULT), H5Dclose, "d", "no data");
+            const Handle one(H5Dopen2(file.id(), ("d" + std::to_string(i)).c_str(), H5P_DEFAULT), H5Dclose, "d",
+                             "no data");
             REQUIRE(one.id() >= 0);
         }
         return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

@@ -1,11 +1,10 @@
 // Steps that are missing within the runs of a record are counted, and said first.
 
+#include <credence/report.hpp>
+#include <nlohmann/json.hpp>
+
 #include "catch.hpp"
 #include "record_support.hpp"
-
-#include <credence/report.hpp>
-
-#include <nlohmann/json.hpp>
 
 using namespace credence;
 using namespace credence::test;
@@ -20,7 +19,8 @@ void leave_out(DrawnRecord& record, int trial, int step) {
 }
 
 Report report_of(const DrawnRecord& record) {
-    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5", Limits());
+    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5",
+                              Limits());
 }
 
 /// Errors of half of each run grow and shrink again, so that large ones have large neighbours.
@@ -52,7 +52,8 @@ TEST_CASE("gaps: the first line has the share of missing steps, the trial and th
     CHECK(gaps.by_step[0] == 0);
     const std::string text = report_text(report);
     CHECK(text.starts_with("note: 3 % of the steps of record/record are missing (166 of 6000, in 151 of 300 trials)"));
-    CHECK_THAT(text.substr(0, text.find("\nrecord ")), Contains("Trial 17 lacks most, 16.") && Contains("missing: step 7, in up to 150"));
+    CHECK_THAT(text.substr(0, text.find("\nrecord ")),
+               Contains("Trial 17 lacks most, 16.") && Contains("missing: step 7, in up to 150"));
     CHECK_THAT(report_html(report, {"record.h5", {}, "test"}), Contains("166 of 6000, in 151 of 300 trials"));
     const auto json = nlohmann::json::parse(report_json(report)).front()["missing_steps"];
     CHECK(json["missing"] == 166);
@@ -77,10 +78,11 @@ TEST_CASE("units: squares of different units are not added, and those of one hav
     const DrawnRecord record(50, 4, 3);
     const auto report_with = [&](const std::string& units) {
         return make_record_report(read_written([&](const Handle& root) {
-            write_drawn(root, record);
-            hdf5::write_text(root, "groups", "pose 0:3");
-            if (!units.empty()) hdf5::write_text(root, "component_units", units);
-        }), "record.h5", Limits());
+                                      write_drawn(root, record);
+                                      hdf5::write_text(root, "groups", "pose 0:3");
+                                      if (!units.empty()) hdf5::write_text(root, "component_units", units);
+                                  }),
+                                  "record.h5", Limits());
     };
     const auto sums = [&](int components) {
         double error = 0, variance = 0;

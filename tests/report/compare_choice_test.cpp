@@ -104,11 +104,13 @@ TEST_CASE("compare: where there is nothing to compare, what there is is named") 
     const DeformableSettings fixed_only = changed(scenario("h"), "arms.controllers", "fixed"),
                    greedy_only = changed(scenario("h"), "arms.controllers", "greedy");
     CHECK_THAT(refused({unrun("one.h5", {fixed_only})}),
-               Contains("nothing to compare in one.h5 (no arm has that of a simpler controller") && Contains("Give a further file to compare its arm with: one.h5 has fixed.ekf in h."));
+               Contains("nothing to compare in one.h5 (no arm has that of a simpler controller") &&
+                   Contains("Give a further file to compare its arm with: one.h5 has fixed.ekf in h."));
     StudyFile own = unrun("own.h5", {scenario("h")});  // arms of a user's program have names of their own
     own.study.scenarios[0].arms[0].name = "local";
     own.study.scenarios[0].arms[1].name = "global";
-    CHECK_THAT(refused({own}), Contains("Choose two arms, such as --arms local,global: own.h5 has local, global in h."));
+    CHECK_THAT(refused({own}),
+               Contains("Choose two arms, such as --arms local,global: own.h5 has local, global in h."));
     CHECK_THAT(
         refused({unrun("one.h5", {fixed_only}), unrun("two.h5", {greedy_only})}),
         Contains("cannot compare two.h5 with one.h5 (no scenario of the same name has an arm of the same name)"));

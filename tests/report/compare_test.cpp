@@ -119,9 +119,10 @@ TEST_CASE("compare: a study and the same world with filter.measurement=0.8") {
     CHECK(of(pair, column_trace_P).difference.mean == Approx(expected).epsilon(1e-9));
     CHECK(of(pair, column_trace_P).wins_a == 1);
     CHECK(pair.conclusion == Conclusion::lower);
-    CHECK_THAT(compare_text(report), Contains("1500 pairs, of the 1500 trials that both have: A has 1500, B has 2000") &&
-                                         Contains("they differ in filter.measurement (0.8 in A, 1 in B)") &&
-                                         Contains("trace_P: wrong:fixed.kf is lower than right:fixed.kf by 0.004351"));
+    CHECK_THAT(compare_text(report),
+               Contains("1500 pairs, of the 1500 trials that both have: A has 1500, B has 2000") &&
+                   Contains("they differ in filter.measurement (0.8 in A, 1 in B)") &&
+                   Contains("trace_P: wrong:fixed.kf is lower than right:fixed.kf by 0.004351"));
 }
 
 TEST_CASE("compare: a difference that is the same in every trial has no spread, whatever their number") {

@@ -1,12 +1,11 @@
 // Of trials that failed the report says how most of them ended, and where.
 
-#include "catch.hpp"
-#include "study_support.hpp"
-
 #include <credence/report.hpp>
 #include <credence/slam_columns.hpp>
-
 #include <nlohmann/json.hpp>
+
+#include "catch.hpp"
+#include "study_support.hpp"
 
 using namespace credence;
 using Catch::Contains;
@@ -19,7 +18,8 @@ Study failing_study() {
     Study study = small_study(1, 100, 1);
     std::vector<std::vector<double>>& columns = study.scenarios.front().arms.front().columns;
     for (std::size_t i = 0; i < 50; ++i) {
-        columns[column_status][i] = static_cast<double>(i < 40 ? Status::non_finite : Status::covariance_not_positive_definite);
+        columns[column_status][i] =
+            static_cast<double>(i < 40 ? Status::non_finite : Status::covariance_not_positive_definite);
         columns[column_status_pose][i] = i < 30 ? 3 : 5;
     }
     return study;

@@ -1,11 +1,11 @@
 // Numbers in reports: as many digits as their uncertainty asks for.
 
-#include "catch.hpp"
-
 #include "report/format.hpp"
-#include "report/table.hpp"
 
 #include <cmath>
+
+#include "catch.hpp"
+#include "report/table.hpp"
 
 using namespace credence;
 

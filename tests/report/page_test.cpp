@@ -1,13 +1,13 @@
 // What the page shows: values without a place on an axis, sensors that speak now and then, mixed verdicts, sweeps.
 
+#include <credence/report.hpp>
+
 #include "catch.hpp"
 #include "of_scenarios.hpp"
 #include "program.hpp"
 #include "record_support.hpp"
-#include "study_support.hpp"
-
 #include "report/html/charts/chart.hpp"
-#include <credence/report.hpp>
+#include "study_support.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -31,7 +31,8 @@ std::string drawing_of(const std::string& page, const std::string& title) {
 }
 
 Report record_report(const DrawnRecord& record) {
-    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5", Limits());
+    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5",
+                              Limits());
 }
 
 }  // namespace
@@ -42,7 +43,8 @@ TEST_CASE("page: a published value that is not positive is at the end of a logar
         scenario.published.trace_P = {{"greedy.kf", published}};
         Study study = new_study({scenario}, 1);
         run_study(study, {60, 1, {}});
-        const std::string page = page_of(make_report(study, 0.05)), drawing = drawing_of(page, scenario.name + ": distribution of trace(P)");
+        const std::string page = page_of(make_report(study, 0.05)),
+                          drawing = drawing_of(page, scenario.name + ": distribution of trace(P)");
         CHECK(drawing.size() < 100000);
         CHECK_THAT(drawing, Contains("class=\"published\"") && !Contains("nan") && !Contains("inf"));
     }
@@ -53,7 +55,8 @@ TEST_CASE("page: of a sensor that speaks at every tenth step each innovation has
     for (int i = 0; i < 20; ++i)
         for (int k = 0; k < 300; ++k)
             if (k % 10 != 9) record.innovation[record.at(i, k)].setConstant(std::nan(""));
-    const std::string page = page_of(record_report(record)), drawing = drawing_of(page, "record: NIS/m of rows: all by step");
+    const std::string page = page_of(record_report(record)),
+                      drawing = drawing_of(page, "record: NIS/m of rows: all by step");
     CHECK(count_of(drawing, "class=\"mark") == 30);
     const std::size_t table = page.find("NIS of the rows all by step</caption>");
     CHECK(count_of(page.substr(table, page.find("</table>", table) - table), "<tr><th") == 31);  // with its heads
@@ -72,7 +75,8 @@ TEST_CASE("page: a mixed verdict has all of its reasons beside it") {
 TEST_CASE("page: the curves of a sweep come before its tables, its points are folded, and units have raised powers") {
     const Workplace work;
     REQUIRE(work.credence("run " + seed_scenario("kf-circle-constant") +
-                          " --trials 30 --quiet -o s.h5 --sweep noise.deformation=0.1,0.2,0.3").exit_code == 0);
+                          " --trials 30 --quiet -o s.h5 --sweep noise.deformation=0.1,0.2,0.3")
+                .exit_code == 0);
     const std::string page = work.credence("report s.h5 --format html").out;
     CHECK(page.find(">Curves</h3>") < page.find("by point: mean"));
     CHECK(count_of(page, "class=\"arm\"") == 0);  // their verdicts are in the table

@@ -1,15 +1,14 @@
 // Scales and ticks over every range that doubles have.
 
-#include "catch.hpp"
-
-#include "report/html/charts/chart.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "catch.hpp"
+#include "report/html/charts/chart.hpp"
 
 using namespace credence;
 
@@ -18,8 +17,19 @@ namespace {
 /// Doubles at the ends of what there is, and neighbours of others; then any bits.
 std::vector<double> hostile_values() {
     using limits = std::numeric_limits<double>;
-    std::vector<double> values{0.0, 1.0, 2.0, 1e-3, 1e15, 9007199254740993.0, 1e300, 1e308, limits::max(), limits::min(),
-                               limits::denorm_min(), 3 * limits::denorm_min(), 1e-310};
+    std::vector<double> values{0.0,
+                               1.0,
+                               2.0,
+                               1e-3,
+                               1e15,
+                               9007199254740993.0,
+                               1e300,
+                               1e308,
+                               limits::max(),
+                               limits::min(),
+                               limits::denorm_min(),
+                               3 * limits::denorm_min(),
+                               1e-310};
     for (std::size_t i = 0, count = values.size(); i < count; ++i) {
         values.push_back(std::nextafter(values[i], limits::max()));
         values.push_back(-values[i]);
@@ -50,8 +60,8 @@ TEST_CASE("chart: over every finite range ticks are few and every value has its 
             Range range;
             range.include(a);
             range.include(b);
-            for (const Scale& scale :
-                 {range.scale(0, 100, INFINITY), range.scale(0, 100, 1), scale_between(ScaleKind::logarithmic, a, b, 0, 100)}) {
+            for (const Scale& scale : {range.scale(0, 100, INFINITY), range.scale(0, 100, 1),
+                                       scale_between(ScaleKind::logarithmic, a, b, 0, 100)}) {
                 CHECK(scale.low < scale.high);
                 for (const double value : {a, b, 0.0, -1.0}) CHECK((scale(value) >= 0 && scale(value) <= 100));
                 for (const int about : {1, 5, 8}) check_ticks(scale, about);

@@ -71,8 +71,8 @@ std::string start_of(const std::string& path, std::size_t most) {
     }
 }
 
-/// A merge has up to a thousand files open, so the library's cache for each must be small. It has a fixed size: to evict what
-/// is closed, the library searches all of its cache each time an object is closed.
+/// A merge has up to a thousand files open, so the library's cache for each must be small. It has a fixed size: to
+/// evict what is closed, the library searches all of its cache each time an object is closed.
 void limit_cache(const Handle& access) {
     constexpr std::size_t size = 128 << 10;
     H5AC_cache_config_t config;

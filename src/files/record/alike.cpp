@@ -44,7 +44,8 @@ void AlikeSums::keep(std::size_t k, const CheckedStep& step) {
         for (int i = 0; i < group.count; ++i) sum += square(group.component(i));
         return sum;
     };
-    if (!variances_.empty() && step.P.size() > 0) variances_[k] = sum(of_state_, [&](int j) { return step.P(j, j); });
+    if (!variances_.empty() && step.P.size() > 0)
+        variances_[k] = sum(of_state_, [&](int j) { return step.P(j, j); });
     else if (!variances_.empty() && step.variances.size() > 0)
         variances_[k] = sum(of_state_, [&](int j) { return step.variances(j); });
     if (!errors_.empty()) errors_[k] = sum(of_pose_, [&](int j) { return step.e(j) * step.e(j); });

@@ -1,11 +1,11 @@
 #pragma once
 // Sums over the components of a record that share a unit: squares of different units are not added.
 
-#include "worlds/own/step.hpp"
-
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "worlds/own/step.hpp"
 
 namespace credence {
 
@@ -19,14 +19,17 @@ ComponentGroup alike(const RecordShape& shape, const ComponentGroup& group);
 /// Of the squares of a group's alike components.
 std::string unit_of_squares(const RecordShape& shape, std::size_t group);
 
-/// The variance of the whole state and the squared error of the pose at the steps of a trial, over the alike components.
+/// The variance of the whole state and the squared error of the pose at the steps of a trial, over the alike
+/// components.
 class AlikeSums {
 public:
     explicit AlikeSums(const RecordShape& shape);
 
     void keep(std::size_t k, const CheckedStep& step);
     /// `all` is the sum over all components; NaN where the step has none.
-    double variance(std::size_t k, double all) const { return variances_.empty() || std::isnan(all) ? all : variances_[k]; }
+    double variance(std::size_t k, double all) const {
+        return variances_.empty() || std::isnan(all) ? all : variances_[k];
+    }
     double error(std::size_t k, double all) const { return errors_.empty() || std::isnan(all) ? all : errors_[k]; }
 
 private:

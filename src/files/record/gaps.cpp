@@ -1,8 +1,7 @@
 #include "files/record/gaps.hpp"
 
-#include <credence/statistics.hpp>
-
 #include <cmath>
+#include <credence/statistics.hpp>
 
 namespace credence {
 

@@ -1,16 +1,15 @@
 // The empty results of a record: the same declarations as a run has.
 
+#include "files/record/results.hpp"
+
+#include <algorithm>
 #include <credence/record.hpp>
 #include <credence/study.hpp>
 #include <credence/text.hpp>
-
-#include "files/record/alike.hpp"
-#include "files/record/results.hpp"
+#include <filesystem>
 
 #include "base/nan.hpp"
-
-#include <algorithm>
-#include <filesystem>
+#include "files/record/alike.hpp"
 
 namespace credence {
 
@@ -26,7 +25,8 @@ std::string scenario_name(const std::string& path) {
 
 /// In the order of RecordColumn.
 std::vector<Column> record_columns(const RecordShape& shape) {
-    const std::string unit = unit_of_squares(shape, 0), of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
+    const std::string unit = unit_of_squares(shape, 0),
+                      of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
     std::vector<Column> columns{
         {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
         {"unseen", "not known of a record", "1", ColumnType::integer, nan},
@@ -78,10 +78,12 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
     if (!shape.known_groups.empty())
         sentences.push_back("Groups of nothing else are left out: " + joined(shape.known_groups) + ".");
     const ComponentGroup whole = alike(shape, shape.groups[0]), pose = alike(shape, shape.groups[pose_group(shape)]);
-    const auto unit_of = [&](const ComponentGroup& group) { return shape.components[static_cast<std::size_t>(group.component(0))].unit; };
+    const auto unit_of = [&](const ComponentGroup& group) {
+        return shape.components[static_cast<std::size_t>(group.component(0))].unit;
+    };
     if (shape.has_errors && whole.count < shape.n)
-        sentences.push_back("Squares of different units are not added: trace(P) is of the components in " + unit_of(whole) +
-                            " alone, and the pose error of those in " + unit_of(pose) + ".");
+        sentences.push_back("Squares of different units are not added: trace(P) is of the components in " +
+                            unit_of(whole) + " alone, and the pose error of those in " + unit_of(pose) + ".");
     if (shape.has_variances)
         sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
                             "between components is.");

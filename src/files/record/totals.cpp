@@ -28,7 +28,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
       judge_(shape_, all_series_),
       presence_(shape_),
       gaps_(size(shape_.steps)),
-      products_(size(lag_count(shape_.steps + 1)), size(shape_.m), shape_.version == 1 ? Lags::in_steps : Lags::in_measurements),
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m),
+                shape_.version == 1 ? Lags::in_steps : Lags::in_measurements),
       moments_(shape_.n, shape_.groups.size()) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
@@ -188,12 +189,13 @@ void RecordTotals::add_columns(std::int64_t trial) {
     // Sums and means are over the steps at which the series has a value; NaN where it has none.
     const auto at = [&](std::size_t f, std::size_t k) {
         const double all = series(f, k);
-        return f == all_series_.variance                                ? alike_.variance(k, all)
+        return f == all_series_.variance                             ? alike_.variance(k, all)
                : f == all_series_.squared_error + pose_group(shape_) ? alike_.error(k, all)
-                                                                        : all;
+                                                                     : all;
     };
     const auto count = [&](std::size_t f) {
-        return static_cast<double>(std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(at(f, k)); }));
+        return static_cast<double>(
+            std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(at(f, k)); }));
     };
     const auto over_steps = [&](std::size_t f) {
         double sum = 0;

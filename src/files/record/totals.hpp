@@ -2,19 +2,18 @@
 // The totals over the trials of a record.
 
 #include <credence/record.hpp>
-
-#include "files/record/alike.hpp"
-#include "files/record/gaps.hpp"
-#include "files/record/reader.hpp"
-#include "files/record/presence.hpp"
-#include "worlds/own/step.hpp"
-#include "files/record/row_products.hpp"
-#include "worlds/own/moments.hpp"
-
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "files/record/alike.hpp"
+#include "files/record/gaps.hpp"
+#include "files/record/presence.hpp"
+#include "files/record/reader.hpp"
+#include "files/record/row_products.hpp"
+#include "worlds/own/moments.hpp"
+#include "worlds/own/step.hpp"
 
 namespace credence {
 

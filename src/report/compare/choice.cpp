@@ -64,8 +64,8 @@ public:
         }
         if (pairs_.empty())
             throw InputError("nothing to compare in " + files_[0].path +
-                             " (no arm has that of a simpler controller and the same estimator beside it). " + remedy_of_one() +
-                             ": " + contents(files_[0]) + ".");
+                             " (no arm has that of a simpler controller and the same estimator beside it). " +
+                             remedy_of_one() + ": " + contents(files_[0]) + ".");
     }
 
     /// Pairs every arm of a later file with the first file's arm of the same name.

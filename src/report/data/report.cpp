@@ -43,10 +43,14 @@ Json cause_json(const FailureCause& cause) {
 }
 
 Json gaps_json(const RecordGaps& gaps) {
-    return {{"steps", gaps.steps}, {"missing", gaps.missing},
-            {"share", static_cast<double>(gaps.missing) / static_cast<double>(gaps.steps)}, {"trials", gaps.runs},
-            {"worst_trial", {{"trial", gaps.trial}, {"missing", gaps.of_trial}}}, {"by_step", gaps.by_step},
-            {"nees_ratio_beside", gaps.beside}, {"nees_ratio_elsewhere", gaps.elsewhere}};
+    return {{"steps", gaps.steps},
+            {"missing", gaps.missing},
+            {"share", static_cast<double>(gaps.missing) / static_cast<double>(gaps.steps)},
+            {"trials", gaps.runs},
+            {"worst_trial", {{"trial", gaps.trial}, {"missing", gaps.of_trial}}},
+            {"by_step", gaps.by_step},
+            {"nees_ratio_beside", gaps.beside},
+            {"nees_ratio_elsewhere", gaps.elsewhere}};
 }
 
 Json findings_json(const std::vector<Finding>& findings) {

@@ -108,7 +108,8 @@ Html row_html(const Table::Row& row, const Table& table) {
 Html html_of(const Table& table) {
     if (table.empty()) return {};
     Html heads, rows;
-    for (const std::string& text : table.heads()) heads += element("th", escaped(with_powers(text)), "scope=\"col\""_html);
+    for (const std::string& text : table.heads())
+        heads += element("th", escaped(with_powers(text)), "scope=\"col\""_html);
     for (const Table::Row& row : table.rows()) {
         if (row.heads_group && !rows.empty()) rows += "</tbody><tbody>\n"_html;
         rows += row_html(row, table);

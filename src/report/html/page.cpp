@@ -80,7 +80,8 @@ Html scenario_section(const Part& part) {
     return "<section class=\"scenario\" aria-labelledby=\""_html + section_id(part.scenario.name) + "\">\n"_html +
            element("h2", escaped(part.scenario.name), "id=\""_html + section_id(part.scenario.name) + "\""_html) +
            "\n"_html + (title.empty() ? Html() : paragraph(title)) +
-           (SweptReport::swept(part.scenario) ? folded("Everything of this point", body, InPrint::open) : body) + "</section>\n"_html;
+           (SweptReport::swept(part.scenario) ? folded("Everything of this point", body, InPrint::open) : body) +
+           "</section>\n"_html;
 }
 
 }  // namespace

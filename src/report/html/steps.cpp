@@ -1,14 +1,13 @@
 // The page's tables by step: every value that the charts draw, and those behind the findings.
 
-#include "report/html/charts/chart.hpp"
+#include <cmath>
 #include <credence/text.hpp>
+#include <numeric>
 
 #include "report/format.hpp"
+#include "report/html/charts/chart.hpp"
 #include "report/html/page.hpp"
 #include "report/words.hpp"
-
-#include <cmath>
-#include <numeric>
 
 namespace credence::page {
 
@@ -24,10 +23,12 @@ std::string captioned(const std::string& caption, std::size_t count) {
 
 /// A row for each of these steps, or for some of them.
 template <class Cells>
-Html by_step(const std::string& caption, const std::vector<std::size_t>& steps, std::vector<std::string> heads, const Cells& cells) {
+Html by_step(const std::string& caption, const std::vector<std::size_t>& steps, std::vector<std::string> heads,
+             const Cells& cells) {
     heads.insert(heads.begin(), "step");
     Table table(captioned(caption, steps.size()), std::move(heads));
-    for (const std::size_t i : thinned(steps.size(), most_rows)) table.row(std::to_string(steps[i] + 1), cells(steps[i]));
+    for (const std::size_t i : thinned(steps.size(), most_rows))
+        table.row(std::to_string(steps[i] + 1), cells(steps[i]));
     return html_of(table);
 }
 

@@ -113,8 +113,8 @@ Html difference_spread_table(const Comparison& pair) {
         table.row(
             column_words(one.name, one.unit),
             {count_cell(static_cast<double>(one.paired.pairs)), number_cell_within(s.standard_error, s.standard_error),
-             number_cell(s.standard_deviation, decimals_for(half_width(s.ci95), s.mean)), number_cell(one.paired.wilcoxon_z, 2),
-             p_cell(one.paired.wilcoxon_p)});
+             number_cell(s.standard_deviation, decimals_for(half_width(s.ci95), s.mean)),
+             number_cell(one.paired.wilcoxon_z, 2), p_cell(one.paired.wilcoxon_p)});
     }
     return html_of(table);
 }

@@ -1,16 +1,15 @@
 // The page's verdicts and findings.
 
+#include <algorithm>
+#include <cmath>
 #include <credence/text.hpp>
+#include <map>
+#include <set>
 
 #include "report/format.hpp"
 #include "report/html/page.hpp"
 #include "report/sweep.hpp"
 #include "report/words.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 
 namespace credence::page {
 
@@ -55,9 +54,8 @@ Table findings_table(const std::string& caption, const std::vector<Finding>& fin
     Table table(caption, {"what", "where", "when", "value", "interval, corrected"});
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
-        table.row(finding.what,
-                  {finding.where, when_text(finding), number_cell_within(finding.value, half),
-                   interval_cell(finding.interval, decimals_for(half, finding.value))});
+        table.row(finding.what, {finding.where, when_text(finding), number_cell_within(finding.value, half),
+                                 interval_cell(finding.interval, decimals_for(half, finding.value))});
     }
     return table;
 }

@@ -2,11 +2,11 @@
 
 #include "report/html/charts/chart.hpp"
 
-#include "report/format.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "report/format.hpp"
 
 namespace credence {
 
@@ -116,7 +116,8 @@ void Svg::text(ChartPoint at, Anchor anchor, const std::string& text, const std:
     const char* const anchors[] = {"start", "middle", "end"};
     constexpr double of_character = 6.2;  // about, in a wide font
     const double room = width_ - 4, asked = of_character * characters(text), length = std::min(room, asked),
-                 before = length * static_cast<int>(anchor) / 2, x = std::clamp(at.x, 2 + before, 2 + before + room - length);
+                 before = length * static_cast<int>(anchor) / 2,
+                 x = std::clamp(at.x, 2 + before, 2 + before + room - length);
     body_ += "<text" + attribute("class", classes) + attribute("x", x) + attribute("y", at.y) +
              attribute("text-anchor", anchors[static_cast<int>(anchor)]) +
              (asked > room ? attribute("textLength", room) + attribute("lengthAdjust", "spacingAndGlyphs") : "") + ">" +

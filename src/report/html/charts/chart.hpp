@@ -21,12 +21,12 @@ struct Scale {
     double operator()(double value) const;
 };
 
-/// A scale over these ends, which are moved where there would be none: a logarithmic one begins above 0, none ends beyond
-/// what doubles can subtract, and its ends differ.
+/// A scale over these ends, which are moved where there would be none: a logarithmic one begins above 0, none ends
+/// beyond what doubles can subtract, and its ends differ.
 Scale scale_between(ScaleKind kind, double low, double high, double from, double to);
 
-/// Round numbers within [low, high], about `about` of them and few more: multiples of 1, 2 or 5 times a power of ten; on a
-/// logarithmic scale of more than a decade 1, 2 and 5 times powers of ten, or only those.
+/// Round numbers within [low, high], about `about` of them and few more: multiples of 1, 2 or 5 times a power of ten;
+/// on a logarithmic scale of more than a decade 1, 2 and 5 times powers of ten, or only those.
 std::vector<double> ticks(const Scale& scale, int about);
 
 /// Texts of ticks, all with the same decimals.

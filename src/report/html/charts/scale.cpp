@@ -77,9 +77,9 @@ double Scale::operator()(double value) const {
 
 std::vector<double> ticks(const Scale& scale, int about) {
     const bool logarithmic = scale.kind == ScaleKind::logarithmic;
-    if (about <= 0 || !(scale.low < scale.high) || std::isinf(scale.high) || (logarithmic && !(scale.low > 0))) return {};
-    if (logarithmic && scale.high > 10 * scale.low)
-        return logarithmic_ticks(scale.low, scale.high, about);
+    if (about <= 0 || !(scale.low < scale.high) || std::isinf(scale.high) || (logarithmic && !(scale.low > 0)))
+        return {};
+    if (logarithmic && scale.high > 10 * scale.low) return logarithmic_ticks(scale.low, scale.high, about);
     return linear_ticks(scale.low, scale.high, about);
 }
 
