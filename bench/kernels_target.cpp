@@ -57,7 +57,8 @@ double filter_steps(const ProblemView& problem, std::int64_t steps) {
         predict_features(work.belief, problem.filter, layout, 1);
         update_belief(work.belief, problem.filter, layout, work.sightings, edge_measurement,
                       AtMean<Layout, Real>(work.belief.mean), work.update);
-        evaluate_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome, series);
+        evaluate_step(problem, layout, work.belief, work.truth, work.update, 1, work.elimination, sums, outcome,
+                      series);
     }
     return first_lane(sums.nees + sums.nis);
 }

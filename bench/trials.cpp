@@ -61,11 +61,13 @@ Json microseconds_of(const std::map<std::string, Samples>& samples, const std::s
 /// GFLOP/s of multiply-adds, measured among the row's own benchmarks: the clock drifts. NaN where it is no peak.
 double peak_of(const std::map<std::string, Samples>& samples, const std::string& target) {
     for (const Kernels& kernels : runnable_kernels())
-        if (kernels.target == target && kernels.hardware_fma) return bench::peak_of(samples.at("peak-" + target), kernels);
+        if (kernels.target == target && kernels.hardware_fma)
+            return bench::peak_of(samples.at("peak-" + target), kernels);
     return std::nan("");
 }
 
-/// Whether this core executes the best target's packs in full width: then their peak is twice that of packs half as wide.
+/// Whether this core executes the best target's packs in full width: then their peak is twice that of packs half as
+/// wide.
 bool full_width(const std::map<std::string, Samples>& samples) {
     constexpr double between_half_and_full = 1.5;
     return best_target().name == "v4" && peak_of(samples, "v4") > between_half_and_full * peak_of(samples, "v3");
@@ -102,7 +104,8 @@ void add_trials(const std::deque<Row>& rows, const Effort& effort) {
         if (has_dynamic(row)) add_baseline(row, "A", make_dynamic, effort);
         add_baseline(row, "B", make_fixed, effort);
         for (const Target& target : measured_targets())
-            if (!effort.quick || row.features() <= 8 || target.name == best_target().name) add_unit(row, target, effort);
+            if (!effort.quick || row.features() <= 8 || target.name == best_target().name)
+                add_unit(row, target, effort);
         for (const Kernels& kernels : runnable_kernels())
             add_peak("trial/" + row.name + "/peak-" + kernels.target, kernels, effort);
     }
@@ -113,8 +116,8 @@ std::vector<Table> trial_tables(const std::string& key, const std::string& title
     const std::string best = targets.front().name;
     Table table{key,
                 title + ", unit " + best,
-                {"row", "A us/step", "B us/step", "us/step", "trials/s", "x A", "x B", "bar", "operations/step", "GFLOP/s",
-                 "% of peak"},
+                {"row", "A us/step", "B us/step", "us/step", "trials/s", "x A", "x B", "bar", "operations/step",
+                 "GFLOP/s", "% of peak"},
                 {}};
     Table others{key + "_targets", title + ", other targets", {"row"}, {}};
     for (std::size_t u = 1; u < targets.size(); ++u)

@@ -19,8 +19,8 @@ inline FiftyMatrix drawn_normal(std::mt19937_64& random, int rows, int columns) 
     return FiftyMatrix::NullaryExpr(rows, columns, [&] { return Fifty(normal(random)); });
 }
 
-/// A covariance [n, n] with eigenvalues from 1 down to 1/condition, at even distances of their logarithms, in axes drawn
-/// at random.
+/// A covariance [n, n] with eigenvalues from 1 down to 1/condition, at even distances of their logarithms, in axes
+/// drawn at random.
 inline FiftyMatrix conditioned(std::mt19937_64& random, int n, double condition) {
     const FiftyMatrix Q = drawn_normal(random, n, n).householderQr().householderQ();
     FiftyVector values(n);

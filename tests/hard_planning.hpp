@@ -42,9 +42,13 @@ public:
 private:
     unsigned number(unsigned count) { return static_cast<unsigned>(random_() % count); }
     bool once_in(unsigned times) { return number(times) == 0; }
-    double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0); }
+    double uniform(double low, double high) {
+        return low + (high - low) * (static_cast<double>(random_()) / 4294967296.0);
+    }
     std::string between(double low, double high) { return std::to_string(low * std::pow(high / low, uniform(0, 1))); }
-    std::string one_of(const std::vector<const char*>& words) { return words[number(static_cast<unsigned>(words.size()))]; }
+    std::string one_of(const std::vector<const char*>& words) {
+        return words[number(static_cast<unsigned>(words.size()))];
+    }
     void set(const std::string& key, const std::string& value) { settings_.emplace_back(key, value); }
 
     void draw_features() {
@@ -90,7 +94,8 @@ private:
 };
 
 /// Steps planned, and those whose control costs more than the least by more than 1e-9 of it (which rounding may have
-/// made negative), or by more than 1e-9 where costs are logarithms. A control that is no candidate costs infinitely much.
+/// made negative), or by more than 1e-9 where costs are logarithms. A control that is no candidate costs infinitely
+/// much.
 struct Tally {
     int scenarios = 0, steps = 0, dearer = 0;
 };
@@ -120,7 +125,8 @@ public:
                 const Control& candidate = view_.control.candidates[i];
                 const double cost = lane_of(costs_[i], lane);
                 least = std::min(least, cost);
-                if (candidate.turn == lane_of(command.turn, lane) && candidate.move.x == lane_of(command.move.x, lane) &&
+                if (candidate.turn == lane_of(command.turn, lane) &&
+                    candidate.move.x == lane_of(command.move.x, lane) &&
                     candidate.move.y == lane_of(command.move.y, lane))
                     taken = cost;
             }

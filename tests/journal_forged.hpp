@@ -50,8 +50,9 @@ struct Made {
         record.keep = keep;
         record.start = {3, 3, {{0, 3}}, {}, {{0, 0}}, unknown_release};
         const BlockLayout layout(study.scenarios.front());
-        record.values = bytes.substr(ends[0] + commit_head_size + commit_start_size + block_list_size(record.start, keep),
-                                     static_cast<std::size_t>(layout.size({0, 3})));
+        record.values =
+            bytes.substr(ends[0] + commit_head_size + commit_start_size + block_list_size(record.start, keep),
+                         static_cast<std::size_t>(layout.size({0, 3})));
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));
     }
@@ -60,7 +61,8 @@ struct Made {
         std::string bytes = header;
         for (const Record& one : records) bytes += one.bytes();
         put_bytes(path + ".journal", bytes);
-        const std::string watched = refusal<InputError>([&] { RunWatch(path).snapshot(); }), text = refused(path, asked);
+        const std::string watched = refusal<InputError>([&] { RunWatch(path).snapshot(); }),
+                          text = refused(path, asked);
         // A program that only reads it refuses it too.
         if (!text.empty()) CHECK(watched.starts_with(path + ".journal: is damaged: "));
         std::filesystem::remove(path);

@@ -72,7 +72,8 @@ struct LandmarkRun {
 
     double figure(const LandmarkSettings& scenario, const std::string& name, int k) const {
         const std::vector<Series> declared = landmark_series(scenario);
-        const auto found = std::find_if(declared.begin(), declared.end(), [&](const Series& f) { return f.name == name; });
+        const auto found =
+            std::find_if(declared.begin(), declared.end(), [&](const Series& f) { return f.name == name; });
         return figures(found - declared.begin(), k - 1);
     }
 };

@@ -14,7 +14,8 @@ inline std::vector<Scenario> declarations_of(const std::vector<DeformableSetting
     return declared;
 }
 
-inline Study new_study(const std::vector<DeformableSettings>& scenarios, std::uint64_t root_seed, Keep keep = Keep::trials) {
+inline Study new_study(const std::vector<DeformableSettings>& scenarios, std::uint64_t root_seed,
+                       Keep keep = Keep::trials) {
     return new_study(declarations_of(scenarios), root_seed, keep);
 }
 

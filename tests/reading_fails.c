@@ -35,7 +35,9 @@ ssize_t pread(int descriptor, void *bytes, size_t size, off_t offset) {
     return syscall(SYS_pread64, descriptor, bytes, size, offset);
 }
 
-ssize_t pread64(int descriptor, void *bytes, size_t size, off_t offset) { return pread(descriptor, bytes, size, offset); }
+ssize_t pread64(int descriptor, void* bytes, size_t size, off_t offset) {
+    return pread(descriptor, bytes, size, offset);
+}
 
 ssize_t read(int descriptor, void *bytes, size_t size) {
     if (fails(descriptor, lseek(descriptor, 0, SEEK_CUR) + (off_t)size)) return errno = EIO, -1;

@@ -65,7 +65,8 @@ std::vector<double> flat(const Matrices& all) {
 
 /// Writes a dataset [trial, step, ...] of doubles, or of another type.
 template <class T = double>
-void write_values(const Handle& root, const std::string& name, const hdf5::Extents& extents, const std::vector<double>& values) {
+void write_values(const Handle& root, const std::string& name, const hdf5::Extents& extents,
+                  const std::vector<double>& values) {
     const std::vector<T> typed(values.begin(), values.end());
     hdf5::write_dataset(root, name, hdf5::type_of<T>(), typed.data(), extents, {"", ""});
 }
@@ -94,7 +95,8 @@ inline void write_drawn(const Handle& root, const DrawnRecord& record) {
     write_values(root, "covariance", extents_of(record, {record.n, record.n}), flat(record.covariance));
     if (record.m == 0) return;
     write_values(root, "innovation", extents_of(record, {record.m}), flat(record.innovation));
-    write_values(root, "innovation_covariance", extents_of(record, {record.m, record.m}), flat(record.innovation_covariance));
+    write_values(root, "innovation_covariance", extents_of(record, {record.m, record.m}),
+                 flat(record.innovation_covariance));
 }
 
 /// The record that `write` writes, read.

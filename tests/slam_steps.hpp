@@ -34,7 +34,8 @@ inline const TrajectoryVariable* find_variable(const Trajectory& trajectory, con
 }
 
 /// The values of a variable at a pose, as rows of `columns` numbers; empty where there is none of that name.
-inline Eigen::MatrixXd values_at(const Trajectory& trajectory, const std::string& name, int pose, Eigen::Index columns = 1) {
+inline Eigen::MatrixXd values_at(const Trajectory& trajectory, const std::string& name, int pose,
+                                 Eigen::Index columns = 1) {
     const TrajectoryVariable* variable = find_variable(trajectory, name);
     if (variable == nullptr) return {};
     const auto size = static_cast<Eigen::Index>(variable->values.size()) / trajectory.scenario.poses;
@@ -47,7 +48,9 @@ inline std::vector<TrajectoryStep> steps_of(const Trajectory& trajectory) {
     const auto n = static_cast<Eigen::Index>(trajectory.scenario.components.size());
     for (int k = 0; k < trajectory.scenario.poses; ++k) {
         TrajectoryStep& step = steps[static_cast<std::size_t>(k)];
-        const auto at = [&](const char* name, Eigen::Index columns = 1) { return values_at(trajectory, name, k, columns); };
+        const auto at = [&](const char* name, Eigen::Index columns = 1) {
+            return values_at(trajectory, name, k, columns);
+        };
         step.truth = at("truth"), step.mean = at("mean"), step.predicted_mean = at("predicted_mean");
         step.covariance = at("covariance", n), step.predicted_covariance = at("predicted_covariance", n);
         const Eigen::MatrixXd move = at("control_move");

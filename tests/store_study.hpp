@@ -56,7 +56,8 @@ inline ExactSum awkward_sum(std::size_t i) {
 }
 
 /// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 diverged.
-inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {scenario("first"), scenario("second", "translation")}) {
+inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {scenario("first"),
+                                                                               scenario("second", "translation")}) {
     Study study = new_study(scenarios, 18446744073709551615u);
     study.trials = 5;
     study.complete = true;
@@ -91,8 +92,10 @@ inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {s
                 arm.products.square_sum[lag] = awkward_sum(next++);
                 arm.products.count[lag] = static_cast<std::int64_t>(lag) << 40;
             }
-            for (std::size_t i = 0; i < arm.errors.size(); ++i) arm.errors[i] = i % 7 == 3 ? -NAN : 0.25 * static_cast<double>(i);
-            for (std::size_t i = 0; i < arm.nees.size(); ++i) arm.nees[i] = i % 5 == 2 ? NAN : 0.125 * static_cast<double>(i);
+            for (std::size_t i = 0; i < arm.errors.size(); ++i)
+                arm.errors[i] = i % 7 == 3 ? -NAN : 0.25 * static_cast<double>(i);
+            for (std::size_t i = 0; i < arm.nees.size(); ++i)
+                arm.nees[i] = i % 5 == 2 ? NAN : 0.125 * static_cast<double>(i);
         }
     }
     return study;

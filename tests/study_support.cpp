@@ -47,7 +47,8 @@ bool same_columns(const ScenarioResults& a, const ScenarioResults& b, std::size_
 bool same_arm(const ArmResults& a, const ArmResults& b) {
     if (a.name != b.name || a.counted != b.counted) return false;
     for (std::size_t f = 0; f < a.totals.size(); ++f)
-        if (!same_sums(a.totals[f].sum, b.totals[f].sum) || !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
+        if (!same_sums(a.totals[f].sum, b.totals[f].sum) ||
+            !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
             !same_bits(a.totals[f].run_square_sum.parts(), b.totals[f].run_square_sum.parts()))
             return false;
     for (std::size_t f = 0; f < a.totals.size(); ++f)

@@ -104,8 +104,9 @@ public:
     void planned(int k, const Layout& layout, const Belief& belief) {
         const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
         const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
-        price_candidates(belief, view_.control, view_.filter, view_.sensor, layout, k, view_.steps_ahead(controller_, k),
-                         *ahead, *last_step, [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
+        price_candidates(belief, view_.control, view_.filter, view_.sensor, layout, k,
+                         view_.steps_ahead(controller_, k), *ahead, *last_step,
+                         [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
     }
 
     template <class Layout, class Truth, class Belief, class EdgeMeasurement>

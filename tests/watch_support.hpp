@@ -38,7 +38,8 @@ inline void check_says(const Snapshot& snapshot, const Study& study) {
             CAPTURE(scenario.name, arm.name);
             CHECK(arm.failed == results.trials - results.arms[a].counted);
             for (std::size_t f = 0; f < arm.columns.size(); ++f)
-                check_same(arm.columns[f], summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
+                check_same(arm.columns[f],
+                           summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));
             const ArmResults* fixed = baseline_of(results, results.arms[a]);
             CHECK(arm.other == (fixed ? fixed->name : ""));
             if (fixed) {

@@ -14,8 +14,8 @@
 
 /// `error` [trials, steps, n] = estimate - truth, wrapped where it is an angle; `covariance` [trials, steps, n, n];
 /// both NaN where there is no such step (a run that ends early counts as failed, unless a dataset `steps` [trials]
-/// declares how many steps it has). `names` of the components such as "x, vx, y, vy", and `groups` of them, counted from
-/// 0, such as "position 0 2, velocity 1 3". False if HDF5 fails.
+/// declares how many steps it has). `names` of the components such as "x, vx, y, vy", and `groups` of them, counted
+/// from 0, such as "position 0 2, velocity 1 3". False if HDF5 fails.
 bool write_record(const char* path, hsize_t trials, hsize_t steps, hsize_t n, const double* error,
                   const double* covariance, const char* names, const char* groups) {
     const int version = 2;
@@ -54,5 +54,6 @@ int main(int argc, char** argv) {
             covariances.insert(covariances.end(), {P, 0, 0, P});
         }
     }
-    return write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x, y", "along 0, across 1") ? 0 : 1;
+    return write_record(argv[1], trials, steps, n, errors.data(), covariances.data(), "x, y", "along 0, across 1") ? 0
+                                                                                                                   : 1;
 }

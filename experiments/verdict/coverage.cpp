@@ -79,7 +79,8 @@ std::string covered_text(int covered, int studies) {
     using Binomial = boost::math::binomial;
     char text[60];
     std::snprintf(text, sizeof text, " %.3g (%.3g to %.3g) |", 100.0 * covered / studies,
-                  100 * Binomial::find_lower_bound_on_p(studies, covered, 0.05), 100 * Binomial::find_upper_bound_on_p(studies, covered, 0.05));
+                  100 * Binomial::find_lower_bound_on_p(studies, covered, 0.05),
+                  100 * Binomial::find_upper_bound_on_p(studies, covered, 0.05));
     return text;
 }
 
@@ -118,8 +119,9 @@ void print_rows(const World& world, int studies, int truth_trials) {
 int main(int argument_count, char** arguments) {
     using namespace credence::rates;
     const double share = argument_count > 1 ? std::atof(arguments[1]) : 1;
-    std::printf("| world | arm | NEES/n and verdict of 200,000 trials | covered, N = 50 | N = 200 | N = 1000 | denied |\n"
-                "|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| world | arm | NEES/n and verdict of 200,000 trials | covered, N = 50 | N = 200 | N = 1000 | denied |\n"
+        "|---|---|---|---|---|---|---|\n");
     for (const World& world : worlds)
         print_rows(world, static_cast<int>(share * studies_each), static_cast<int>(share * trials_of_truth));
 }

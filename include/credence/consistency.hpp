@@ -8,16 +8,17 @@
 
 namespace credence {
 
-/// consistent: NEES, directions and bias are shown to lie within their margins; optimistic: something is too large for P;
-/// pessimistic: something is too small for P; mixed: both; undecided: neither could be shown; failed: too many trials
-/// failed, whatever the others show.
+/// consistent: NEES, directions and bias are shown to lie within their margins; optimistic: something is too large for
+/// P; pessimistic: something is too small for P; mixed: both; undecided: neither could be shown; failed: too many
+/// trials failed, whatever the others show.
 enum class Verdict { consistent, optimistic, pessimistic, mixed, undecided, failed };
 
 const std::string& verdict_name(Verdict verdict);
 
 /// The limits that a verdict uses, as shares: 0.05 is 5 %.
 struct Limits {
-    double margin = 0.05;     ///< NEES/dimension within 1 -+ margin counts as consistent; a direction beyond it is a finding
+    /// NEES/dimension within 1 -+ margin counts as consistent; a direction beyond it is a finding.
+    double margin = 0.05;
     double failed = 0.01;     ///< where a larger share of the trials failed, the verdict is `failed`
     double direction = 0.10;  ///< the squared error of every direction, over what P says, within 1 -+ direction counts
     double bias = 0.1;        ///< a mean error within this many sigmas counts
@@ -118,8 +119,8 @@ struct Consistency {
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.
 Interval over_steps95(const GroupEvidence& group);
 
-/// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness of
-/// its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
+/// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness
+/// of its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
 Consistency judge(const Evidence& evidence, const Limits& limits);
 
 /// Replaces by NaN the NEES of the groups, and what rests on it, that rounding may have changed by more than a tenth of

@@ -51,7 +51,8 @@ struct GroupEvidence {
     std::vector<Coverage> coverage;
     std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
     Accuracy accuracy;
-    /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where unknown.
+    /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where
+    /// unknown.
     double rounding = 0;
 };
 

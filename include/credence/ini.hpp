@@ -17,8 +17,8 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// The scenario of a text, with overrides, resolved and validated. `origin` names the text in messages (a file, or a
 /// group of a results file); `default_name` is its name where it gives none.
 /// Throws InputError: unknown or repeated key, broken line, value out of range, keys that contradict each other.
-DeformableSettings read_deformable_text(const std::string& text, const std::string& origin, const std::string& default_name,
-                            const Overrides& overrides = {});
+DeformableSettings read_deformable_text(const std::string& text, const std::string& origin,
+                                        const std::string& default_name, const Overrides& overrides = {});
 
 /// The same from a file of at most 1 MiB; the default name is the file's stem.
 DeformableSettings read_deformable(const std::string& path, const Overrides& overrides = {});

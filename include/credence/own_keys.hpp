@@ -62,8 +62,11 @@ public:
     template <class Enum>
     void choice(const std::string& key, Enum Settings::* member, const std::vector<std::string>& choices,
                 const std::string& help) {
-        add(key, help, choices,
-            [=](Settings& s, const std::string& text) { s.*member = static_cast<Enum>(own_choice(key, text, choices)); },
+        add(
+            key, help, choices,
+            [=](Settings& s, const std::string& text) {
+                s.*member = static_cast<Enum>(own_choice(key, text, choices));
+            },
             [=](const Settings& s) {
                 const auto place = static_cast<std::size_t>(s.*member);
                 return place < choices.size() ? choices[place] : std::to_string(place);  // which `set` refuses
@@ -78,7 +81,8 @@ private:
     using Get = std::function<std::string(const Settings&)>;
     using All = OwnSettings<Settings>;
 
-    void add(const std::string& key, const std::string& help, const std::vector<std::string>& choices, Set set, Get get) {
+    void add(const std::string& key, const std::string& help, const std::vector<std::string>& choices, Set set,
+             Get get) {
         keys_.push_back({key, help, [set](All& s, const std::string& text) { set(s.own, text); },
                          [get](const All& s) { return get(s.own); }, choices});
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Module worlds: the world contract: what a type provides so that its trials run through the engine, and are judged, stored,
-// reported and compared like those of the worlds that are here already. experiments/own_filter is an example.
+// Module worlds: the world contract: what a type provides so that its trials run through the engine, and are judged,
+// stored, reported and compared like those of the worlds that are here already. experiments/own_filter is an example.
 //
 // A world is a type W with
 //
@@ -28,7 +28,8 @@
 // and, if it has use for them,
 //   static std::vector<Column> W::columns(const Settings&)        columns of its own, set by trial.set; a trial that
 //       sets one of the type integer to anything else than a whole number of 32 bits has failed
-//   static void W::validate(const Settings&)                      throws InputError where settings contradict each other
+//   static void W::validate(const Settings&)                      throws InputError where settings contradict each
+//   other
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
 // draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Its

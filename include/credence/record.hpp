@@ -54,7 +54,8 @@ struct Record {
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};
     std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
-    std::function<Record()> in_other_chart{};  ///< reads the record again, with its errors in the other chart; else empty
+    /// Reads the record again, with its errors in the other chart; else empty.
+    std::function<Record()> in_other_chart{};
 };
 
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of
@@ -63,15 +64,16 @@ struct Record {
 /// docs/judge.md has the format. Version 1, without the root's attribute `record_version`:
 /// - `error` [trial, step, n], n to 1000: estimate - truth, in the chart of the covariance. A step whose error and
 ///   covariance are all NaN does not exist; its other values are ignored.
-/// - `covariance` [trial, step, n, n]: symmetric to 1e-9 of sqrt(P_ii P_jj), or to 16 epsilons of its type where that is
+/// - `covariance` [trial, step, n, n]: symmetric to 1e-9 of sqrt(P_ii P_jj), or to 16 epsilons of its type where that
+/// is
 ///   more; the mean of both halves is used.
 /// - `steps` [trial], optional: the number of steps of each run; values after them are ignored.
 /// - both or neither: `innovation` [trial, step, m], m to 2000, NaN in rows that were not observed, and
 ///   `innovation_covariance` [trial, step, m, m], of which the observed rows are used.
 /// - the attribute `blocks` of the root, optional, half-open and 0-based: `pose 0:3, feature_1 3:5`.
 /// Version 2 (`record_version` = 2) adds, all of it optional: components that enter and leave the state; `covariance`
-/// [trial, step, n] of variances, /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth` and
-/// `estimate` on a manifold in place of `error`; the attributes `groups`, `row_groups`, `component_names` and
+/// [trial, step, n] of variances, /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth`
+/// and `estimate` on a manifold in place of `error`; the attributes `groups`, `row_groups`, `component_names` and
 /// `component_units`; `time`. What such a record cannot show is in `results.not_judged`.
 /// A record of one trial may leave out the dimension of trials. Anything else in the file is ignored.
 ///

@@ -30,14 +30,15 @@ struct SeriesTotals {
     std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer series
     ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
     std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`
-    std::vector<std::int64_t> covered; ///< [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty
+    /// [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty.
+    std::vector<std::int64_t> covered;
 
     // Of a record of version 2 only, in which a component group may be missing at some steps of a trial.
     std::vector<std::int64_t> present{};  ///< [K - 1] trials with a value at the step; empty: as the arm says
     std::int64_t runs = 0;                ///< trials with a value at some step; means only something beside `present`
     /// [K - 1] of the NEES of a state that grows or shrinks: the dimensions that it has at the step, added up over the
-    /// trials; empty: each has the declared one. `sum` and `square_sum` are then of NEES / (dimension at the step) times
-    /// the declared dimension.
+    /// trials; empty: each has the declared one. `sum` and `square_sum` are then of NEES / (dimension at the step)
+    /// times the declared dimension.
     std::vector<std::int64_t> dimensions{};
 };
 
@@ -82,11 +83,13 @@ struct ArmResults {
     ProductTotals products;
     std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
     std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees series, NaN likewise
-    std::vector<double> moments;               ///< [detailed trials, moment_count], NaN likewise; empty where none are kept
+    /// [detailed trials, moment_count], NaN likewise; empty where none are kept.
+    std::vector<double> moments;
 
     // Of a record only, whose runs may differ in length.
     std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all counted ones have
-    std::vector<double> distribution_distance;        ///< [K - 1] exact distance of the NEES from chi-square; empty: by cells
+    /// [K - 1] exact distance of the NEES from chi-square; empty: by cells.
+    std::vector<double> distribution_distance;
     /// [groups] at the worst step, the mean over the trials of what rounding may have done to NEES; empty: unknown.
     std::vector<double> rounding;
 

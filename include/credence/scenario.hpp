@@ -1,6 +1,6 @@
 #pragma once
-// Module scenario: a scenario of any world, as engine, files and program know it: its name, what it reports, and its settings as
-// text. Its world knows what the settings mean [worlds.hpp].
+// Module scenario: a scenario of any world, as engine, files and program know it: its name, what it reports, and its
+// settings as text. Its world knows what the settings mean [worlds.hpp].
 
 #include <credence/columns.hpp>
 #include <credence/sweep.hpp>
@@ -75,7 +75,8 @@ bool is_description(const std::string& key);
 /// descriptions and names, and the sections filter, control, planner, arms and sensor.
 bool keeps_the_draws(const std::string& key);
 
-/// Whether scenarios that differ in the key are of different worlds: where keeps_the_draws, those of the section sensor.
+/// Whether scenarios that differ in the key are of different worlds: where keeps_the_draws, those of the section
+/// sensor.
 bool is_of_the_sensor(const std::string& key);
 
 /// A key in which two scenarios differ, with both values; empty where one of them has no such key.

@@ -45,8 +45,8 @@ StudyDefinition definition_of(const Study& study);
 /// How the study keeps its columns: the same in every scenario.
 Keep keep_of(const Study& study);
 
-/// The identifier of the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, draws_version and Keep. Keys that
-/// came after it [detail/keys.hpp] are left out where they have their default.
+/// The identifier of the study: a version-5 UUID (SHA-1) of scenarios, arms, root seed, draws_version and Keep. Keys
+/// that came after it [detail/keys.hpp] are left out where they have their default.
 std::string study_hash(const StudyDefinition& definition);
 std::string study_hash(const Study& study);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Module engine: the worlds that there are, as engine, store and program see them. The one who writes a world of his own reads
-// own_world.hpp.
+// Module engine: the worlds that there are, as engine, store and program see them. The one who writes a world of his
+// own reads own_world.hpp.
 
 #include <credence/detail/batch.hpp>
 #include <credence/scenario.hpp>
@@ -23,7 +23,8 @@ public:
     virtual std::size_t workspace_size(std::size_t arm) const = 0;
     /// Simulates a batch of trials of the arm at that place in the scenario's list.
     virtual void simulate(std::size_t arm, const Batch& batch) const = 0;
-    /// Runs one trial of that arm again, the same bits as in a batch, and records it. `scenario` is that of the simulation.
+    /// Runs one trial of that arm again, the same bits as in a batch, and records it. `scenario` is that of the
+    /// simulation.
     virtual Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
                               std::int64_t trial) const = 0;
 };
@@ -57,8 +58,8 @@ public:
     virtual std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const = 0;
 };
 
-/// The arm that each of these is compared with: `fixed.X`; beside a planner without it, another controller that does not
-/// plan; beside `horizon.X` first of all the greedy one. Empty where there is none.
+/// The arm that each of these is compared with: `fixed.X`; beside a planner without it, another controller that does
+/// not plan; beside `horizon.X` first of all the greedy one. Empty where there is none.
 std::vector<std::string> baselines_among(const std::vector<std::string>& arms);
 
 /// Adds a world to those that there are. Not thread-safe: before anything else.
@@ -81,8 +82,8 @@ std::unique_ptr<const Simulation> simulation_of(const Scenario& scenario);
 Trajectory replay_trial(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed, std::int64_t trial);
 
 struct NoiseRecord;
-/// Runs every arm of the scenario on recorded noise, `file` its name. Throws InputError where the scenario is of a world
-/// that knows no such noise, or the record does not cover it.
+/// Runs every arm of the scenario on recorded noise, `file` its name. Throws InputError where the scenario is of a
+/// world that knows no such noise, or the record does not cover it.
 std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file);
 
 }  // namespace credence

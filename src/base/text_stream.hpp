@@ -6,7 +6,8 @@
 
 namespace credence {
 
-/// A stream of a text, which throws where it gets no memory: by default std::getline then ends as at the end of the text.
+/// A stream of a text, which throws where it gets no memory: by default std::getline then ends as at the end of the
+/// text.
 inline std::istringstream stream_of(const std::string& text) {
     std::istringstream stream(text);
     stream.exceptions(std::ios::badbit);

@@ -39,8 +39,8 @@ po::options_description described(const Command& command) {
     return description;
 }
 
-/// The options as --help lists them. Boost writes the names into a stream of its own, which cuts them short where it gets
-/// no memory, and says nothing.
+/// The options as --help lists them. Boost writes the names into a stream of its own, which cuts them short where it
+/// gets no memory, and says nothing.
 std::string help_text(const po::options_description& description) {
     std::ostringstream text;
     text.exceptions(std::ios::badbit);
@@ -189,7 +189,8 @@ double parse_open_share(const Parsed& parsed, const std::string& option, const s
     const std::string given = parsed.text(option).value_or(usual);
     const double share = parse_share(given).value_or(0);
     if (!(share > 0 && share < 1))
-        throw invalid_value("--" + option, given, "must be between 0 and 100 %, both excluded", "Write " + usual + " or 0.05");
+        throw invalid_value("--" + option, given, "must be between 0 and 100 %, both excluded",
+                            "Write " + usual + " or 0.05");
     return share;
 }
 
@@ -262,9 +263,10 @@ Option margin_option() {
 }
 
 Option margin_direction_option() {
-    return {"margin-direction", "SHARE",
-            "the squared error of every combination of the state, over what P says, within 1 -+ this counts (default: twice "
-            "the margin)"};
+    return {
+        "margin-direction", "SHARE",
+        "the squared error of every combination of the state, over what P says, within 1 -+ this counts (default: "
+        "twice the margin)"};
 }
 
 Option bias_option() {

@@ -17,9 +17,12 @@ const Command& compare_command() {
         "FILE.h5... [--arms A,B] [options]",
         "compare arms or runs trial by trial, A - B",
         "\nOf one file: --arms greedy.ekf,fixed.ekf (a controller alone, greedy,fixed, will do); without --arms every\n"
-        "other arm against the fixed arm of its estimator, and every horizon against the greedy one. Of several files,\n"
-        "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the second, or\n"
-        "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the same world\n"
+        "other arm against the fixed arm of its estimator, and every horizon against the greedy one. Of several "
+        "files,\n"
+        "which must have the same --seed and the same world: --arms A,B takes A from the first and B from the "
+        "second, or\n"
+        "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the "
+        "same world\n"
         "under --set filter.measurement=0.8 shows what that did. Records (" +
             program_name() + " judge) of the same runs are compared too.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},

@@ -23,7 +23,8 @@ const Command& replay_command() {
         "replay",
         "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
         "run one trial again, pose by pose: from a results file, or on recorded noise",
-        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); a\n"
+        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); "
+        "a\n"
         "file that keeps aggregates has none to check it against.\n"
         "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2],\n"
         "standardised.\n",
@@ -134,7 +135,8 @@ constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},
 
 /// The column of that name; nullptr where the world has none.
 const Column* find_column(const Trajectory& t, const std::string& name) {
-    const auto found = std::find_if(t.columns.begin(), t.columns.end(), [&](const Column& one) { return one.name == name; });
+    const auto found =
+        std::find_if(t.columns.begin(), t.columns.end(), [&](const Column& one) { return one.name == name; });
     return found == t.columns.end() ? nullptr : &*found;
 }
 

@@ -10,11 +10,13 @@
 namespace credence::cli {
 
 const Command& show_command() {
-    static const Command command{"show", "[SCENARIO.ini] [--set section.key=value]... [--sweep section.key=VALUES]...",
-                                 "print a scenario as resolved, every default visible",
-                                 "\nWithout a file: the defaults, with what each key means. With --sweep: every point of the\n"
-                                 "grid.\n",
-                                 {set_option(), sweep_option()}};
+    static const Command command{
+        "show",
+        "[SCENARIO.ini] [--set section.key=value]... [--sweep section.key=VALUES]...",
+        "print a scenario as resolved, every default visible",
+        "\nWithout a file: the defaults, with what each key means. With --sweep: every point of the\n"
+        "grid.\n",
+        {set_option(), sweep_option()}};
     return command;
 }
 

@@ -110,8 +110,8 @@ std::optional<LauncherRank> rank_of_launcher(const Variables& variables) {
         const std::optional<std::int64_t> rank = to_integer(variables(name.rank).value_or("")),
                                           size = to_integer(variables(name.size).value_or(""));
         if (rank && size && *size > 1)
-            return LauncherRank{*rank, *size,
-                                name.rank + "=" + std::to_string(*rank) + ", " + name.size + "=" + std::to_string(*size)};
+            return LauncherRank{
+                *rank, *size, name.rank + "=" + std::to_string(*rank) + ", " + name.size + "=" + std::to_string(*size)};
     }
     return std::nullopt;
 }

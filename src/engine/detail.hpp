@@ -133,10 +133,10 @@ private:
         for (int e = 0; e < edges; ++e) {
             const int from = Layout::feature(filter.edges[e].from), to = Layout::feature(filter.edges[e].to);
             now.observed[features + e] = Real(1);
-            now.pair[features + e] = take(layout, EdgeRows<Layout, Real>{from, to}, Real(filter.variance_edge),
-                                          all_lanes<Real>(),
-                                          edge_measurement(e) - (point_at(belief.mean, to) - point_at(belief.mean, from)),
-                                          Rotation<Real>{Real(1), Real(0)});
+            now.pair[features + e] =
+                take(layout, EdgeRows<Layout, Real>{from, to}, Real(filter.variance_edge), all_lanes<Real>(),
+                     edge_measurement(e) - (point_at(belief.mean, to) - point_at(belief.mean, from)),
+                     Rotation<Real>{Real(1), Real(0)});
         }
     }
 

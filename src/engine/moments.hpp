@@ -14,7 +14,8 @@ inline int own_moment_count(int n) { return n * (n + 2); }
 /// Adds a step. `P(i, j)`, i <= j, covariance [n, n]; `standardised` e_j/sigma_j [n]; `inverse_sigma` 1/sqrt(P_jj) [n];
 /// `moments` [own_moment_count].
 template <class Real, class Covariance>
-[[gnu::noinline]] void add_moments(int n, const Covariance& P, const Real* standardised, const Real* inverse_sigma, Real* moments) {
+[[gnu::noinline]] void add_moments(int n, const Covariance& P, const Real* standardised, const Real* inverse_sigma,
+                                   Real* moments) {
     for (int j = 0; j < n; ++j) moments[j] = moments[j] + standardised[j];
     Real *products = moments + n, *correlations = products + n * (n + 1) / 2;
     for (int i = 0; i < n; ++i)

@@ -65,7 +65,8 @@ void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets
         Real sum = load<Real>(to), square_sum = load<Real>(to_square);
         each(zero, octets, [&](auto i) CREDENCE_INLINE_LAMBDA {
             const int pack = start + i * stride;
-            const Real value = select(unfolded.counts[pack], unfolded.all_series[pack * unfolded.cells + cell], Real(0));
+            const Real value =
+                select(unfolded.counts[pack], unfolded.all_series[pack * unfolded.cells + cell], Real(0));
             sum = sum + value;
             square_sum = fma(value, value, square_sum);
             run_sum[i] = run_sum[i] + value;

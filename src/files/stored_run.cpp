@@ -136,8 +136,9 @@ void StoredRun::choose(const StudyDefinition& asked) {
 Study StoredRun::stored(const StudyDefinition& asked) const {
     Study study = read_results(output_.target, most_totals_in_memory).study;
     check_schema(study, output_.path, "resume");
-    check_same_study(definition_of(study), asked, output_.path,
-                     journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
+    check_same_study(
+        definition_of(study), asked, output_.path,
+        journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
     check_agreement(study, output_.path);
     return study;
 }
@@ -182,7 +183,8 @@ BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, co
 /// Throws Failure where the values that were read back for the results differ from the committed ones.
 void StoredRun::check_unchanged() const {
     if (in_file_ && identity_of(output_.target) != output_.there)
-        throw Failure("cannot write " + output_.path + " (another program changed, replaced or removed it while the run "
+        throw Failure("cannot write " + output_.path +
+                      " (another program changed, replaced or removed it while the run "
                       "went on with it). Put back what was there.");
     if (journal_) journal_->check_unchanged();
 }

@@ -31,7 +31,8 @@ public:
         const std::uint64_t shift = exponent % 32;
         const std::size_t chunk = exponent / 32;
         const auto low = static_cast<std::int64_t>(mantissa << shift & 0xffffffff),
-                   high = static_cast<std::int64_t>(mantissa >> (32 - shift));  // below 2^53: 1024 of them do not overflow
+                   // Below 2^53: 1024 of them do not overflow.
+                   high = static_cast<std::int64_t>(mantissa >> (32 - shift));
         const std::int64_t sign = bits >> 63 == 0 ? 1 : -1;
         chunks_[chunk] += sign * low;
         chunks_[chunk + 1] += sign * high;

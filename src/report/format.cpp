@@ -115,7 +115,8 @@ std::string wrapped_list(const std::string& head, const std::vector<std::string>
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
         const bool fits = indent + 2 + static_cast<std::size_t>(characters(part)) <= std::size_t{text_width};
-        for (const std::string& word : fits ? std::vector<std::string>{part} : split_list(part, ' ')) words.push_back(word);
+        for (const std::string& word : fits ? std::vector<std::string>{part} : split_list(part, ' '))
+            words.push_back(word);
     }
     return flowing(words, indent);
 }

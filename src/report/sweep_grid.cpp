@@ -85,7 +85,8 @@ std::vector<GridCurve> curves_along(const Grid& grid, std::size_t axis) {
         for (std::size_t a = 0; a < grid.axes.size(); ++a)
             if (a != axis) others.push_back({grid.axes[a].key, grid.axes[a].values[point.place[a]]});
         const std::string title = coordinates_text(others);
-        auto curve = std::find_if(curves.begin(), curves.end(), [&](const GridCurve& one) { return one.title == title; });
+        auto curve =
+            std::find_if(curves.begin(), curves.end(), [&](const GridCurve& one) { return one.title == title; });
         if (curve == curves.end()) curve = curves.insert(curves.end(), {title, {}});
         curve->points.push_back(&point);
     }

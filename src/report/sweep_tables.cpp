@@ -68,7 +68,8 @@ Table arm_table(const SweptReport& swept, const Grid& grid, const std::string& n
         if (arm == nullptr) continue;
         std::vector<Cell> cells = keys_of(swept, grid, point);
         cells.push_back(verdict_cell(*arm));
-        for (const SweptColumn& one : swept_columns(*arm)) cells.push_back(mean_cell(one.summary.mean, one.summary.ci95));
+        for (const SweptColumn& one : swept_columns(*arm))
+            cells.push_back(mean_cell(one.summary.mean, one.summary.ci95));
         cells.push_back(failed_cell(*arm));
         table.row(std::move(cells));
     }
@@ -77,8 +78,8 @@ Table arm_table(const SweptReport& swept, const Grid& grid, const std::string& n
 
 Table pair_table(const SweptReport& swept, const Grid& grid, const std::string& name) {
     const auto find = [&](const GridPoint& point) { return swept.pair(point, name); };
-    Table table(grid.of + ", " + name + " by point, trial by trial: mean ± 95 %", heads_of(grid, columns_of(grid, find)),
-                grid.axes.size());
+    Table table(grid.of + ", " + name + " by point, trial by trial: mean ± 95 %",
+                heads_of(grid, columns_of(grid, find)), grid.axes.size());
     for (const GridPoint& point : grid.points) {
         const Comparison* pair = find(point);
         if (pair == nullptr) continue;

@@ -146,7 +146,8 @@ public:
     std::string text() const {
         std::string text = line(table_.heads());
         for (const Table::Row& row : table_.rows())
-            text += row.heads_group ? std::string(indent_, ' ') + row.cells.front().text() + "\n" : line(texts_of(row.cells));
+            text += row.heads_group ? std::string(indent_, ' ') + row.cells.front().text() + "\n"
+                                    : line(texts_of(row.cells));
         return text;
     }
 

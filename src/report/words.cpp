@@ -22,7 +22,8 @@ double distance_off(const Finding& finding) {
 }
 
 /// The findings of one kind: each group or component at its worst, the farthest off first.
-std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what, bool directions) {
+std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what,
+                                        bool directions) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
@@ -66,8 +67,8 @@ std::string failed_text(const ArmReport& arm) {
 
 std::string needed_text(const TrialsNeeded& needed) {
     if (!(needed.value > 0)) return {};
-    return "a consistent filter with this spread needs about " + number(needed.value, 0) + " trials to be shown consistent (" +
-           number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
+    return "a consistent filter with this spread needs about " + number(needed.value, 0) +
+           " trials to be shown consistent (" + number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
 }
 
 /// `NEES/dim of all is 0.91 and not shown to be too small: 2500 trials would show it if it stays (1500 to 6200)`
@@ -228,7 +229,8 @@ WorstDistribution worst_distribution(const DistributionEvidence& distribution) {
     WorstDistribution found;
     for (std::size_t k = 0; k < distribution.distance.size(); ++k) {
         found.known += !std::isnan(distribution.distance[k]);
-        if (!(distribution.distance[k] <= distribution.distance[worst])) worst = std::isnan(distribution.distance[k]) ? worst : k;
+        if (!(distribution.distance[k] <= distribution.distance[worst]))
+            worst = std::isnan(distribution.distance[k]) ? worst : k;
     }
     if (found.known == 0) return found;
     found.step = static_cast<int>(worst) + 1;

@@ -13,7 +13,9 @@ std::string squared_unit(const std::vector<Component>& components, const Compone
     }
     std::string text;
     for (const std::string& unit : units)
-        text += (text.empty() ? "" : " + ") + (unit == "1" ? unit : unit.find('/') == std::string::npos ? unit + "^2" : "(" + unit + ")^2");
+        text += (text.empty() ? "" : " + ") + (unit == "1"                           ? unit
+                                               : unit.find('/') == std::string::npos ? unit + "^2"
+                                                                                     : "(" + unit + ")^2");
     return text;
 }
 
@@ -30,7 +32,8 @@ void add_nees(std::vector<Series>& list, const std::vector<ComponentGroup>& grou
 }
 
 void add_nis(std::vector<Series>& list) {
-    list.push_back({"nis", "normalised innovation squared of all rows", "1", SeriesRole::nis, 0, false, "all", "nis_rows", 0});
+    list.push_back(
+        {"nis", "normalised innovation squared of all rows", "1", SeriesRole::nis, 0, false, "all", "nis_rows", 0});
     list.push_back({"nis_rows", "measurement rows", "1", SeriesRole::rows, 0, true, "all", "", 0});
 }
 

@@ -72,7 +72,8 @@ NumberRange parse_range(const std::string& text, const std::string& item) {
     if (!first || !last || !std::isfinite(*first) || !std::isfinite(*last))
         throw invalid_sweep(text, "the ends of '" + item + "' are not numbers", form);
     if (!count || *count < 2 || *count > static_cast<std::int64_t>(most_swept_scenarios))
-        throw invalid_sweep(text, "'" + item + "' needs 2 to " + std::to_string(most_swept_scenarios) + " points", form);
+        throw invalid_sweep(text, "'" + item + "' needs 2 to " + std::to_string(most_swept_scenarios) + " points",
+                            form);
     if (*first == *last) throw invalid_sweep(text, "the ends of '" + item + "' are the same", form);
     const bool geometric = parts.size() == 4;
     if (geometric && !(*first > 0 && *last > 0))

@@ -89,8 +89,8 @@ CREDENCE_INLINE auto near_at_hand(const Layout&, Room& room, Use&& use) {
 }
 
 /// Returns e' A^-1 e over the rows [i, i + 2) and eliminates these from the rows [first, i). The remaining A and e are
-/// written to `left`, which may be the same object as the input. `by_axis`: A = A_1 (x) I_2, of which the entries of the
-/// x axis are read and written.
+/// written to `left`, which may be the same object as the input. `by_axis`: A = A_1 (x) I_2, of which the entries of
+/// the x axis are read and written.
 template <bool by_axis, class Real, int capacity, class First, class Index>
 CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
                                                   First first, Index i, Elimination<Real, capacity>& left) {

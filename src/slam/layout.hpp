@@ -15,8 +15,8 @@ template <Process process, int compiled_features>
 struct Layout {
     static constexpr bool has_heading = process == Process::heading;
     static constexpr bool written_out = compiled_features != any_count;  ///< whether loops over features are unrolled
-    /// In the translation model P = P_1 (x) I_2: both axes have the same covariances, and none with each other. Where the
-    /// loops are written out one axis is computed; the bits are those of computing both.
+    /// In the translation model P = P_1 (x) I_2: both axes have the same covariances, and none with each other. Where
+    /// the loops are written out one axis is computed; the bits are those of computing both.
     static constexpr bool by_axis = !has_heading && written_out;
     static constexpr Known<0> heading{};
     static constexpr Known<has_heading ? 1 : 0> position{};

@@ -52,8 +52,8 @@ Real sigma_at(const SensorParameters& sensor, Real squared) {
 }
 
 /// A pair of Student's t, each of variance 1, from a standard-normal pair [Bailey 1994: Polar generation of random
-/// variates with the t-distribution]: of the normal pair's squared length s, which has the uniform e^(-s/2), the t pair in
-/// the same direction has nu (e^(s/nu) - 1); t has the variance nu/(nu - 2).
+/// variates with the t-distribution]: of the normal pair's squared length s, which has the uniform e^(-s/2), the t pair
+/// in the same direction has nu (e^(s/nu) - 1); t has the variance nu/(nu - 2).
 template <class Real>
 Vector2<Real> student_pair(const Vector2<Real>& normal, double nu) {
     const Real power = exp(squared_norm(normal) * Real(1 / nu));

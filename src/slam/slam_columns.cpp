@@ -81,10 +81,10 @@ std::vector<Series> step_series(const SlamState& state) {
     std::vector<Series> all;
     add_nees(all, groups);
     add_nis(all);
-    all.push_back({"nis_features", "normalised innovation squared of the features' rows", "1", SeriesRole::nis, 0, false,
-                   "features", "nis_rows", -edge_rows});
-    all.push_back({"nis_edges", "normalised innovation squared of the edges' rows", "1", SeriesRole::nis, 0, false, "edges",
-                   "", edge_rows});
+    all.push_back({"nis_features", "normalised innovation squared of the features' rows", "1", SeriesRole::nis, 0,
+                   false, "features", "nis_rows", -edge_rows});
+    all.push_back({"nis_edges", "normalised innovation squared of the edges' rows", "1", SeriesRole::nis, 0, false,
+                   "edges", "", edge_rows});
     all.push_back({"unseen_features", "features not seen", "1", SeriesRole::other, 0, true, "", "", 0});
     add_squared_errors(all, groups, unit_of);
     add_variances(all, groups, unit_of, " after the update");

@@ -25,8 +25,8 @@ double exact_mean(const std::vector<double>& values) {
 /// Beyond so many degrees Boost's series end without an answer; a thousand million trials have more.
 constexpr double many_degrees = 1e10;
 
-/// The quantile of chi-square with many degrees where the normal distribution has z: the expansion of Cornish and Fisher
-/// [Fisher, Cornish 1960], whose next term is below rounding.
+/// The quantile of chi-square with many degrees where the normal distribution has z: the expansion of Cornish and
+/// Fisher [Fisher, Cornish 1960], whose next term is below rounding.
 double expanded_quantile(double z, double degrees) {
     const double zz = z * z, root = std::sqrt(degrees);
     return degrees + z * std::sqrt(2.0) * root + 2 * (zz - 1) / 3 + z * (zz - 7) / (9 * std::sqrt(2.0) * root);

@@ -152,7 +152,8 @@ const char* problem_of(const ArmAggregates& aggregates) {
     for (const std::vector<DifferenceTotals>& columns : aggregates.differences)
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const DifferenceTotals& totals = columns[c];
-            if (none_of(totals.difference.count, aggregates.columns[c].count)) return "there are more pairs than values";
+            if (none_of(totals.difference.count, aggregates.columns[c].count))
+                return "there are more pairs than values";
             if (none_of(totals.below, totals.difference.count) ||
                 none_of(totals.above, totals.difference.count - totals.below))
                 return "more pairs differ than there are";

@@ -20,17 +20,21 @@ ScenarioFootprint footprint_of(const ScenarioResults& results, std::int64_t tria
     const bool trials_kept = results.keep == Keep::trials;
     std::int64_t column_bytes = trials_kept ? 8 : 0;
     for (const Column& column : results.columns)
-        if (trials_kept) column_bytes += column.type == ColumnType::real ? 8 : column.type == ColumnType::integer ? 4 : 1;
+        if (trials_kept)
+            column_bytes += column.type == ColumnType::real ? 8 : column.type == ColumnType::integer ? 4 : 1;
     const std::int64_t cells = all_series * results.steps(), numbers = results.steps() * (results.state_size() + 1),
                        moments = results.moment_count();
     const std::int64_t kept = std::min<std::int64_t>(trials, detailed_trials(results.steps(), results.state_size()));
-    const std::int64_t distribution = distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
+    const std::int64_t distribution =
+        distribution_counted(results.steps()) ? std::int64_t{results.steps()} * distribution_cells * 8 : 0;
     // A thread's running sums of octets, their squares and the series not yet folded; and details of its block, in the
     // engine's order and in that of the results. (This memory is free again when the blocks are committed.)
     const std::int64_t detailed_blocks = std::min<std::int64_t>(threads, (kept + block_size - 1) / block_size);
-    const std::int64_t of_details = std::min<std::int64_t>(kept, block_size) * (numbers + moments) * 16 * detailed_blocks;
+    const std::int64_t of_details =
+        std::min<std::int64_t>(kept, block_size) * (numbers + moments) * 16 * detailed_blocks;
     return {totals_size(results, kept), arms * (threads * cells * 150 + of_details),
-            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (all_series + 20) * 1500 + kept * (numbers * 4 + moments * 8) + distribution)};
+            arms * (trials * column_bytes + cells * 2 * 2 * 8 + (all_series + 20) * 1500 +
+                    kept * (numbers * 4 + moments * 8) + distribution)};
 }
 
 }  // namespace
@@ -48,7 +52,8 @@ Footprint footprint(const Study& study, std::int64_t trials, int threads) {
     }
     // Totals of finished scenarios are dropped beyond a limit. The table at the end reads a few columns at once; the
     // threads have stacks, and blocks wait to be committed.
-    total.memory = std::min(totals, most_totals_in_memory + largest) + under_way + static_cast<std::int64_t>(threads) * (16 << 20);
+    total.memory =
+        std::min(totals, most_totals_in_memory + largest) + under_way + static_cast<std::int64_t>(threads) * (16 << 20);
     if (keep_of(study) == Keep::trials) total.memory += 6 * trials * 8;
     // A scenario's settings, names and places in journal and file: measured with sweeps of 100 to 1,000 points.
     total.memory += static_cast<std::int64_t>(study.scenarios.size()) * (300 << 10);

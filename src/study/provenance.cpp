@@ -79,7 +79,8 @@ std::string release_name(const std::string& version, const std::string& revision
     return "credence " + version + ", git revision " + revision;
 }
 
-void note_computed(Provenance& provenance, const std::string& release, std::size_t scenario, const BlockRanges& blocks) {
+void note_computed(Provenance& provenance, const std::string& release, std::size_t scenario,
+                   const BlockRanges& blocks) {
     ComputedBy* own = nullptr;
     for (ComputedBy& one : provenance) {
         if (one.release == release) own = &one;

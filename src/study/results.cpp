@@ -25,7 +25,8 @@ void add_coverage(SeriesTotals& totals, const std::int32_t* covered, std::int64_
 
 void add_cells(ArmResults& to, const ArmBlock& from, std::size_t trials, std::int64_t sign) {
     std::int64_t* counts = to.cells.data();  // of one step, [distribution_cells]
-    for (const std::uint16_t *cell = from.cells.data(), *end = cell + from.cells.size(); cell != end; counts += distribution_cells)
+    for (const std::uint16_t *cell = from.cells.data(), *end = cell + from.cells.size(); cell != end;
+         counts += distribution_cells)
         for (std::size_t trial = 0; trial < trials; ++trial, ++cell)
             if (*cell != no_cell) counts[*cell] += sign;
 }

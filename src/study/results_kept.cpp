@@ -10,7 +10,9 @@ namespace credence {
 
 namespace {
 
-std::size_t lags_of(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
+std::size_t lags_of(const ScenarioResults& results) {
+    return static_cast<std::size_t>(lag_count(results.scenario.poses));
+}
 
 SeriesTotals no_totals(const Series& series, std::size_t steps) {
     return {std::vector<ExactSum>(steps), std::vector<ExactSum>(series.integer ? 0 : steps), {}, {},

@@ -54,7 +54,8 @@ std::vector<double> column_values(const ScenarioResults& results, const ArmResul
 std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm) {
     if (results.keep == Keep::aggregates) return arm.aggregates.statuses;
     std::vector<std::int64_t> counts(status_names().size());
-    for (const double status : column_values(results, arm, status_column(results.columns))) ++counts[static_cast<std::size_t>(status)];
+    for (const double status : column_values(results, arm, status_column(results.columns)))
+        ++counts[static_cast<std::size_t>(status)];
     return counts;
 }
 
@@ -125,7 +126,9 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
         if (!arm.kept)
             for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
         if (!has_totals(results)) continue;
-        visit_details(results, [&](auto& values, std::int64_t width) { move_rows(values, detailed_moves, detailed, width); }, arm);
+        visit_details(
+            results, [&](auto& values, std::int64_t width) { move_rows(values, detailed_moves, detailed, width); },
+            arm);
     }
 }
 

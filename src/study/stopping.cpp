@@ -51,7 +51,8 @@ double excess(const GoalState& state) {
 }
 
 /// predicted_trials of one state that is not met.
-std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimAnalysis& analysis, const StoppingRule& rule) {
+std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimAnalysis& analysis,
+                                          const StoppingRule& rule) {
     const double share = static_cast<double>(state.count) / static_cast<double>(analysis.trials);
     const auto enough = [&](std::int64_t trials, int number) {
         return half_width_of(state.standard_deviation, share * static_cast<double>(trials), number) <= state.allowed;
@@ -102,7 +103,8 @@ GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, in
     return decide_from(moments, goal, number);
 }
 
-InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number) {
+InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials,
+                            int number) {
     for (const ScenarioResults& results : study.scenarios)
         if (results.trials < trials || (results.keep == Keep::aggregates && results.trials > trials))
             throw std::logic_error("an interim analysis of trials that are not there");
@@ -145,7 +147,8 @@ InterimAnalysis interrupted_look(std::int64_t trials, int number) {
 
 }  // namespace
 
-InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis) {
+InterimAnalysis run_analyses(const StoppingRule& rule,
+                             const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis) {
     InterimAnalysis last;
     for (const std::int64_t trials : analysis_trials(rule.ceiling, rule.first_analysis)) {
         last = analysis(trials, last.number + 1);

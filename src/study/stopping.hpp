@@ -88,7 +88,8 @@ GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int numb
 /// Interim analysis `number` at the first `trials` trials of every scenario; further trials are ignored, but where no
 /// trial is kept there must not be any. Throws as check_goals does; throws std::logic_error if a scenario has fewer
 /// trials, or more than can be ignored.
-InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials, int number);
+InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials,
+                            int number);
 
 /// The trial count at which every unmet state is expected to be small enough: the next analysis, that at the ceiling or
 /// one beyond it, at which t sd / sqrt(n) <= allowed if mean, sd and the share of NaN values stay the same; that of the
@@ -100,7 +101,8 @@ const GoalState& widest(const InterimAnalysis& analysis);
 
 /// Calls `analysis` with the trials and the number of each interim analysis in turn, until one is met or the ceiling is
 /// reached; returns the last one.
-InterimAnalysis run_analyses(const StoppingRule& rule, const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis);
+InterimAnalysis run_analyses(const StoppingRule& rule,
+                             const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis);
 
 /// Grows the study from analysis to analysis (run_study) until the goals are met or the ceiling is reached; returns the
 /// last analysis. Trials that a study has beyond an analysis are neither used by it nor discarded: the analysis is the

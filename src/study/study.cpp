@@ -41,7 +41,8 @@ std::int64_t least_trials(const Study& study) {
     std::int64_t least = study.trials;
     for (const ScenarioResults& results : study.scenarios)
         if (!results.blocks.empty())
-            least = std::max(least, results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1));
+            least =
+                std::max(least, results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1));
     return least;
 }
 

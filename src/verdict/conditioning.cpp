@@ -1,5 +1,5 @@
-// Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials, and of a record from
-// the covariances of its steps.
+// Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials, and of a record
+// from the covariances of its steps.
 
 #include "statistics/moments/conditioning.hpp"
 

@@ -65,7 +65,8 @@ private:
         if (trials_.size() < 2) return {};
         const Tail tail = tail_of(trials_);
         char text[120];
-        std::snprintf(text, sizeof text, " (the 1 %% largest trials carry %.2g %% of it%s", 100 * tail.worst_share, tail.degrees ? "" : ")");
+        std::snprintf(text, sizeof text, " (the 1 %% largest trials carry %.2g %% of it%s", 100 * tail.worst_share,
+                      tail.degrees ? "" : ")");
         std::string all = text;
         if (!tail.degrees) return all;
         std::snprintf(text, sizeof text, "; tails like Student's t with about %.0f degrees of freedom)", *tail.degrees);

@@ -21,7 +21,9 @@ inline Side side_of(const Interval& interval, double margin) {
     return Side::inside;
 }
 
-inline bool within(const Interval& interval, double margin) { return interval.low >= 1 - margin && interval.high <= 1 + margin; }
+inline bool within(const Interval& interval, double margin) {
+    return interval.low >= 1 - margin && interval.high <= 1 + margin;
+}
 
 inline const std::string& name_of(Side side) {
     return verdict_name(side == Side::above ? Verdict::optimistic : Verdict::pessimistic);

@@ -64,7 +64,8 @@ double correlated_trials(const ScenarioResults& results, const ArmResults& arm) 
 
 /// Sums of a lag, the number of products taken as the same in every trial: the files keep its total alone.
 LagSums lag_sums(const ProductTotals& products, std::size_t lag, double trials, double scale) {
-    const double count = static_cast<double>(products.count[lag]), each = count / trials, sum = products.sum[lag].rounded();
+    const double count = static_cast<double>(products.count[lag]), each = count / trials,
+                 sum = products.sum[lag].rounded();
     return {trials, sum, products.square_sum[lag].rounded(), sum * each, count, count * each, count * scale * scale};
 }
 
@@ -82,7 +83,8 @@ std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double 
                                : normal_quantile(alpha) / std::sqrt(sums.c);
         };
         const double mean = sums.p / sums.c;
-        evidence.push_back({static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale, bound(0.05), bound(0.05 / lags)});
+        evidence.push_back(
+            {static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale, bound(0.05), bound(0.05 / lags)});
     }
     return evidence;
 }
@@ -108,7 +110,8 @@ void add_largest_errors(const ScenarioResults& results, const ArmResults& arm, s
     const auto n = static_cast<std::size_t>(results.state_size());
     if (bias.size() != n) return;
     for (std::size_t i = 0; i < arm.errors.size(); ++i)
-        if (double& largest = bias[i % n].largest_error; std::abs(arm.errors[i]) > largest) largest = std::abs(arm.errors[i]);
+        if (double& largest = bias[i % n].largest_error; std::abs(arm.errors[i]) > largest)
+            largest = std::abs(arm.errors[i]);
 }
 
 /// Rows of trials that did not fail. The file has the mean NEES of a group, the statistics want it per dimension.
@@ -158,19 +161,22 @@ DistributionEvidence distribution_evidence(const ScenarioResults& results, const
     DistributionEvidence evidence;
     evidence.exact = !arm.distribution_distance.empty();
     for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k) {
-        evidence.distance.push_back(evidence.exact       ? arm.distribution_distance[k]
-                                    : arm.cells.empty() ? nan
-                                                        : cell_distance(arm.cells.data() + k * distribution_cells, distribution_cells));
+        evidence.distance.push_back(evidence.exact ? arm.distribution_distance[k]
+                                    : arm.cells.empty()
+                                        ? nan
+                                        : cell_distance(arm.cells.data() + k * distribution_cells, distribution_cells));
         const double count = static_cast<double>(arm.counted_at(arm.totals.front(), k));
-        evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back()) ? nan : kolmogorov_smirnov_p(evidence.distance.back(), count));
+        evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back())
+                                 ? nan
+                                 : kolmogorov_smirnov_p(evidence.distance.back(), count));
     }
     return evidence;
 }
 
 CredibilityEvidence credibility_evidence(const ScenarioResults& results, const ArmResults& arm) {
     CredibilityEvidence evidence;
-    const std::size_t steps = static_cast<std::size_t>(results.steps()), n = static_cast<std::size_t>(results.state_size()),
-                      trials = arm.nees.size() / steps;
+    const std::size_t steps = static_cast<std::size_t>(results.steps()),
+                      n = static_cast<std::size_t>(results.state_size()), trials = arm.nees.size() / steps;
     double known = 0;
     for (std::size_t k = 0; k < steps; ++k) {
         std::vector<double> nees, errors;
@@ -216,7 +222,8 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
         if (series.role == SeriesRole::standardised_error)
             evidence.bias.push_back(bias_evidence(results, series, arm, arm.totals[f]));
         if (series.role == SeriesRole::nis)
-            if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0) evidence.nis.push_back(std::move(nis));
+            if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0)
+                evidence.nis.push_back(std::move(nis));
     }
     evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
                                            correlated_trials(results, arm));

@@ -96,7 +96,8 @@ void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::siz
         evidence.anees.degrees.push_back(degrees_at(arm, totals, k, series.dimension));
         sums.push_back(totals.sum[k].rounded());
         if (!totals.dimensions.empty() && evidence.anees.degrees.back() > 0)  // of NEES/dim times the whole dimension
-            sums.back() *= evidence.anees.degrees.back() / (static_cast<double>(arm.counted_at(totals, k)) * series.dimension);
+            sums.back() *=
+                evidence.anees.degrees.back() / (static_cast<double>(arm.counted_at(totals, k)) * series.dimension);
     }
     fill_bands(sums, evidence.anees);
 }
@@ -106,7 +107,8 @@ bool within(double value, const Interval& interval) { return value >= interval.l
 }  // namespace
 
 Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
-    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()), scale / steps);
+    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()),
+                  scale / steps);
 }
 
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale) {
@@ -137,7 +139,8 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
     GroupEvidence evidence;
     fill_ratios(results, arm, f, evidence);
     for (const ComponentGroup& group : results.scenario.groups)
-        for (int j = 0; group.name == evidence.name && j < group.count; ++j) evidence.components.push_back(group.component(j));
+        for (int j = 0; group.name == evidence.name && j < group.count; ++j)
+            evidence.components.push_back(group.component(j));
     for (std::size_t k = 0; k < evidence.step.size(); ++k) {
         const Moments& step = evidence.step[k];
         const double whole = evidence.dimension,

@@ -24,7 +24,8 @@ void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) 
     const double middle = std::log(spectrum.front() * spectrum.back()) / 2;
     const double half_spread = std::log(spectrum.back() / spectrum.front()) / 2;
     if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) && half_spread < std::abs(middle) / 3)
-        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?", std::exp(middle)));
+        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?",
+                                    std::exp(middle)));
 }
 
 /// The errors have the size that P says, and yet some directions are far too large.
@@ -44,16 +45,18 @@ void hint_at_chart(const Evidence& evidence, Consistency& verdict) {
 void hint_at_angles(const Evidence& evidence, std::vector<std::string>& hints) {
     for (const BiasEvidence& component : evidence.bias)
         if (component.unit == "rad" && component.largest_error > 1.01 * std::numbers::pi)
-            hints.push_back(with_number(("errors of " + component.component + " reach %.3g rad: were angles wrapped to half a turn?").c_str(),
-                                        component.largest_error));
+            hints.push_back(with_number(
+                ("errors of " + component.component + " reach %.3g rad: were angles wrapped to half a turn?").c_str(),
+                component.largest_error));
 }
 
 }  // namespace
 
 void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
-        verdict.hints.push_back("the correlation of innovations was not tested: none are so few steps apart (a record of version 2 "
-                                "counts the measurements between them)");
+        verdict.hints.push_back(
+            "the correlation of innovations was not tested: none are so few steps apart (a record of version 2 "
+            "counts the measurements between them)");
     hint_at_angles(evidence, verdict.hints);
     if (verdict.findings.empty()) return;
     hint_at_scale(verdict, verdict.hints);

@@ -28,7 +28,8 @@ void judge_suspicion(const BiasEvidence& bias, int components, Judgement& judgem
 
 void judge_bias(const Evidence& evidence, Judgement& judgement) {
     for (const BiasEvidence& bias : evidence.bias) {
-        if (!(bias.run.count > 0) && evidence.trials > 0) continue;  // a record that does not give this component's sigma
+        // A record that does not give this component's sigma.
+        if (!(bias.run.count > 0) && evidence.trials > 0) continue;
         const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
                                               judgement.limits().bias);
         if (claim.finding)

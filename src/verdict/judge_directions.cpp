@@ -18,7 +18,8 @@ std::string component_name(int j, const std::vector<BiasEvidence>& components) {
     return place < components.size() ? components[place].component : "x" + std::to_string(j);
 }
 
-/// `0.47 x - 0.79 y + 0.39 v …`: the four largest shares, in the order of the components; `…` where others are left out.
+/// `0.47 x - 0.79 y + 0.39 v …`: the four largest shares, in the order of the components; `…` where others are left
+/// out.
 std::string name_of(const Direction& direction, const std::vector<BiasEvidence>& components) {
     constexpr std::size_t most = 4;
     std::vector<double> sizes;
@@ -61,8 +62,8 @@ DirectionLimits limits_of(const Evidence& evidence, const Judgement& judgement) 
 }
 
 /// A group's directions, and the findings in them.
-void judge_group(const Evidence& evidence, const GroupEvidence& group, const GroupMoments& moments, const FoldSums& sums,
-                 double level, Judgement& judgement) {
+void judge_group(const Evidence& evidence, const GroupEvidence& group, const GroupMoments& moments,
+                 const FoldSums& sums, double level, Judgement& judgement) {
     const GroupDirections found = find_directions(moments, sums, level, limits_of(evidence, judgement));
     if (found.state != GroupDirections::State::known) return;
     const auto add = [&](Side side, const Direction& direction, std::vector<DirectionOfGroup>& all) {
@@ -122,9 +123,11 @@ void judge_directions(const Evidence& evidence, Judgement& judgement) {
         return leave_out_directions(evidence, judgement);
     judgement.directions.trials = static_cast<double>(evidence.moments->trials());
     for (std::size_t g = 0; g < groups.size(); ++g) {
-        const GroupMoments moments = group_moments(*evidence.moments, uncertain_components(evidence, groups[g]->components));
+        const GroupMoments moments =
+            group_moments(*evidence.moments, uncertain_components(evidence, groups[g]->components));
         const FoldSums sums = fold_sums(moments);
-        const double level = level_of_group(levels::direction, static_cast<int>(g), static_cast<int>(groups.size())) / 2;
+        const double level =
+            level_of_group(levels::direction, static_cast<int>(g), static_cast<int>(groups.size())) / 2;
         judge_group(evidence, *groups[g], moments, sums, level, judgement);
         if (g == 0) accept_state(evidence, moments, sums, judgement);
     }

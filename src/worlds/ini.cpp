@@ -55,7 +55,8 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
     std::vector<Assignment> all;
     std::map<std::string, int> lines;
     const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors begin every text with it
-    std::istringstream stream = stream_of(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    std::istringstream stream =
+        stream_of(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
     std::string line, section;
     for (int number = 1; std::getline(stream, line); ++number)
         for (Assignment& one : read_line(line, origin, number, section)) {
@@ -236,8 +237,8 @@ std::vector<Scenario> read_grid(const std::string& path, const Overrides& overri
     return scenarios;
 }
 
-DeformableSettings read_deformable_text(const std::string& text, const std::string& origin, const std::string& default_name,
-                            const Overrides& overrides) {
+DeformableSettings read_deformable_text(const std::string& text, const std::string& origin,
+                                        const std::string& default_name, const Overrides& overrides) {
     return settings_of(read_scenario_text(text, origin, default_name, overrides));
 }
 

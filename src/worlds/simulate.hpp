@@ -27,7 +27,8 @@ struct Target {
     std::size_t (*own_workspace_size)(const OwnView&) = nullptr;
 };
 
-/// What a target compiled from the sources target.cpp of src/worlds offers under its name, and its entry in a list of targets.
+/// What a target compiled from the sources target.cpp of src/worlds offers under its name, and its entry in a list of
+/// targets.
 #define CREDENCE_DECLARE_TARGET(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \

@@ -25,7 +25,8 @@ void add_innovation(Trajectory& trajectory, const SlamState& state, std::size_t 
     at.has_innovation = rows <= largest_recorded_matrix;
     if (!at.has_innovation) {
         trajectory.notes.emplace_back("innovation_omitted", std::to_string(rows) + " rows, more than the " +
-                                                                std::to_string(largest_recorded_matrix) + " that are kept");
+                                                                std::to_string(largest_recorded_matrix) +
+                                                                " that are kept");
         return;
     }
     const std::string name = "row of the measurement: 2 feature + axis, then 2 (features + edge) + axis";
@@ -58,14 +59,18 @@ SlamVariables add_slam_variables(Trajectory& trajectory, const SlamState& state,
     at.mean = add_state("mean", "estimated state, after the update");
     at.covariance = add_matrix("covariance", "covariance as reported, after the update");
     at.predicted_mean = add_state("predicted_mean", "estimated state, before the update");
-    at.predicted_covariance = add_matrix("predicted_covariance", "covariance as the filter holds it, before the update");
+    at.predicted_covariance =
+        add_matrix("predicted_covariance", "covariance as the filter holds it, before the update");
     at.nees = trajectory.add({"nees", "normalised estimation error squared of the whole state", "1", {"pose"}});
     at.nis = trajectory.add({"nis", "normalised innovation squared over all rows", "1", {"pose"}});
-    at.trace_P = trajectory.add({"trace_P", "trace of the covariance as reported, after the update", trace_unit(state), {"pose"}});
+    at.trace_P = trajectory.add(
+        {"trace_P", "trace of the covariance as reported, after the update", trace_unit(state), {"pose"}});
     at.rows = trajectory.add({"rows", "measurement rows of the update", "1", {"pose"}, TrajectoryNumbers::integer});
     at.control_turn = trajectory.add({"control_turn", "turn " + control, "rad", {"pose"}});
-    at.control_move = trajectory.add({"control_move", "displacement " + control + ", " + (heading ? "body" : "world") + " frame",
-                                      length, {"pose", "axis"}});
+    at.control_move = trajectory.add({"control_move",
+                                      "displacement " + control + ", " + (heading ? "body" : "world") + " frame",
+                                      length,
+                                      {"pose", "axis"}});
     at.seen = trajectory.add({"seen", "whether the feature was seen", "1", {"pose", "feature"}, TrajectoryNumbers::flag,
                               "not_looked_for unseen seen"});
     at.measurement_sigma = trajectory.add({"measurement_sigma", "true standard deviation of the measurement, each axis",

@@ -116,7 +116,8 @@ private:
         for (int j = 0; j < features; ++j) {
             to(at_.seen, k)[j] = sightings[j].seen;
             to(at_.measurement_sigma, k)[j] = sightings[j].sigma;
-            write_vector(sightings[j].seen ? sightings[j].z : Vector2<double>{nan, nan}, to(at_.measurement, k) + 2 * j);
+            write_vector(sightings[j].seen ? sightings[j].z : Vector2<double>{nan, nan},
+                         to(at_.measurement, k) + 2 * j);
         }
     }
 
@@ -129,7 +130,9 @@ private:
         JointMeasurement joint(m, layout.size());
         const Rotation<double> frame = linearised.frame;
         const double c = frame.cosine, s = frame.sine;
-        const auto into_body = [&](const Vector2<double>& v) { return Vector2<double>{c * v.x + s * v.y, c * v.y - s * v.x}; };
+        const auto into_body = [&](const Vector2<double>& v) {
+            return Vector2<double>{c * v.x + s * v.y, c * v.y - s * v.x};
+        };
         const auto observed = [&](int row, const Vector2<double>& innovation, double variance) {
             write_vector(innovation, &joint.innovation[static_cast<std::size_t>(row)]);
             std::fill_n(&joint.noise[static_cast<std::size_t>(row)], 2, variance);
@@ -149,7 +152,8 @@ private:
         for (int e = 0; e < filter.edge_count; ++e) {
             const int row = 2 * (features + e);
             const int from = Layout::feature(filter.edges[e].from), end = Layout::feature(filter.edges[e].to);
-            const Vector2<double> z = edge_measurement(e), a = point_at(belief.mean, from), b = point_at(belief.mean, end);
+            const Vector2<double> z = edge_measurement(e), a = point_at(belief.mean, from),
+                                  b = point_at(belief.mean, end);
             observed(row, {z.x - (b.x - a.x), z.y - (b.y - a.y)}, filter.variance_edge);
             joint.set(row, from, -1, 0, 0, -1);
             joint.set(row, end, 1, 0, 0, 1);

@@ -77,7 +77,9 @@ KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, 
 template <class Enum, class Field>
 DeformableKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
     return {name, joined(choices),
-            [=](DeformableSettings& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
+            [=](DeformableSettings& s, const std::string& v) {
+                field(s) = static_cast<Enum>(parse_choice(name, v, choices));
+            },
             [=](const DeformableSettings& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
 }
 
@@ -97,7 +99,8 @@ template <class S>
 void add_common_keys(std::vector<KeyOf<S>>& keys) {
     keys.push_back(text_key<S>("scenario.name", "letters, digits, _ and -; unique in a run; default the file's stem",
                                [](auto& s) -> auto& { return s.name; }, is_name));
-    keys.push_back(text_key<S>("scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
+    keys.push_back(text_key<S>(
+        "scenario.title", "one line of text", [](auto& s) -> auto& { return s.title; }, is_title));
     keys.push_back(text_key<S>("scenario.length_unit", "unit of every length, such as dm; lengths are never converted",
                                [](auto& s) -> auto& { return s.length_unit; }, is_unit));
     keys.push_back(integer_key<S>("scenario.poses", "K, the first pose included", 2, largest_pose_count,

@@ -44,8 +44,8 @@ TEST_CASE("text: numbers are read whole or not at all") {
     CHECK(to_number("inf") == std::numeric_limits<double>::infinity());
     CHECK(to_number("-inf") == -std::numeric_limits<double>::infinity());
     CHECK(std::isnan(to_number("nan").value()));
-    for (const char* text : {"", " ", "+", "-", "1.5 ", " 1.5", "1,5", "1.5x", "0x10", "1e", "e3", "--1", "++1", "1e999",
-                             "one", "1.2.3", "1 2"}) {
+    for (const char* text : {"", " ", "+", "-", "1.5 ", " 1.5", "1,5", "1.5x", "0x10", "1e", "e3", "--1", "++1",
+                             "1e999", "one", "1.2.3", "1 2"}) {
         CAPTURE(text);
         CHECK_FALSE(to_number(text).has_value());
     }
@@ -59,8 +59,8 @@ TEST_CASE("text: whole numbers may be written as 1e6 and must fit") {
     CHECK(to_integer("9223372036854775807") == std::numeric_limits<std::int64_t>::max());
     CHECK(to_integer("-9223372036854775808") == std::numeric_limits<std::int64_t>::min());
     CHECK(to_integer("9007199254740992.0") == 9007199254740992);
-    for (const char* text : {"", "1.5", "1e-1", "9223372036854775808", "1e17", "inf", "nan", "-inf", "twelve", "1 000", "0x10",
-                             "12a", "1e400"}) {
+    for (const char* text : {"", "1.5", "1e-1", "9223372036854775808", "1e17", "inf", "nan", "-inf", "twelve", "1 000",
+                             "0x10", "12a", "1e400"}) {
         CAPTURE(text);
         CHECK_FALSE(to_integer(text).has_value());
     }
@@ -107,7 +107,8 @@ TEST_CASE("text: the closest word is found if it is close") {
 
 TEST_CASE("text: UTF-8 is distinguished from similar bytes") {
     for (const char* good : {"", "dm", "\xc2\xb5m", "\xe2\x88\x9a", "\xf0\x9f\x98\x80"}) CHECK(is_utf8(good));
-    for (const char* bad : {"\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff", "a\xe2\x88"})
+    for (const char* bad :
+         {"\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff", "a\xe2\x88"})
         CHECK_FALSE(is_utf8(bad));
 }
 

@@ -45,8 +45,9 @@ TEST_CASE("cli: a study of aggregates is run, resumed, reported, compared, follo
 TEST_CASE("cli: a billion trials of which none is kept are expected to take no more memory or file than a million") {
     const Workplace here;
     const auto expected = [&](const std::string& trials) {
-        const std::string out = here.credence("run " + seed_scenario("kf-straight-constant") + " --keep aggregates --dry-run --trials " +
-                                              trials).out;
+        const std::string out = here.credence("run " + seed_scenario("kf-straight-constant") +
+                                              " --keep aggregates --dry-run --trials " + trials)
+                                    .out;
         return out.substr(out.find(", ", out.find("About")));  // behind the time
     };
     CHECK(expected("1e9") == expected("1e6"));

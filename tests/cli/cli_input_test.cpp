@@ -33,8 +33,10 @@ void check_refused(const Outcome& outcome, const std::string& what, int exit_cod
 /// Nothing that a terminal obeys: no controls but tab and line feed, no turning of the direction.
 void check_harmless(const std::string& text) {
     CAPTURE(text);
-    for (const char c : text) CHECK_FALSE(((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f));
-    for (const char* bad : {"\xc2\x9b", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6"}) CHECK(text.find(bad) == std::string::npos);
+    for (const char c : text)
+        CHECK_FALSE(((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f));
+    for (const char* bad : {"\xc2\x9b", "\xc2\x85", "\xe2\x80\xae", "\xe2\x81\xa6"})
+        CHECK(text.find(bad) == std::string::npos);
 }
 
 /// Every command that reads a file, with its other arguments.
@@ -74,10 +76,12 @@ TEST_CASE("cli: what is not a regular file is refused by every command, without 
     REQUIRE(here.shell("mkfifo pipe && mkdir folder").exit_code == 0);
     for (const std::string name : {"pipe", "folder", "/dev/null", "/dev/zero"}) {
         for (const std::string& command : commands_of_hdf5)
-            check_refused(here.shell("timeout 10 " CREDENCE_PROGRAM " " + command + " " + name), "is not a regular file");
+            check_refused(here.shell("timeout 10 " CREDENCE_PROGRAM " " + command + " " + name),
+                          "is not a regular file");
         for (const std::string& command : commands_of_scenarios)
             check_refused(here.shell("timeout 10 " CREDENCE_PROGRAM " " + command + " " + name), "it is not a file");
-        check_refused(here.shell("timeout 10 " CREDENCE_PROGRAM " replay small.ini --noise " + name), "is not a regular file");
+        check_refused(here.shell("timeout 10 " CREDENCE_PROGRAM " replay small.ini --noise " + name),
+                      "is not a regular file");
     }
 }
 
@@ -94,7 +98,8 @@ TEST_CASE("cli: too many open files are what a merge says, not that a file is da
     const Workplace here;
     here.write("small.ini", small_world);
     for (const std::string i : {"0", "1", "2", "3", "4", "5", "6", "7"})
-        REQUIRE(here.credence("run small.ini --trials 2048 --quiet --shard " + i + "/8 -o " + i + ".h5").exit_code == 0);
+        REQUIRE(here.credence("run small.ini --trials 2048 --quiet --shard " + i + "/8 -o " + i + ".h5").exit_code ==
+                0);
     check_refused(here.shell("ulimit -n 10; " CREDENCE_PROGRAM " merge ?.h5 -o whole.h5"),
                   "cannot be read (too many open files). Raise the number of files that may be open (ulimit -n)");
     CHECK(here.credence("merge ?.h5 -o whole.h5").exit_code == 0);
@@ -107,7 +112,8 @@ TEST_CASE("cli: where nothing was committed the program does not say that someth
                                   CREDENCE_PROGRAM " run small.ini --quiet -o /proc/x.h5"}) {
         const Outcome failed = here.shell("(" + run + ") 2>&1 | cat >&2");
         CAPTURE(failed.err);
-        CHECK_THAT(failed.err, Contains("cannot write ") && Contains("Nothing had been committed.") && !Contains("kept"));
+        CHECK_THAT(failed.err,
+                   Contains("cannot write ") && Contains("Nothing had been committed.") && !Contains("kept"));
         CHECK(here.names() == std::vector<std::string>{"small.ini"});
     }
     CHECK(here.credence("run small.ini --quiet -o /proc/x.h5").exit_code == 1);
@@ -133,7 +139,8 @@ TEST_CASE("cli: titles, names and units reach a terminal without what it obeys")
     }
     check_harmless(here.credence("show evil.ini").out);
     check_harmless(here.credence("run evil.ini --dry-run -o \"$(printf 'd\\033.h5')\"").out);
-    check_refused(here.credence("report \"$(printf 'none\\033\\377')\""), "none\\u001b\\xff: the file: cannot be found");
+    check_refused(here.credence("report \"$(printf 'none\\033\\377')\""),
+                  "none\\u001b\\xff: the file: cannot be found");
 }
 
 TEST_CASE("cli: the names of a record's groups are escaped") {
@@ -149,17 +156,19 @@ TEST_CASE("cli: the names of a record's groups are escaped") {
 TEST_CASE("cli: a standard output that takes nothing makes every command fail") {
     const Workplace here;
     add_results(here);
-    for (const std::string command : {"--help", "help", "help run", "--version", "run --help", "completion bash", "manual",
-                                      "show", "report small.h5", "watch small.h5", "compare small.h5"})
+    for (const std::string command : {"--help", "help", "help run", "--version", "run --help", "completion bash",
+                                      "manual", "show", "report small.h5", "watch small.h5", "compare small.h5"})
         CHECK(here.credence(command + " >/dev/full").exit_code == 1);
 }
 
 TEST_CASE("cli: a stack that is too small is refused, on every thread") {
     const Workplace here;
     add_results(here);
-    for (const std::string command : {"run small.ini --trials 600 --quiet -o x.h5", "report small.h5", "compare small.h5"}) {
+    for (const std::string command :
+         {"run small.ini --trials 600 --quiet -o x.h5", "report small.h5", "compare small.h5"}) {
         check_refused(here.shell("ulimit -s 64; " CREDENCE_PROGRAM " " + command), "cannot run with a stack of 64 kB");
-        check_refused(here.shell("OMP_STACKSIZE=64k " CREDENCE_PROGRAM " " + command), "cannot run with a stack of 64 kB");
+        check_refused(here.shell("OMP_STACKSIZE=64k " CREDENCE_PROGRAM " " + command),
+                      "cannot run with a stack of 64 kB");
     }
     CHECK(here.shell("ulimit -s 256; " CREDENCE_PROGRAM " report small.h5").exit_code == 0);
 }
@@ -200,7 +209,8 @@ TEST_CASE("cli: replay takes a controller's name for its only arm") {
     CHECK(greedy.exit_code == 0);
     CHECK(greedy.out == here.credence(replay + "greedy.ekf").out);
     REQUIRE(here.credence("run small.ini --trials 5 --quiet -o two.h5 --set arms.estimators=ekf,fej").exit_code == 0);
-    check_refused(here.credence("replay two.h5 --scenario small --trial 1 --arm greedy"), "several arms have that controller");
+    check_refused(here.credence("replay two.h5 --scenario small --trial 1 --arm greedy"),
+                  "several arms have that controller");
     check_refused(here.credence(replay + "ekf"), "not in the scenario");
 }
 
@@ -216,7 +226,8 @@ TEST_CASE("cli: a report or a trajectory replaces a file only with --overwrite, 
         CHECK(here.credence(command + " -o there --overwrite").exit_code == 0);
         CHECK(here.read("there") != "precious");
         here.write("there", "precious");
-        const std::string input = command.find("record") == std::string::npos ? "small.h5" : "record.h5", before = here.read(input);
+        const std::string input = command.find("record") == std::string::npos ? "small.h5" : "record.h5",
+                          before = here.read(input);
         check_refused(here.credence(command + " --overwrite -o ./" + input),
                       "it would replace " + input + ", which is read");
         CHECK(here.read(input) == before);
@@ -298,13 +309,16 @@ TEST_CASE("cli: a file of another kind is refused with the command that reads it
     add_results(here);
     write_plain_record(here.path("record.h5"));
     REQUIRE(here.credence("replay small.h5 --scenario small --arm fixed --trial 0 -o trace.h5").exit_code == 0);
-    const std::vector<std::pair<std::string, std::string>> kinds{
-        {"small.ini", "scenario"}, {"small.h5", "results file"}, {"record.h5", "record"}, {"trace.h5", "trajectory file of a replay"}};
+    const std::vector<std::pair<std::string, std::string>> kinds{{"small.ini", "scenario"},
+                                                                 {"small.h5", "results file"},
+                                                                 {"record.h5", "record"},
+                                                                 {"trace.h5", "trajectory file of a replay"}};
     const std::vector<std::string> readers{"`credence run` and `credence show` read it", "`credence report` reads it",
                                            "`credence judge` reads it", "python -m credence.pictures"};
     const auto check = [&](const std::string& command, const std::string& own) {
         for (std::size_t k = 0; k < kinds.size(); ++k) {
-            if (kinds[k].second == own || (command == "compare" && kinds[k].second == "record")) continue;  // it takes both
+            // It takes both.
+            if (kinds[k].second == own || (command == "compare" && kinds[k].second == "record")) continue;
             const Outcome refused = here.credence(command + " " + kinds[k].first);
             check_refused(refused, kinds[k].second + ", not a " + own + "). ");
             CHECK_THAT(refused.err, Contains(readers[k]));
@@ -322,17 +336,30 @@ TEST_CASE("cli: a file of another kind is refused with the command that reads it
 TEST_CASE("cli: lines of help, reports and progress have less than 120 columns") {
     const Workplace here;
     add_results(here);
-    here.write("wide.ini", "[scenario]\nname = a-scenario-with-a-name-of-which-one-could-say-that-it-is-rather-too-long\n"
-                           "title = " + std::string(40, 'w') + " " + std::string(60, 'x') + " " + std::string(60, 'y') +
-                           "\nposes = 40\n[arms]\nestimators = ekf, ideal\n[planner]\nspeeds = 1\n");
+    here.write("wide.ini",
+               "[scenario]\nname = a-scenario-with-a-name-of-which-one-could-say-that-it-is-rather-too-long\n"
+               "title = " +
+                   std::string(40, 'w') + " " + std::string(60, 'x') + " " + std::string(60, 'y') +
+                   "\nposes = 40\n[arms]\nestimators = ekf, ideal\n[planner]\nspeeds = 1\n");
     std::vector<std::string> commands{
-        "--help", "--version", "show", "report small.h5", "compare small.h5", "watch small.h5",
-        "run wide.ini --trials 40 -o wide.h5", "compare wide.h5", "watch wide.h5", "run wide.ini --dry-run -o y.h5",
+        "--help",
+        "--version",
+        "show",
+        "report small.h5",
+        "compare small.h5",
+        "watch small.h5",
+        "run wide.ini --trials 40 -o wide.h5",
+        "compare wide.h5",
+        "watch wide.h5",
+        "run wide.ini --dry-run -o y.h5",
         "run small.ini --trials 300 --until trace_P=1 -o until.h5",
-        "run small.ini --trials 5 -o swept.h5 --sweep 'features.positions=0.5 0.5, 0.9 0.8, 0.3 0.4|0.5 0.5, 0.9 0.8, 0.3 0.1' "
+        "run small.ini --trials 5 -o swept.h5 --sweep 'features.positions=0.5 0.5, 0.9 0.8, 0.3 0.4|"
+        "0.5 0.5, 0.9 0.8, 0.3 0.1' "
         "--sweep filter.odometry=0.8,1.2 --sweep noise.deformation=0.1,0.2",
-        "watch swept.h5", "compare swept.h5"};
-    for (const char* command : {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion", "manual"})
+        "watch swept.h5",
+        "compare swept.h5"};
+    for (const char* command :
+         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion", "manual"})
         commands.push_back(std::string(command) + " --help");
     for (const std::string& command : commands) {
         const Outcome outcome = here.credence(command);

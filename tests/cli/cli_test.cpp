@@ -31,7 +31,8 @@ void check_refused(const Outcome& outcome, const std::string& what) {
 
 TEST_CASE("cli: run writes a file, and report gives JSON with an object per scenario and arm") {
     const Workplace here;
-    const Outcome run = here.credence("run " + seed_scenario("ekf-straight-constant") + " " + seed_scenario("kf-circle-ranged") + small + "-o r.h5");
+    const Outcome run = here.credence("run " + seed_scenario("ekf-straight-constant") + " " +
+                                      seed_scenario("kf-circle-ranged") + small + "-o r.h5");
     INFO(run.err);
     REQUIRE(run.exit_code == 0);
     CHECK(here.names() == std::vector<std::string>{"r.h5"});
@@ -56,10 +57,12 @@ TEST_CASE("cli: run writes a file, and report gives JSON with an object per scen
 
 TEST_CASE("cli: the table names every arm, its differences and the published values") {
     const Workplace here;
-    const Outcome run = here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 -o r.h5");
+    const Outcome run =
+        here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --threads 2 -o r.h5");
     REQUIRE(run.exit_code == 0);
-    for (const char* part : {"kf-circle-constant: Kalman filter", "trace(P), last step [dm^2]", "fixed.kf", "greedy.kf", "greedy - fixed", "0.1061 (",
-                             "47 (", "NEES/n", "NIS/m", "failed", "pessimistic", "mean ± 95 %", "median", "sd"})
+    for (const char* part :
+         {"kf-circle-constant: Kalman filter", "trace(P), last step [dm^2]", "fixed.kf", "greedy.kf", "greedy - fixed",
+          "0.1061 (", "47 (", "NEES/n", "NIS/m", "failed", "pessimistic", "mean ± 95 %", "median", "sd"})
         CHECK_THAT(run.out, Contains(part));
     const Outcome report = here.credence("report r.h5");
     CHECK(run.out.compare(0, report.out.size(), report.out) == 0);
@@ -93,7 +96,8 @@ TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file
 TEST_CASE("cli: nothing outside /run depends on threads, and growing a file gives what running at once gives",
           "[long]") {
     const Workplace here;
-    const std::string scenarios = "run " + seed_scenario("ekf-circle-ranged") + " " + seed_scenario("kf-straight-constant") + " --quiet ";
+    const std::string scenarios =
+        "run " + seed_scenario("ekf-circle-ranged") + " " + seed_scenario("kf-straight-constant") + " --quiet ";
     REQUIRE(here.credence(scenarios + "--trials 3000 --threads 1 -o one.h5").exit_code == 0);
     REQUIRE(here.credence(scenarios + "--trials 3000 --threads 2 -o two.h5").exit_code == 0);
     REQUIRE(here.credence(scenarios + "--trials 3000 --threads 5 -o five.h5").exit_code == 0);
@@ -121,15 +125,18 @@ TEST_CASE("cli: resume starts where there is nothing, ends at once where all is 
     check_refused(here.credence(run + "--set noise.walk=0.31"), "noise.walk is 0.3 there and 0.31 here");
 }
 
-TEST_CASE("cli: resume without a scenario goes on with the study of the file, or of the journal of a run that was killed") {
+TEST_CASE(
+    "cli: resume without a scenario goes on with the study of the file, or of the journal of a run that was killed") {
     const Workplace here;
-    const std::string run = "run " + seed_scenario("ekf-straight-constant") + " --seed 7 --set noise.walk=0.25 --quiet ";
+    const std::string run =
+        "run " + seed_scenario("ekf-straight-constant") + " --seed 7 --set noise.walk=0.25 --quiet ";
     REQUIRE(here.credence(run + "--trials 700 -o whole.h5").exit_code == 0);
     REQUIRE(here.credence(run + "--trials 300 -o grown.h5").exit_code == 0);
     REQUIRE(here.credence("run --resume --trials 700 --quiet -o grown.h5").exit_code == 0);
     CHECK(here.shell("h5diff --exclude-path /run whole.h5 grown.h5").exit_code == 0);
 
-    CHECK(here.shell("timeout -s KILL 2 " CREDENCE_PROGRAM " " + run + "--trials 1e8 --keep aggregates -o killed.h5").exit_code != 0);
+    CHECK(here.shell("timeout -s KILL 2 " CREDENCE_PROGRAM " " + run + "--trials 1e8 --keep aggregates -o killed.h5")
+              .exit_code != 0);
     REQUIRE(here.shell("test -e killed.h5.journal -a ! -e killed.h5").exit_code == 0);
     CHECK_THAT(here.credence("run --resume --dry-run -o killed.h5").out, Contains("scenarios: 1, trials of each: "));
 
@@ -181,7 +188,8 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     check_refused(here.credence("run good.ini --resume --overwrite"), "contradict");
     check_refused(here.credence("run good.ini --resume -o " + std::string(300, 'x') + ".h5"), "the name is too long");
     check_refused(here.credence("report good.ini -o good.ini"), "good.ini (it is there already)");
-    check_refused(here.credence("replay good.ini --noise foreign.h5 --arm fixed.ekf"), "--arm does not go with --noise");
+    check_refused(here.credence("replay good.ini --noise foreign.h5 --arm fixed.ekf"),
+                  "--arm does not go with --noise");
     check_refused(here.credence("run \"$(printf 'missing\\nline.ini')\""), "missing\\nline.ini");
     check_refused(here.credence("''"), "unknown command");
     check_refused(here.credence("run"), "no scenario given");
@@ -216,7 +224,8 @@ TEST_CASE("cli: replay of a stored trial checks it, and writes its trajectory") 
     CHECK(here.names() == std::vector<std::string>{"credence.h5", "t.h5"});
     check_refused(here.credence(which + "--trial 300"), "invalid --trial=300 (must be at most 299)");
     check_refused(here.credence("replay credence.h5 --scenario x --arm greedy.ekf --trial 1"), "invalid --scenario=x");
-    check_refused(here.credence("replay credence.h5 --scenario ekf-circle-ranged --arm greedy.kf --trial 1"), "It has fixed.ekf, greedy.ekf");
+    check_refused(here.credence("replay credence.h5 --scenario ekf-circle-ranged --arm greedy.kf --trial 1"),
+                  "It has fixed.ekf, greedy.ekf");
     check_refused(here.credence(which + "--trial 1 -o t.h5"), "t.h5");
 }
 
@@ -224,7 +233,9 @@ TEST_CASE("cli: a replay that differs from what is stored fails with exit code 1
     const Workplace here;
     REQUIRE(here.credence("run " + seed_scenario("ekf-straight-constant") + small).exit_code == 0);
     // One bit of one stored trace(P) is turned over in the bytes of the file.
-    REQUIRE(here.shell("h5dump -d /ekf-straight-constant/fixed.ekf/trace_P -b LE -o column.bin credence.h5").exit_code == 0);
+    REQUIRE(
+        here.shell("h5dump -d /ekf-straight-constant/fixed.ekf/trace_P -b LE -o column.bin credence.h5").exit_code ==
+        0);
     const std::string column = here.read("column.bin");
     std::string bytes = here.read("credence.h5");
     const std::size_t at = bytes.find(column);

@@ -51,7 +51,9 @@ struct PlainRecord {
     std::vector<std::size_t> by_nees() {
         std::vector<std::size_t> order(trials);
         std::iota(order.begin(), order.end(), std::size_t{0});
-        const auto nees = [&](std::size_t trial) { return std::inner_product(e(trial, 0), e(trial, 0) + steps * n, e(trial, 0), 0.0); };
+        const auto nees = [&](std::size_t trial) {
+            return std::inner_product(e(trial, 0), e(trial, 0) + steps * n, e(trial, 0), 0.0);
+        };
         std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return nees(a) < nees(b); });
         return order;
     }
@@ -67,7 +69,8 @@ struct PlainRecord {
     void write(const std::string& path) const {
         const Handle root(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, path, "no file");
         hdf5::write_dataset(root, "error", hdf5::type_of<double>(), error.data(), {trials, steps, n}, {"", ""});
-        hdf5::write_dataset(root, "covariance", hdf5::type_of<double>(), covariance.data(), {trials, steps, n, n}, {"", ""});
+        hdf5::write_dataset(root, "covariance", hdf5::type_of<double>(), covariance.data(), {trials, steps, n, n},
+                            {"", ""});
     }
 };
 
@@ -162,7 +165,8 @@ TEST_CASE("judge: the margins of directions and of the bias are options") {
     const Workplace here;
     write_correlated(here.path("b.h5"), 0.6, 1);
     const auto verdict = [&](const std::string& options) {
-        return Json::parse(here.credence("judge b.h5 --quiet --format json " + options).out)[0]["verdict"].get<std::string>();
+        return Json::parse(here.credence("judge b.h5 --quiet --format json " + options).out)[0]["verdict"]
+            .get<std::string>();
     };
     CHECK(verdict("") == "mixed");
     CHECK(verdict("--margin 80%") == "consistent");
@@ -181,7 +185,8 @@ TEST_CASE("compare: two records of the same runs are compared trial by trial") {
     write_correlated(here.path("short.h5"), 0, 1, 200);
     const Outcome compared = here.credence("compare a.h5 b.h5");
     CHECK(compared.exit_code == 0);
-    CHECK_THAT(compared.out, Contains("Both of a pair are of the same run") && Contains("300 pairs") && !Contains("unseen"));
+    CHECK_THAT(compared.out,
+               Contains("Both of a pair are of the same run") && Contains("300 pairs") && !Contains("unseen"));
     CHECK(here.credence("compare a.h5 short.h5").exit_code == 2);
     CHECK_THAT(here.credence("compare a.h5 short.h5").err, Contains("it has 200 trials, not 300"));
     CHECK_THAT(here.credence("compare a.h5").err, Contains("several records of the same runs"));

@@ -30,7 +30,8 @@ TEST_CASE("cli: a dry run says what to expect and writes nothing") {
 
 TEST_CASE("cli: help for every command, and the version with the facts of the build") {
     const Workplace here;
-    CHECK_THAT(here.credence("--help").out, Contains("run") && Contains("report") && Contains("replay") && Contains("show"));
+    CHECK_THAT(here.credence("--help").out,
+               Contains("run") && Contains("report") && Contains("replay") && Contains("show"));
     for (const char* command : {"run", "report", "replay", "show"}) {
         const Outcome help = here.credence(std::string(command) + " --help");
         CHECK(help.exit_code == 0);
@@ -38,7 +39,8 @@ TEST_CASE("cli: help for every command, and the version with the facts of the bu
     }
     const Outcome version = here.credence("--version");
     CHECK(version.exit_code == 0);
-    CHECK_THAT(version.out, Contains("credence ") && Contains("compiler") && Contains("instruction_set") && Contains("schema_version"));
+    CHECK_THAT(version.out, Contains("credence ") && Contains("compiler") && Contains("instruction_set") &&
+                                Contains("schema_version"));
 }
 
 TEST_CASE("cli: a run that cannot fit is refused before any work, unless --force is given") {

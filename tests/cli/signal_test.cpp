@@ -31,7 +31,8 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
         const Workplace here;
         here.write("small world.ini", small_world);
         // As many trials as would take hours.
-        const std::string arguments = "'small world.ini' --trials 1e8 --force --quiet -o x.h5 --commit-every 1 --threads 2";
+        const std::string arguments =
+            "'small world.ini' --trials 1e8 --force --quiet -o x.h5 --commit-every 1 --threads 2";
         const Outcome stopped = disturbed(here, arguments, "kill -" + name + " $run");
         CAPTURE(name, stopped.err);
         CHECK(stopped.out == "exit code 3\n");

@@ -22,9 +22,10 @@ TEST_CASE("cli: run --until stops at the first interim analysis for a loose goal
     const Outcome run = here.credence(loose);
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
-    CHECK_THAT(run.out, Contains("stopped at interim analysis 1, 300 trials: as precise as asked. Intervals at 97.5 %") &&
-                            Contains("trace_P of kf-circle-constant/fixed.kf  0.56 ± 0.16, asked") &&
-                            Contains("unseen of kf-circle") && Contains("asked ± 0.5"));
+    CHECK_THAT(run.out,
+               Contains("stopped at interim analysis 1, 300 trials: as precise as asked. Intervals at 97.5 %") &&
+                   Contains("trace_P of kf-circle-constant/fixed.kf  0.56 ± 0.16, asked") &&
+                   Contains("unseen of kf-circle") && Contains("asked ± 0.5"));
     CHECK(lines(run.err) == 1);
     CHECK_THAT(run.err, Contains("interim analysis 1, 300 trials: ") && Contains("; precise enough"));
     CHECK(here.credence(loose + "--quiet -o quiet.h5").err.empty());
@@ -54,8 +55,8 @@ TEST_CASE("cli: run --until that is not precise enough at its ceiling says so, k
                             Contains("it needs about "));
     const Outcome shown = here.credence(kalman + "--until trace_P=0.5% --trials 300 --resume");
     CHECK(shown.exit_code == 0);
-    CHECK_THAT(shown.out, Contains("stopped at interim analysis 1, 300 trials: not as precise as asked") && Contains(": not met") &&
-                              Contains("credence.h5 has these trials already"));
+    CHECK_THAT(shown.out, Contains("stopped at interim analysis 1, 300 trials: not as precise as asked") &&
+                              Contains(": not met") && Contains("credence.h5 has these trials already"));
 }
 
 TEST_CASE("cli: run --until gives the same file for any number of threads and after --resume", "[long]") {

@@ -100,7 +100,8 @@ TEST_CASE("launcher: a batch script is one process, though Slurm counts its task
 }
 
 TEST_CASE("launcher: what names no shard is refused") {
-    CHECK_THAT(refused({}), Contains("invalid --shard auto (the variables of a task of a Slurm array") && Contains("give --shard I/N"));
+    CHECK_THAT(refused({}), Contains("invalid --shard auto (the variables of a task of a Slurm array") &&
+                                Contains("give --shard I/N"));
     // --array=1,3,7: its numbers do not say which of the three a task is.
     for (const char* id : {"1", "3", "7"})
         CHECK_THAT(refused({{"SLURM_ARRAY_TASK_ID", id},
@@ -127,7 +128,9 @@ TEST_CASE("launcher: what names no shard is refused") {
 }
 
 TEST_CASE("launcher: MPI is for processes of an MPI launcher that started more than one") {
-    const auto rank = [](const Names& names) { return rank_of_launcher(variables(names)).value_or(LauncherRank{-1, 0, ""}).rank; };
+    const auto rank = [](const Names& names) {
+        return rank_of_launcher(variables(names)).value_or(LauncherRank{-1, 0, ""}).rank;
+    };
     CHECK(rank({{"OMPI_COMM_WORLD_RANK", "2"}, {"OMPI_COMM_WORLD_SIZE", "3"}}) == 2);
     CHECK(rank({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "1"}}) == -1);
     CHECK(rank({{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}}) == 1);

@@ -71,7 +71,8 @@ std::vector<Target> asked_units(const std::vector<std::string>& names) {
     if (names.empty()) return all;
     std::vector<Target> asked;
     for (const std::string& name : names) {
-        const auto found = std::find_if(all.begin(), all.end(), [&](const Target& target) { return target.name == name; });
+        const auto found =
+            std::find_if(all.begin(), all.end(), [&](const Target& target) { return target.name == name; });
         if (found == all.end()) throw InputError("no unit " + name + " that this processor runs.");
         asked.push_back(*found);
     }

@@ -27,7 +27,9 @@ bool same_bits(const Block& a, const Block& b) {
 std::vector<Settings> worlds() {
     std::vector<Settings> all = seed_cells();
     all.push_back({{"features.positions", "1 1"}});
-    all.push_back({{"features.positions", "1 1, 0 1, 1 0, -1 0, 0.5 0.5"}, {"edges.graph", "chain"}, {"model.process", "translation"}});
+    all.push_back({{"features.positions", "1 1, 0 1, 1 0, -1 0, 0.5 0.5"},
+                   {"edges.graph", "chain"},
+                   {"model.process", "translation"}});
     all.push_back({{"sensor.detection", "0.5"}, {"noise.truncate", "2"}, {"features.sway_amplitude", "0.5"}});
     all.push_back({{"truth.deformation", "walk"}, {"truth.edge_noise", "independent"}, {"sensor.range_max", "inf"}});
     all.push_back({{"noise.initial_heading", "0.1"}, {"noise.initial_position", "0.1"}, {"features.path", "static"}});
@@ -44,7 +46,8 @@ double column(const Block& block, std::size_t arm, int index, int trial) {
 }
 
 /// The columns of one trial of a block, by itself.
-std::vector<double> single(const DeformableSettings& scenario, Controller controller, std::uint64_t seed, std::int64_t trial) {
+std::vector<double> single(const DeformableSettings& scenario, Controller controller, std::uint64_t seed,
+                           std::int64_t trial) {
     const AnyNoise noise = keyed_noise(scenario, seed, static_cast<std::uint64_t>(trial));
     std::vector<double> columns = run_arm(scenario, controller, noise).columns;
     fill_failed(trial_columns(scenario), columns.data());
@@ -72,7 +75,8 @@ TEST_CASE("block: the same bits every time, others for another root seed or inde
     CHECK(same_bits(block, run_block(problem, 1, 2, 64)));
     for (const auto& [seed, index] : {std::pair{2u, 2}, {1u, 3}}) {
         const Block other = run_block(problem, seed, index, 64);
-        for (int trial = 0; trial < 64; ++trial) CHECK(column(other, 0, column_trace_P, trial) != column(block, 0, column_trace_P, trial));
+        for (int trial = 0; trial < 64; ++trial)
+            CHECK(column(other, 0, column_trace_P, trial) != column(block, 0, column_trace_P, trial));
     }
 }
 
@@ -128,7 +132,8 @@ TEST_CASE("block: long trials, simulated a few at a time, are the single trials 
     const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}, {"scenario.poses", "500"}});
     const Block block = run_block(Problem(scenario), 5, 0, 32);
     for (const int trial : {0, 6, 7, 13, 14, 31})
-        CHECK(test::same_bits(column(block, 0, column_pose_error, trial), single(scenario, Controller::fixed, 5, trial)[column_pose_error]));
+        CHECK(test::same_bits(column(block, 0, column_pose_error, trial),
+                              single(scenario, Controller::fixed, 5, trial)[column_pose_error]));
 }
 
 TEST_CASE("block: arms are in the scenario's order") {
@@ -155,7 +160,8 @@ TEST_CASE("block: sums are folded in eight, in trial order, over the trials that
         run_squares.fill(Eigen::VectorXd::Zero(figures));
         int counted = 0;
         for (int trial = 0; trial < trials; ++trial) {
-            const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 3, static_cast<std::uint64_t>(trial)));
+            const Run run =
+                run_arm(scenario, Controller::fixed, keyed_noise(scenario, 3, static_cast<std::uint64_t>(trial)));
             const bool trial_failed = run.columns[column_status] >= 2;
             CHECK(std::isnan(column(block, 0, column_trace_P, trial)) == trial_failed);
             CHECK((column(block, 0, column_unseen, trial) == -1) == trial_failed);

@@ -46,7 +46,8 @@ std::vector<double> plain_moments(const Scenario& scenario, std::size_t arm, std
 void check_moments(const std::string& text) {
     const Scenario scenario = read_scenario_text(text, "test", "s");
     const Block block = BlockRunner(scenario).run(3, 0, 20);
-    const int size = moment_count(static_cast<int>(scenario.components.size()), static_cast<int>(scenario.groups.size()));
+    const int size =
+        moment_count(static_cast<int>(scenario.components.size()), static_cast<int>(scenario.groups.size()));
     for (std::size_t a = 0; a < block.arms.size(); ++a) {
         REQUIRE(block.arms[a].moments.size() == 20 * static_cast<std::size_t>(size));
         for (const std::int64_t trial : {0, 7, 19}) {
@@ -54,7 +55,8 @@ void check_moments(const std::string& text) {
             const std::vector<double> plain = plain_moments(scenario, a, trial);
             REQUIRE(plain.size() == static_cast<std::size_t>(size));
             for (std::size_t i = 0; i < plain.size(); ++i)
-                CHECK(block.arms[a].moments[static_cast<std::size_t>(trial) * plain.size() + i] == Approx(plain[i]).epsilon(1e-8).margin(1e-8));
+                CHECK(block.arms[a].moments[static_cast<std::size_t>(trial) * plain.size() + i] ==
+                      Approx(plain[i]).epsilon(1e-8).margin(1e-8));
         }
     }
 }

@@ -41,50 +41,92 @@ const std::vector<Damage> damages{
     {fixed + "/mean_trace_P: is missing", [](auto& r) { H5Adelete(r.id(), "keep"); }},
     {fixed + "/trace_P: does not belong here", [](auto& r) { replace<double>(r, fixed + "/trace_P", {300}, {}); }},
     {fixed + "/difference_count: does not belong here",
-     [](auto& r) { replace<std::int64_t>(r, fixed + "/difference_count", {0, 6}, {}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, fixed + "/difference_count", {0, 6}, {});
+     }},
     {arm + "/difference_total: is missing", [](auto& r) { remove(r, arm + "/difference_total"); }},
     {fixed + no_ranges, [](auto& r) { set_blocks(r, {-1}, {0}); }},
     {fixed + no_ranges, [](auto& r) { set_blocks(r, {1}, {0}); }},
     {fixed + no_ranges, [](auto& r) { set_blocks(r, {0}, {2}); }},
-    {fixed + no_ranges, [](auto& r) { set_blocks(r, {0, 1}, {0, 1}); }},
-    {fixed + no_ranges, [](auto& r) { set_blocks(r, {0, 0}, {1, 1}); }},
+    {fixed + no_ranges,
+     [](auto& r) {
+         set_blocks(r, {0, 1}, {0, 1});
+     }},
+    {fixed + no_ranges,
+     [](auto& r) {
+         set_blocks(r, {0, 0}, {1, 1});
+     }},
     {fixed + no_ranges, [](auto& r) { set_blocks(r, {0}, {std::numeric_limits<std::int64_t>::max()}); }},
-    {fixed + "/last_block: has extents [1], not [2]", [](auto& r) { set_blocks(r, {0, 2}, {1}); }},
+    {fixed + "/last_block: has extents [1], not [2]",
+     [](auto& r) {
+         set_blocks(r, {0, 2}, {1});
+     }},
     {fixed + "/first_block: is not a list",
-     [](auto& r) { replace<std::int64_t>(r, fixed + "/first_block", {1, 1}, {}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, fixed + "/first_block", {1, 1}, {});
+     }},
     {fixed + "/first_block: holds 32-bit integers",
      [](auto& r) { replace<std::int32_t>(r, fixed + "/first_block", {1}, {}); }},
     {arm + "/first_block: is not the same in every arm", [](auto& r) { set_numbers(r, arm + "/last_block", {0}); }},
     {fixed + "/status_count: adds up to 300 trials, but the blocks have 256", [](auto& r) { set_blocks(r, {0}, {0}); }},
     {fixed + "/status_count: adds up to 300 trials, but the blocks have 0", [](auto& r) { set_blocks(r, {}, {}); }},
     {arm + "/status_count: a number of trials is below 0",
-     [](auto& r) { set_numbers(r, arm + "/status_count", {301, -1, 0, 0}); }},
-    {arm + "/status_count: adds up to 301", [](auto& r) { set_numbers(r, arm + "/status_count", {300, 1, 0, 0}); }},
-    {arm + "/status_count: has extents [3], not [4]", [](auto& r) { set_numbers(r, arm + "/status_count", {300, 0, 0}); }},
+     [](auto& r) {
+         set_numbers(r, arm + "/status_count", {301, -1, 0, 0});
+     }},
+    {arm + "/status_count: adds up to 301",
+     [](auto& r) {
+         set_numbers(r, arm + "/status_count", {300, 1, 0, 0});
+     }},
+    {arm + "/status_count: has extents [3], not [4]",
+     [](auto& r) {
+         set_numbers(r, arm + "/status_count", {300, 0, 0});
+     }},
     {arm + "/status_code: does not count on",
-     [](auto& r) { replace<std::int8_t>(r, arm + "/status_code", {4}, {0, 1, 2, 4}); }},
-    {arm + "@counted_trials: is 299, but 300", [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 299); }},
-    {arm + "/column: does not count on", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {6}, {0, 1, 1}); }},
+     [](auto& r) {
+         replace<std::int8_t>(r, arm + "/status_code", {4}, {0, 1, 2, 4});
+     }},
+    {arm + "@counted_trials: is 299, but 300",
+     [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 299); }},
+    {arm + "/column: does not count on",
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/column", {6}, {0, 1, 1});
+     }},
     {arm + "/column: has extents [7], not [6]", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {7}, {}); }},
     {arm + "/status_count: a column has more values than trials",
-     [](auto& r) { set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300}); }},
+     [](auto& r) {
+         set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300});
+     }},
     {arm + "/status_count: a column has more values than trials",
-     [](auto& r) { set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300}); }},
-    {arm + "/column_total: its parts do not follow", [](auto& r) {
-         const auto extents = hdf5::Dataset(hdf5::open_group(hdf5::open_group(r, "first"), "greedy.ekf"), "column_total").extents();
+     [](auto& r) {
+         set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300});
+     }},
+    {arm + "/column_total: its parts do not follow",
+     [](auto& r) {
+         const auto extents =
+             hdf5::Dataset(hdf5::open_group(hdf5::open_group(r, "first"), "greedy.ekf"), "column_total").extents();
          replace<double>(r, arm + "/column_total", extents, {1, 1});
      }},
     {arm + "/subtracted_arm: has extents [2], not [1]",
-     [](auto& r) { replace<std::int32_t>(r, arm + "/subtracted_arm", {2}, {0, 1}); }},
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/subtracted_arm", {2}, {0, 1});
+     }},
     {arm + "/status_count: there are more pairs than values",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/difference_count", {1, 6}, {301}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/difference_count", {1, 6}, {301});
+     }},
     {arm + "/status_count: more pairs differ than there are",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/difference_above", {1, 6}, {301}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/difference_above", {1, 6}, {301});
+     }},
     {arm + "/status_count: more pairs differ than there are",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/difference_below", {1, 6}, {-1}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/difference_below", {1, 6}, {-1});
+     }},
     {fixed + "/first_block: [1099511627776] does not fit",
      [](auto& r) { promise_terabytes(r, fixed + "/first_block"); }},
-    {fixed + "/last_block: keeps its values in other files", [](auto& r) {
+    {fixed + "/last_block: keeps its values in other files",
+     [](auto& r) {
          keep_elsewhere(r, fixed + "/last_block");
          replace<std::int64_t>(r, fixed + "/first_block", {5}, {0, 2, 4, 6, 8});
      }},

@@ -33,8 +33,10 @@ void numbers_of(const nlohmann::json& json, const std::string& path, std::map<st
 
 }  // namespace
 
-TEST_CASE("aggregates: any number of threads gives the totals of the blocks, and what a study that keeps trials has besides") {
-    const Study one = run(700, Keep::aggregates), three = run(700, Keep::aggregates, 3), trials = run(700, Keep::trials);
+TEST_CASE(
+    "aggregates: any number of threads gives the totals of the blocks, and what a study of trials has besides") {
+    const Study one = run(700, Keep::aggregates), three = run(700, Keep::aggregates, 3),
+                trials = run(700, Keep::trials);
     CHECK(same_results(one, three));
     Study by_hand = small(700).study();
     for (ScenarioResults& results : by_hand.scenarios) {
@@ -268,7 +270,8 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
             for (std::size_t a = 0; a < results.arms.size(); ++a) {
                 const WatchedArm& arm = snapshot.scenarios[s].arms[a];
                 for (std::size_t f = 0; f < arm.columns.size(); ++f) {
-                    const Moments moments = moments_of(results.arms[a].aggregates.columns[watched_columns(results.columns)[f]]);
+                    const Moments moments =
+                        moments_of(results.arms[a].aggregates.columns[watched_columns(results.columns)[f]]);
                     CHECK(arm.columns[f].count == moments.count);
                     if (moments.count == 0) continue;
                     CHECK(arm.columns[f].mean == moments.mean);

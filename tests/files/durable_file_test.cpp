@@ -114,7 +114,8 @@ TEST_CASE("durable file: what appears or changes under the name in the meantime 
     };
     const Output fresh = check_output(path, false);
     put_bytes(path, "mine");
-    CHECK(contains(said(fresh), "cannot write " + path + " (a file of that name appeared in the meantime). Move that away"));
+    CHECK(contains(said(fresh),
+                   "cannot write " + path + " (a file of that name appeared in the meantime). Move that away"));
     CHECK(bytes_of(path) == "mine");
     Output seen = check_output(path, true);
     put_bytes(folder / "other", "mine");

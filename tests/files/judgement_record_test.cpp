@@ -62,7 +62,8 @@ void check_columns(const ScenarioResults& results, const Json& expected) {
         const std::string& name = results.columns[c].name;
         CAPTURE(name);
         const std::vector<double>& column = results.arms.front().columns[c];
-        if (name == "unseen") CHECK(std::all_of(column.begin(), column.end(), [](double one) { return std::isnan(one); }));
+        if (name == "unseen")
+            CHECK(std::all_of(column.begin(), column.end(), [](double one) { return std::isnan(one); }));
         else check_agree(column, expected[name]);
     }
 }
@@ -74,7 +75,8 @@ void check_arm(const ScenarioResults& results, const Json& expected) {
     CHECK(arm.present == expected["present"].get<std::vector<std::int64_t>>());
     check_agree(arm.distribution_distance, expected["shape_distance"]);
     for (std::size_t k = 0; k < arm.present.size(); ++k) {
-        const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells), last = first + distribution_cells;
+        const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells),
+                   last = first + distribution_cells;
         CHECK(std::accumulate(first, last, std::int64_t{0}) == arm.present[k]);
         CHECK(std::accumulate(first, first + lowest_cells, std::int64_t{0}) == expected["cells"][k][0]);
         CHECK(std::accumulate(last - lowest_cells, last, std::int64_t{0}) == expected["cells"][k][1]);

@@ -50,7 +50,8 @@ void write_record(const std::string& path, const DeformableSettings& scenario, s
     const Problem problem(scenario);
     Values values;
     for (std::uint64_t trial = 0; trial < trials; ++trial) {
-        const Trajectory trajectory = replay_trial(problem, {Controller::fixed}, seed, static_cast<std::int64_t>(trial));
+        const Trajectory trajectory =
+            replay_trial(problem, {Controller::fixed}, seed, static_cast<std::int64_t>(trial));
         const std::vector<TrajectoryStep> all = steps_of(trajectory);
         for (std::size_t k = 1; k < all.size(); ++k) values.add(all[k]);
     }
@@ -101,8 +102,9 @@ void check_blocks(const Evidence& run, const Evidence& record) {
 
 TEST_CASE("judge: a run's trajectories, written as a record, give the run's evidence and verdict") {
     const TemporaryFolder folder;
-    for (const Settings& world : {Settings{{"features.path", "circle"}}, Settings{{"model.process", "translation"}, {"edges.graph", "chain"}},
-                                  Settings{{"noise.heading", "0.05"}, {"filter.covariance", "0.5"}, {"edges.graph", "none"}}}) {
+    for (const Settings& world :
+         {Settings{{"features.path", "circle"}}, Settings{{"model.process", "translation"}, {"edges.graph", "chain"}},
+          Settings{{"noise.heading", "0.05"}, {"filter.covariance", "0.5"}, {"edges.graph", "none"}}}) {
         CAPTURE(described(world));
         const DeformableSettings scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
         constexpr int trials = 40;
@@ -124,7 +126,8 @@ TEST_CASE("judge: a run's trajectories, written as a record, give the run's evid
             for (std::size_t k = 0; k < run.bias[j].step.size(); ++k)
                 CHECK(run.bias[j].step[k].mean == Approx(record.bias[j].step[k].mean).margin(1e-9));
         for (std::size_t k = 0; k < run.distribution.distance.size(); ++k) {
-            CHECK(run.distribution.distance[k] <= record.distribution.distance[k] + 1e-12);  // the run has it on 4096 cells
+            // The run has it on 4096 cells.
+            CHECK(run.distribution.distance[k] <= record.distribution.distance[k] + 1e-12);
             CHECK(run.distribution.distance[k] >= record.distribution.distance[k] - 1.0 / 4096);
         }
         CHECK(run.credibility.nci == Approx(record.credibility.nci).epsilon(1e-5));  // errors kept in single precision

@@ -104,7 +104,8 @@ TEST_CASE("merge: totals that are not those of the trials' columns are refused, 
         const std::string bad = damaged_copy(good, shards.folder / (name + ".h5"), [&](const Handle& root) {
             scale(root, "/b/fixed.ekf/" + name, 2);
         });
-        std::vector<std::vector<std::string>> orders{{bad, other}, {other, bad}, {bad, good, other}, {good, other, bad}};
+        std::vector<std::vector<std::string>> orders{
+            {bad, other}, {other, bad}, {bad, good, other}, {good, other, bad}};
         for (const std::vector<std::string>& paths : orders) {
             const std::string said = refused_to_merge(paths);
             CAPTURE(name, said);

@@ -8,7 +8,9 @@ using namespace credence::test;
 
 namespace {
 
-void text(const Handle& root, const std::string& name, const std::string& value) { hdf5::write_text(root, name, value); }
+void text(const Handle& root, const std::string& name, const std::string& value) {
+    hdf5::write_text(root, name, value);
+}
 
 /// The same bits, NaN like NaN.
 void check_same(const std::vector<double>& a, const std::vector<double>& b) {
@@ -78,13 +80,15 @@ TEST_CASE("record 2: groups are lists of components in any order, and ranges") {
                 return sum;
             };
         };
-        check_sums(drawn, totals_named(record, "nees_" + name),
-                   [&, &members = components](std::size_t i) { return plain_nees(drawn.error[i], drawn.covariance[i], members); });
+        check_sums(drawn, totals_named(record, "nees_" + name), [&, &members = components](std::size_t i) {
+            return plain_nees(drawn.error[i], drawn.covariance[i], members);
+        });
         check_sums(drawn, totals_named(record, "squared_error_" + name),
                    over([&](std::size_t i, int j) { return drawn.error[i](j) * drawn.error[i](j); }));
         check_sums(drawn, totals_named(record, "variance_" + name),
                    over([&](std::size_t i, int j) { return drawn.covariance[i](j, j); }));
-        CHECK(record.results.all_series[series_named(record, "nees_" + name)].dimension == static_cast<int>(components.size()));
+        CHECK(record.results.all_series[series_named(record, "nees_" + name)].dimension ==
+              static_cast<int>(components.size()));
     }
 }
 
@@ -132,7 +136,8 @@ TEST_CASE("record 2: groups of innovation rows are judged by their observed rows
             if (!std::isnan(drawn.innovation[i](row))) there.push_back(row);
         return there;
     };
-    for (const auto& [name, rows] : std::vector<std::pair<std::string, std::vector<int>>>{{"gps", {0, 1, 2}}, {"baro", {3}}}) {
+    for (const auto& [name, rows] :
+         std::vector<std::pair<std::string, std::vector<int>>>{{"gps", {0, 1, 2}}, {"baro", {3}}}) {
         CAPTURE(name);
         for (int k = 0; k < drawn.steps; ++k) {
             double nis = 0;
@@ -143,8 +148,10 @@ TEST_CASE("record 2: groups of innovation rows are judged by their observed rows
                 count += there.size();
                 if (!there.empty()) nis += plain_nees(drawn.innovation[i], drawn.innovation_covariance[i], there);
             }
-            CHECK(totals_named(record, "nis_rows_" + name).sum[static_cast<std::size_t>(k)].rounded() == static_cast<double>(count));
-            CHECK(std::abs(totals_named(record, "nis_" + name).sum[static_cast<std::size_t>(k)].rounded() - nis) <= 1e-11 * nis);
+            CHECK(totals_named(record, "nis_rows_" + name).sum[static_cast<std::size_t>(k)].rounded() ==
+                  static_cast<double>(count));
+            CHECK(std::abs(totals_named(record, "nis_" + name).sum[static_cast<std::size_t>(k)].rounded() - nis) <=
+                  1e-11 * nis);
         }
     }
     const Evidence evidence = evidence_of(record.results, record.results.arms.front());
@@ -161,7 +168,8 @@ TEST_CASE("record 2: the asymmetry that singles leave is no mistake, and a large
             write_errors(root, drawn);
             std::vector<double> values = flat(drawn.covariance);
             values[4 * 3 + 1] += relative * std::sqrt(values[4 * 3] * values[4 * 3 + 3]);
-            (singles ? write_values<float> : write_values<double>)(root, "covariance", extents_of(drawn, {2, 2}), values);
+            (singles ? write_values<float> : write_values<double>)(root, "covariance", extents_of(drawn, {2, 2}),
+                                                                   values);
         };
     };
     CHECK(read_written(asymmetric(1e-6, true)).trouble_count == 0);  // 8 epsilons of a single
@@ -224,5 +232,6 @@ TEST_CASE("record 2: what its attributes and times cannot mean is refused by nam
     const TemporaryFolder folder;
     write_file(folder / "record.h5", [&](const Handle& root) { write_drawn(root, drawn); }, 3);
     CHECK(refusal<InputError>([&] { read_record(folder / "record.h5"); }) ==
-          folder / "record.h5" + ": /@record_version: is 3. Write 2, or use a newer credence if there is such a version.");
+          folder / "record.h5" +
+              ": /@record_version: is 3. Write 2, or use a newer credence if there is such a version.");
 }

@@ -116,7 +116,8 @@ TEST_CASE("record 2: a quaternion and its negative are the same rotation") {
 
 TEST_CASE("record 2: angles are wrapped, and products put their errors one after the other") {
     const Record record = read_written([&](const Handle& root) {
-        // Two steps of SO2 x R2 x SO3, the second with a rotation by pi/2 about z; its last factor is missing at the first.
+        // Two steps of SO2 x R2 x SO3, the second with a rotation by pi/2 about z; its last factor is missing at the
+        // first.
         const double nan = std::nan(""), h = std::sqrt(0.5);
         write_values(root, "truth", {1, 2, 7}, {3.1, 1, 2, 1, 0, 0, 0, -3.1, 0, 0, 1, 0, 0, 0});
         write_values(root, "estimate", {1, 2, 7}, {-3.1, 1.5, 1, nan, nan, nan, nan, 3.1, 0, 1, h, 0, 0, h});
@@ -173,7 +174,8 @@ TEST_CASE("record 2: components have the names of their manifold where the recor
     CHECK(names("SE2", {1, 2, 3}, 3, {"component_units", "m, m, rad"}) == Names{"m^2 + rad^2", "x", "y", "theta"});
     CHECK(names("SE2", {1, 2, 3}, 3, {"component_names", "a, b, c"}) == Names{unknown, "a", "b", "c"});
     CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "theta 2"}) == Names{unknown, "x", "y", "theta"});
-    CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "x 0 1"}) == Names{unknown, "x0", "x1", "x2"});  // the group keeps its name
+    // The group keeps its name.
+    CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "x 0 1"}) == Names{unknown, "x0", "x1", "x2"});
 }
 
 TEST_CASE("record 2: a manifold, chart or quaternion that cannot be is refused by name") {
@@ -184,7 +186,8 @@ TEST_CASE("record 2: a manifold, chart or quaternion that cannot be is refused b
     check_refused(with("SE4", "wxyz"), "/@manifold: `SE4` is no manifold. Write a product of SO2, SE2");
     check_refused(with("SE3 x", "wxyz"), "/@manifold: `` is no manifold");
     check_refused(with("R1000 x R1", "wxyz"), "/@manifold: has more than 1000 dimensions. Write a part of the state");
-    check_refused(with("SE3 x R2", "wxyz"), "/estimate: does not fit: it is [10, 3, 7], and the manifold has 9 coordinates");
+    check_refused(with("SE3 x R2", "wxyz"),
+                  "/estimate: does not fit: it is [10, 3, 7], and the manifold has 9 coordinates");
     check_refused(with("SE3", ""), "/@quaternion: is missing. Write wxyz or xyzw");
     check_refused(with("SE3", "zyxw"), "/@quaternion: is `zyxw`. Write wxyz or xyzw");
     check_refused([&](const Handle& root) {

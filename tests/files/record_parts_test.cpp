@@ -23,7 +23,8 @@ DrawnRecord uncorrelated(double claimed) {
 
 std::vector<double> variances_of(const DrawnRecord& drawn) {
     std::vector<double> values;
-    for (const Eigen::MatrixXd& P : drawn.covariance) values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
+    for (const Eigen::MatrixXd& P : drawn.covariance)
+        values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
     return values;
 }
 
@@ -58,7 +59,8 @@ void write_group(const Handle& root, const DrawnRecord& drawn, const std::string
     if (!hdf5::has_link(root, "group")) plain_group(root, "group");
     const Handle group = plain_group(hdf5::open_group(root, "group"), name);
     const int d = static_cast<int>(members.size());
-    if (covariance) return write_values(group, "covariance", extents_of(drawn, {d, d}), group_covariances(drawn, members));
+    if (covariance)
+        return write_values(group, "covariance", extents_of(drawn, {d, d}), group_covariances(drawn, members));
     write_values(group, "nees", extents_of(drawn, {}), group_nees(drawn, members));
     hdf5::write_number<std::int32_t>(open(group, "nees"), "dimension", d);
 }
@@ -94,9 +96,10 @@ TEST_CASE("record 2: of variances each component is judged by itself") {
     CHECK(totals_named(record, "nees_pair").runs == 0);
     CHECK(std::isnan(record.results.arms.front().columns[column_nees_ratio][0]));
     CHECK(record.results.not_judged ==
-          std::vector<std::string>{"The record has variances only: each component is judged by itself, and no correlation "
-                                   "between components is.",
-                                   "Without a covariance there is no NEES of pair."});
+          std::vector<std::string>{
+              "The record has variances only: each component is judged by itself, and no correlation "
+              "between components is.",
+              "Without a covariance there is no NEES of pair."});
 }
 
 TEST_CASE("record 2: variances that are right are undecided, and wrong ones are found") {
@@ -182,8 +185,8 @@ TEST_CASE("record 2: a NEES that is negative or infinite, and a variance that is
     DrawnRecord drawn(5, 3, 2);
     const auto trouble = [](const Record& record) {
         REQUIRE(record.trouble_count == 1);
-        return std::to_string(record.troubles.front().trial) + ", " + std::to_string(record.troubles.front().step) + ": " +
-               record.troubles.front().what;
+        return std::to_string(record.troubles.front().trial) + ", " + std::to_string(record.troubles.front().step) +
+               ": " + record.troubles.front().what;
     };
     const auto of_nees = [&](double value) {
         return trouble(read_written([&](const Handle& root) {

@@ -134,7 +134,8 @@ TEST_CASE("record 2: a group is judged at the steps where it is whole") {
     }
 }
 
-TEST_CASE("record 2: a group that no trial has at any step is not judged, and keeps nothing from being said of the rest") {
+TEST_CASE(
+    "record 2: a group that no trial has at any step is not judged, and keeps nothing from being said of the rest") {
     DrawnRecord drawn = growing();
     for (int trial = 0; trial < trials; ++trial)
         for (int step = 0; step < steps; ++step) drawn.hide(trial, step, 4);
@@ -172,7 +173,8 @@ TEST_CASE("record 2: a step that does not exist is no leaving, and a trial that 
     for (int j = 0; j < n; ++j) drawn.hide(7, steps - 1, j);
     const Record cut = read_growing(drawn);
     CHECK(cut.trouble_count == 1);
-    CHECK(cut.troubles.front().what == "the trial ends after 6 of 7 steps, and no dataset `steps` declares that it is shorter");
+    CHECK(cut.troubles.front().what ==
+          "the trial ends after 6 of 7 steps, and no dataset `steps` declares that it is shorter");
     CHECK(read_written([&](const Handle& root) {
               write_drawn(root, drawn);
               std::vector<double> declared(trials, steps);

@@ -134,9 +134,9 @@ TEST_CASE("results format: the moments of a trial begin with its mean NEES of th
     for (std::size_t trial = 0; trial < 3; ++trial) {
         const auto first = nees.begin() + static_cast<std::ptrdiff_t>(trial * steps);
         // The file keeps each step's NEES as a float.
-        CHECK(moments[trial * each] ==
-              Approx(std::accumulate(first, first + static_cast<std::ptrdiff_t>(steps), 0.0) / static_cast<double>(steps))
-                  .epsilon(1e-6));
+        CHECK(moments[trial * each] == Approx(std::accumulate(first, first + static_cast<std::ptrdiff_t>(steps), 0.0) /
+                                              static_cast<double>(steps))
+                                           .epsilon(1e-6));
     }
 }
 
@@ -154,16 +154,17 @@ TEST_CASE("store: every variable has a long name, units and dimension scales in 
         CHECK(!hdf5::read_text(dataset, "units").empty());
         if (H5DSis_scale(dataset.id()) > 0) continue;
         using Names = std::vector<std::string>;
-        const std::vector<std::string> expected = name == "whiteness_count"            ? Names{"lag"}
-                                                  : name.starts_with("whiteness_")     ? Names{"lag", "part"}
-                                                  : name == "detailed_nees"            ? Names{"detailed_trial", "step"}
-                                                  : name == "detailed_error"   ? Names{"detailed_trial", "step", "component"}
-                                                  : name == "detailed_moments" ? Names{"detailed_trial", "moment"}
-                                                  : name == "nees_cells"       ? Names{"step", "cell"}
-                                                  : name.ends_with("_covered") ? Names{"step", "level"}
-                                                  : name.ends_with("_run_square_total") ? std::vector<std::string>{"part"}
-                                                  : name.ends_with("_total") ? std::vector<std::string>{"step", "part"}
-                                                                             : std::vector<std::string>{"trial"};
+        const std::vector<std::string> expected =
+            name == "whiteness_count"             ? Names{"lag"}
+            : name.starts_with("whiteness_")      ? Names{"lag", "part"}
+            : name == "detailed_nees"             ? Names{"detailed_trial", "step"}
+            : name == "detailed_error"            ? Names{"detailed_trial", "step", "component"}
+            : name == "detailed_moments"          ? Names{"detailed_trial", "moment"}
+            : name == "nees_cells"                ? Names{"step", "cell"}
+            : name.ends_with("_covered")          ? Names{"step", "level"}
+            : name.ends_with("_run_square_total") ? std::vector<std::string>{"part"}
+            : name.ends_with("_total")            ? std::vector<std::string>{"step", "part"}
+                                                  : std::vector<std::string>{"trial"};
         for (unsigned axis = 0; axis < hdf5::Dataset(group, name).extents().size(); ++axis) {
             const hdf5::Handle scale(H5Dopen2(group.id(), expected[axis].c_str(), H5P_DEFAULT), H5Dclose, name, "");
             CHECK(H5DSget_num_scales(dataset.id(), axis) == 1);

@@ -46,10 +46,12 @@ TEST_CASE("schema: a file of version 2 is reported, without directions") {
 
 TEST_CASE("schema: a file of version 2 is not grown and not merged, and says so") {
     const Workplace here;
-    REQUIRE(here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --quiet -o new.h5").exit_code == 0);
+    REQUIRE(here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 300 --quiet -o new.h5").exit_code ==
+            0);
     damaged_copy(here.path("new.h5"), here.path("old.h5"), make_version_2);
     const std::string before = here.read("old.h5");
-    const Outcome grown = here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 600 --quiet -o old.h5 --resume");
+    const Outcome grown =
+        here.credence("run " + seed_scenario("kf-circle-constant") + " --trials 600 --quiet -o old.h5 --resume");
     CHECK(grown.exit_code == 2);
     CHECK_THAT(grown.err, Catch::Contains("cannot resume old.h5 (it has schema version 2, this program writes 3)"));
     const Outcome merged = here.credence("merge old.h5 -o merged.h5");

@@ -34,23 +34,33 @@ const std::string own_arm = "/mine/kf";
 
 const std::vector<Damage> damages{
     {"/mine@groups: is missing", [](auto& r) { H5Adelete(open(r, "/mine").id(), "groups"); }},
-    {"/mine@groups: `beyond 3:9` goes beyond the 4 components", [](auto& r) { set_text(r, "/mine", "groups", "beyond 3:9"); }},
+    {"/mine@groups: `beyond 3:9` goes beyond the 4 components",
+     [](auto& r) { set_text(r, "/mine", "groups", "beyond 3:9"); }},
     {"/mine@groups: names two groups", [](auto& r) { set_text(r, "/mine", "groups", "a 0:1, a 1:2"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "p_x p_y"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_names", "a b c \x1b"); }},
-    {"/component: does not name the components", [](auto& r) { set_text(r, own_arm + "/component", "component_units", ""); }},
+    {"/component: does not name the components",
+     [](auto& r) { set_text(r, own_arm + "/component", "component_names", "p_x p_y"); }},
+    {"/component: does not name the components",
+     [](auto& r) { set_text(r, own_arm + "/component", "component_names", "a b c \x1b"); }},
+    {"/component: does not name the components",
+     [](auto& r) { set_text(r, own_arm + "/component", "component_units", ""); }},
     {"/component: is missing", [](auto& r) { remove(r, own_arm + "/component"); }},
     {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, own_arm + "/step", {0}, {}); }},
-    {"/step: is no list of steps", [](auto& r) { replace<std::int32_t>(r, own_arm + "/step", {2, 2}, {}); }},
+    {"/step: is no list of steps",
+     [](auto& r) {
+         replace<std::int32_t>(r, own_arm + "/step", {2, 2}, {});
+     }},
     {"/mine/kf: has no columns that end with status", [](auto& r) { remove(r, own_arm + "/status_pose"); }},
-    {"/mine/kf: has no columns that end with status", [](auto& r) { H5Adelete(open(r, own_arm + "/status").id(), "flag_meanings"); }},
+    {"/mine/kf: has no columns that end with status",
+     [](auto& r) { H5Adelete(open(r, own_arm + "/status").id(), "flag_meanings"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/calm/measurements"); }},
     {"is missing", [](auto& r) { remove(r, "/mine/kf/nees_total"); }},
     {"/mine/kf/more: is no readable dataset", [](auto& r) { hdf5::new_group(open(r, "/mine/kf"), "more"); }},
     {"/mine: is no scenario with arms", [](auto& r) { remove(r, "/mine/kf"), remove(r, "/mine/calm"); }},
-    {"does not agree with the group's name", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = other\n"); }},
+    {"does not agree with the group's name",
+     [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = other\n"); }},
     {"broken line", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\njunk\n"); }},
-    {"/@study_hash: does not belong", [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = mine\n"); }},
+    {"/@study_hash: does not belong",
+     [](auto& r) { set_text(r, "/mine", "scenario", "[scenario]\nworld = elsewhere\nname = mine\n"); }},
 };
 
 }  // namespace
@@ -78,7 +88,8 @@ TEST_CASE("store: a file of a world that this program does not have is read by w
         CHECK(a.columns[c].unit == b.columns[c].unit);
         CHECK(a.columns[c].long_name == b.columns[c].long_name);
     }
-    REQUIRE_THROWS_WITH(simulation_of(a.scenario), Catch::Contains("scenario.world=elsewhere (this program has no such world)"));
+    REQUIRE_THROWS_WITH(simulation_of(a.scenario),
+                        Catch::Contains("scenario.world=elsewhere (this program has no such world)"));
 }
 
 TEST_CASE("store: a file of another world that does not say enough of itself is refused") {

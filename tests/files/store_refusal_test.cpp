@@ -70,7 +70,8 @@ const std::vector<Damage> arm_damages{
     {arm + "@counted_trials: is 3, but 4", [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
     {arm + "/trace_P: is missing", [](auto& r) { remove(r, arm + "/trace_P"); }},
     {arm + "/extra: does not belong here", [](auto& r) { replace<double>(r, arm + "/extra", {1}, {}); }},
-    {arm + "/trace_P: is no readable dataset", [](auto& r) {
+    {arm + "/trace_P: is no readable dataset",
+     [](auto& r) {
          remove(r, arm + "/trace_P");
          hdf5::new_group(r, arm + "/trace_P");
      }},
@@ -78,56 +79,116 @@ const std::vector<Damage> arm_damages{
      [](auto& r) { replace<std::int32_t>(r, arm + "/trace_P", {5}, {}); }},
     {arm + "/unseen: holds 64-bit floats, not 32-bit integers",
      [](auto& r) { replace<double>(r, arm + "/unseen", {5}, {}); }},
-    {arm + "/trace_P: has extents [5, 1], not [5]", [](auto& r) { replace<double>(r, arm + "/trace_P", {5, 1}, {}); }},
+    {arm + "/trace_P: has extents [5, 1], not [5]",
+     [](auto& r) {
+         replace<double>(r, arm + "/trace_P", {5, 1}, {});
+     }},
     {arm + "/trace_P: has extents [4], not [5]", [](auto& r) { replace<double>(r, arm + "/trace_P", {4}, {}); }},
     {arm + "/status: holds 4, which is no status",
-     [](auto& r) { replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, 4, 0}); }},
+     [](auto& r) {
+         replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, 4, 0});
+     }},
     {arm + "/status: holds -1, which is no status",
-     [](auto& r) { replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, -1}); }},
+     [](auto& r) {
+         replace<std::int8_t>(r, arm + "/status", {5}, {0, 2, 0, -1});
+     }},
     {arm + "/trial: does not count on by one",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {0, 1, 3, 4, 5}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/trial", {5}, {0, 1, 3, 4, 5});
+     }},
     {arm + "/trial: does not go on with a block",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {5}, {1, 2, 3, 4, 5}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/trial", {5}, {1, 2, 3, 4, 5});
+     }},
     {arm + "/trial: does not go on with a block",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {6}, {0, 1, 2, 3, 4, 5}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/trial", {6}, {0, 1, 2, 3, 4, 5});
+     }},
     {arm + "/trial: ends within a block",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {4}, {0, 1, 2, 3}); }},
-    {arm + "/trial: is not the same in every arm",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {0}, {}); }},
-    {arm + "/step: has extents [2], not [3]", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {2}, {1, 2}); }},
-    {arm + "/step: is not a list", [](auto& r) { replace<std::int32_t>(r, arm + "/step", {3, 1}, {1, 2, 3}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/trial", {4}, {0, 1, 2, 3});
+     }},
+    {arm + "/trial: is not the same in every arm", [](auto& r) { replace<std::int64_t>(r, arm + "/trial", {0}, {}); }},
+    {arm + "/step: has extents [2], not [3]",
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/step", {2}, {1, 2});
+     }},
+    {arm + "/step: is not a list",
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/step", {3, 1}, {1, 2, 3});
+     }},
     {arm + "/part: is empty", [](auto& r) { replace<std::int32_t>(r, arm + "/part", {0}, {}); }},
-    {arm + "/nees_total: has extents [3, 1]", [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 1}, {}); }},
+    {arm + "/nees_total: has extents [3, 1]",
+     [](auto& r) {
+         replace<double>(r, arm + "/nees_total", {3, 1}, {});
+     }},
     {arm + "/nees_total: its parts do not follow",
-     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {0, 1}); }},
+     [](auto& r) {
+         replace<double>(r, arm + "/nees_total", {3, 3}, {0, 1});
+     }},
     {arm + "/nees_total: its parts do not follow",
-     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {1, 1}); }},
+     [](auto& r) {
+         replace<double>(r, arm + "/nees_total", {3, 3}, {1, 1});
+     }},
     {arm + "/nees_total: its parts do not follow",
-     [](auto& r) { replace<double>(r, arm + "/nees_total", {3, 3}, {9e299, 9e299}); }},
+     [](auto& r) {
+         replace<double>(r, arm + "/nees_total", {3, 3}, {9e299, 9e299});
+     }},
     {arm + "/nis_rows_total: holds 64-bit floats",
      [](auto& r) { replace<double>(r, arm + "/nis_rows_total", {3}, {}); }},
-    {arm + "/level: does not hold the levels", [](auto& r) { replace<double>(r, arm + "/level", {4}, {0.5, 0.9, 0.96}); }},
+    {arm + "/level: does not hold the levels",
+     [](auto& r) {
+         replace<double>(r, arm + "/level", {4}, {0.5, 0.9, 0.96});
+     }},
     {arm + "/nees_covered: its counts do not rise",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {1, 3, 2, 4, 0, 0, 0, 0, 0, 0, 0, 0}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {1, 3, 2, 4, 0, 0, 0, 0, 0, 0, 0, 0});
+     }},
     {arm + "/nees_covered: its counts do not rise",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {1, 2, 3, 5}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {1, 2, 3, 5});
+     }},
     {arm + "/nees_covered: its counts do not rise",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {-1, 2, 3, 4}); }},
-    {arm + "/nees_cells: its counts do not add up", [](auto& r) { replace<std::int64_t>(r, arm + "/nees_cells", {3, 4096}, {3}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/nees_covered", {3, 4}, {-1, 2, 3, 4});
+     }},
     {arm + "/nees_cells: its counts do not add up",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/nees_cells", {3, 4096}, {5, -1}); }},
-    {arm + "/cell: does not count on", [](auto& r) { replace<std::int32_t>(r, arm + "/cell", {4096}, {0, 2}); }},
-    {arm + "/lag: has extents [3], not [2]", [](auto& r) { replace<std::int32_t>(r, arm + "/lag", {3}, {1, 2, 3}); }},
-    {arm + "/whiteness_count: is negative", [](auto& r) { replace<std::int64_t>(r, arm + "/whiteness_count", {2}, {1, -1}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/nees_cells", {3, 4096}, {3});
+     }},
+    {arm + "/nees_cells: its counts do not add up",
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/nees_cells", {3, 4096}, {5, -1});
+     }},
+    {arm + "/cell: does not count on",
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/cell", {4096}, {0, 2});
+     }},
+    {arm + "/lag: has extents [3], not [2]",
+     [](auto& r) {
+         replace<std::int32_t>(r, arm + "/lag", {3}, {1, 2, 3});
+     }},
+    {arm + "/whiteness_count: is negative",
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/whiteness_count", {2}, {1, -1});
+     }},
     {arm + "/whiteness_total: its parts do not follow",
-     [](auto& r) { replace<double>(r, arm + "/whiteness_total", {2, 3}, {0, 1}); }},
+     [](auto& r) {
+         replace<double>(r, arm + "/whiteness_total", {2, 3}, {0, 1});
+     }},
     {arm + "/detailed_trial: has extents [4], not [5]",
-     [](auto& r) { replace<std::int64_t>(r, arm + "/detailed_trial", {4}, {0, 1, 2, 3}); }},
+     [](auto& r) {
+         replace<std::int64_t>(r, arm + "/detailed_trial", {4}, {0, 1, 2, 3});
+     }},
     {arm + "/component: does not count on", [](auto& r) { replace<std::int32_t>(r, arm + "/component", {9}, {1}); }},
     {arm + "/detailed_error: holds 64-bit floats, not 32-bit floats",
-     [](auto& r) { replace<double>(r, arm + "/detailed_error", {5, 3, 9}, {}); }},
+     [](auto& r) {
+         replace<double>(r, arm + "/detailed_error", {5, 3, 9}, {});
+     }},
     {arm + "/detailed_nees: has extents [3, 5], not [5, 3]",
-     [](auto& r) { replace<float>(r, arm + "/detailed_nees", {3, 5}, {}); }},
+     [](auto& r) {
+         replace<float>(r, arm + "/detailed_nees", {3, 5}, {});
+     }},
     {arm + "/trial: [1099511627776] does not fit", [](auto& r) { promise_terabytes(r, arm + "/trial"); }},
     {arm + "/trace_P: keeps its values in other files", [](auto& r) { keep_elsewhere(r, arm + "/trace_P"); }},
 };

@@ -133,7 +133,8 @@ TEST_CASE("store: a trajectory is in its file as it was") {
     CHECK(values<std::int32_t>(group, "edge_to", {3}) == std::vector<std::int32_t>{1, 2, 2});
 }
 
-TEST_CASE("store: a trajectory has the sigma of a feature's range also where it was not seen, and no measurement there") {
+TEST_CASE(
+    "store: a trajectory has the sigma of a feature's range also where it was not seen, and no measurement there") {
     const TemporaryFolder folder;
     DeformableSettings ranged = scenario("one");
     ranged.sensor.noise = RangeNoise::ranged;

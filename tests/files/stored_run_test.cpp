@@ -104,7 +104,8 @@ TEST_CASE("stored run: results that are changed or replaced while they are grown
             StoredRun run = opened(here.path, here.asked);
             compute(run, here.asked);
             change();
-            CHECK(says(failure_of(run), "another program changed, replaced or removed it while the run went on with it"));
+            CHECK(
+                says(failure_of(run), "another program changed, replaced or removed it while the run went on with it"));
         }
         CHECK(std::filesystem::exists(here.journal));
         const std::string said = refused(here.path, here.asked);

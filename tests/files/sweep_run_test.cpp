@@ -61,8 +61,9 @@ std::int64_t lines_in(const std::string& text) { return std::count(text.begin(),
 TEST_CASE("sweep: a file's grid has a scenario for every point, with --set before it") {
     const TemporaryFolder folder;
     const std::vector<Scenario> grid = swept(folder, square, world, {{"noise.heading", "0.5"}, {"noise.walk", "0.2"}});
-    CHECK(names_of(grid) == std::vector<std::string>{"base_heading-0p01_noise-constant", "base_heading-0p01_noise-ranged",
-                                                     "base_heading-0p1_noise-constant", "base_heading-0p1_noise-ranged"});
+    CHECK(names_of(grid) ==
+          std::vector<std::string>{"base_heading-0p01_noise-constant", "base_heading-0p01_noise-ranged",
+                                   "base_heading-0p1_noise-constant", "base_heading-0p1_noise-ranged"});
     CHECK(value_of(grid[1], "noise.heading") == "0.01");
     CHECK(value_of(grid[1], "noise.walk") == "0.2");
     CHECK(value_of(grid[2], "sensor.noise") == "constant");
@@ -130,7 +131,8 @@ TEST_CASE("sweep: the points of a grid have the bits of runs of their own") {
     std::size_t at = 0;
     for (const char* heading : {"0.01", "0.1"})
         for (const char* noise : {"constant", "ranged"}) {
-            Study alone = run({read_scenario_text(world, "one.ini", "one", {{"noise.heading", heading}, {"sensor.noise", noise}})});
+            Study alone = run(
+                {read_scenario_text(world, "one.ini", "one", {{"noise.heading", heading}, {"sensor.noise", noise}})});
             Study point{grid.root_seed, {grid.scenarios[at++]}, grid.trials, grid.complete};
             CHECK(same_results(alone, point));
         }
@@ -166,17 +168,23 @@ TEST_CASE("sweep: a file whose attributes contradict its scenarios is refused") 
     const std::string name = scenarios[0].name;
     const std::vector<Damage> damages{
         {"@sweep_of: does not agree", [&](const Handle& root) { set_text(root, name, "sweep_of", "other"); }},
-        {"@sweep_keys: does not agree", [&](const Handle& root) { set_text(root, name, "sweep_keys", "noise.heading"); }},
+        {"@sweep_keys: does not agree",
+         [&](const Handle& root) { set_text(root, name, "sweep_keys", "noise.heading"); }},
         {"@sweep.noise.heading: does not agree",
          [&](const Handle& root) { set_number<double>(root, name, "sweep.noise.heading", 0.02); }},
-        {"@sweep.noise.heading: holds", [&](const Handle& root) { set_text(root, name, "sweep.noise.heading", "0.01"); }},
-        {"@sweep.sensor.noise: does not agree", [&](const Handle& root) { set_text(root, name, "sweep.sensor.noise", "ranged"); }},
+        {"@sweep.noise.heading: holds",
+         [&](const Handle& root) { set_text(root, name, "sweep.noise.heading", "0.01"); }},
+        {"@sweep.sensor.noise: does not agree",
+         [&](const Handle& root) { set_text(root, name, "sweep.sensor.noise", "ranged"); }},
         {"@sweep_keys: does not agree", [&](const Handle& root) { H5Adelete(open(root, name).id(), "sweep_of"); }},
-        {"@sweep_keys: does not agree", [&](const Handle& root) { hdf5::write_text(open(root, name), "sweep.more", ""); }}};
+        {"@sweep_keys: does not agree",
+         [&](const Handle& root) { hdf5::write_text(open(root, name), "sweep.more", ""); }}};
     for (const Damage& damage : damages) {
-        std::filesystem::copy_file(folder / "good.h5", folder / "bad.h5", std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::copy_file(folder / "good.h5", folder / "bad.h5",
+                                   std::filesystem::copy_options::overwrite_existing);
         {
-            const Handle root(H5Fopen((folder / "bad.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "bad.h5", "closed");
+            const Handle root(H5Fopen((folder / "bad.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "bad.h5",
+                              "closed");
             damage.apply(root);
         }
         CHECK_THAT(refusal<InputError>([&] { read_results(folder / "bad.h5"); }), Contains(damage.said));
@@ -203,9 +211,15 @@ TEST_CASE("sweep: a grid that a crash left in its journal goes on to the same re
 }
 
 TEST_CASE("sweep: grids of a study are distinguished by scenario and keys") {
-    const auto point = [](const std::string& of, const std::string& at) { return SweepPoint{of, parse_coordinates(at)}; };
-    const std::vector<Grid> grids = grids_of({point("a", "k.x=2, k.n=p"), {}, point("b", "k.x=1"), point("a", "k.x=1, k.n=p"),
-                                              point("a", "k.x=1, k.n=q"), point("a", "k.x=7")});
+    const auto point = [](const std::string& of, const std::string& at) {
+        return SweepPoint{of, parse_coordinates(at)};
+    };
+    const std::vector<Grid> grids = grids_of({point("a", "k.x=2, k.n=p"),
+                                              {},
+                                              point("b", "k.x=1"),
+                                              point("a", "k.x=1, k.n=p"),
+                                              point("a", "k.x=1, k.n=q"),
+                                              point("a", "k.x=7")});
     REQUIRE(grids.size() == 3);
     CHECK(grids[0].of == "a");
     REQUIRE(grids[0].axes.size() == 2);
@@ -240,11 +254,14 @@ TEST_CASE("sweep: of a large grid the page has the table and the curves, and no 
                                                "[scenario]\nposes = 3\n[arms]\ncontrollers = fixed\n");
     const auto page_of = [&] { return report_html(make_report(run(scenarios, 3), 0.05), {"r.h5", {}, "test"}); };
     const std::string large = page_of();
-    CHECK_THAT(large, !Contains("scenario:base_heading-0p01") && Contains("<th scope=\"row\"><data value=\"0.13\">0.13</data></th>"));
-    CHECK_THAT(large, Contains("The points of large grids have no section of their own here.") && !Contains("again.h5"));
+    CHECK_THAT(large, !Contains("scenario:base_heading-0p01") &&
+                          Contains("<th scope=\"row\"><data value=\"0.13\">0.13</data></th>"));
+    CHECK_THAT(large,
+               Contains("The points of large grids have no section of their own here.") && !Contains("again.h5"));
     scenarios.pop_back();
     const std::string small = page_of();
-    CHECK_THAT(small, Contains("id=\"scenario:base_heading-0p12\"") && Contains("href=\"#scenario:base_heading-0p12\""));
+    CHECK_THAT(small,
+               Contains("id=\"scenario:base_heading-0p12\"") && Contains("href=\"#scenario:base_heading-0p12\""));
     CHECK_THAT(small, Contains("again.h5"));
 }
 
@@ -256,7 +273,8 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
 
     const Json json = Json::parse(report_json(report));
     REQUIRE(json.size() == 10);
-    CHECK(json[2]["sweep"] == Json::parse(R"({"of": "base", "at": {"noise.heading": 0.01, "sensor.noise": "ranged"}})"));
+    CHECK(json[2]["sweep"] ==
+          Json::parse(R"({"of": "base", "at": {"noise.heading": 0.01, "sensor.noise": "ranged"}})"));
     CHECK_FALSE(json[9].contains("sweep"));
 
     const std::string csv = report_csv(report);
@@ -291,7 +309,11 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     CHECK_THAT(page, Contains("Sweep of base over noise.heading, sensor.noise"));
     CHECK_THAT(page, Contains("class=\"spread s1\""));
     CHECK_THAT(page, Contains("greedy.ekf, noise.heading=0.1: "));
-    CHECK_THAT(page, Contains("<a href=\"#scenario:base_heading-0p1_noise-ranged\"><data value=\"0.1\">0.1</data></a></th><th scope=\"row\">ranged</th>"));
+    CHECK_THAT(
+        page,
+        Contains(
+            "<a href=\"#scenario:base_heading-0p1_noise-ranged\"><data value=\"0.1\">0.1</data></a></th>"
+            "<th scope=\"row\">ranged</th>"));
     CHECK_THAT(page, Contains("<figcaption>sensor.noise=ranged</figcaption>"));
     CHECK_THAT(report_html(make_report(run({scenarios.back()}, 40), 0.05), {"r.h5", {}, "test"}), !Contains("Sweep"));
 }

@@ -67,7 +67,8 @@ void use(Study& study) {
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms) {
             require(arm.nees.size() == static_cast<std::size_t>(results.detailed() * results.steps()), "details fit");
-            require(results.keep == Keep::trials || arm.aggregates.trials() == results.trials, "aggregates are of all trials");
+            require(results.keep == Keep::trials || arm.aggregates.trials() == results.trials,
+                    "aggregates are of all trials");
             for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c)
                 require(column_values(results, arm, c).size() == static_cast<std::size_t>(results.trials),
                         "a column has its rows");
@@ -84,8 +85,10 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     } else {
         // The numbers at the start of a commit, or those of its totals; its values would take nearly all the changes.
         const std::size_t begin = ends[random() % ends.size()];
-        const std::size_t first = std::min(size - 1, begin + (random() % 2 ? random() % 64 : random() % (size - begin + 1)));
-        LLVMFuzzerMutate(data + first, std::min<std::size_t>(size - first, 16), std::min<std::size_t>(size - first, 16));
+        const std::size_t first =
+            std::min(size - 1, begin + (random() % 2 ? random() % 64 : random() % (size - begin + 1)));
+        LLVMFuzzerMutate(data + first, std::min<std::size_t>(size - first, 16),
+                         std::min<std::size_t>(size - first, 16));
     }
     if (random() % 8 > 0) repair(data, size);
     return size;

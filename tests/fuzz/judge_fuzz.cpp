@@ -19,7 +19,8 @@ namespace {
 /// ones.
 bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
 bool is_small(const ScenarioResults& results) {
-    return results.trials <= 64 && results.steps() <= 16 && results.state_size() <= 16 && results.all_series.size() <= 64;
+    return results.trials <= 64 && results.steps() <= 16 && results.state_size() <= 16 &&
+           results.all_series.size() <= 64;
 }
 
 void judge_file(const std::string& path, bool with_report) {

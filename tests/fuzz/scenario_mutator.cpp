@@ -45,9 +45,28 @@ const std::vector<DescribedKey>& all_keys() {
 
 /// Words of choices stand in a key's help; lists need more.
 std::string any_value(const DescribedKey& key, Random& random) {
-    static const std::string values[] = {"default", "none", "chain", "all", "0-1", "0-1, 1-2", "1-0", "0-1, 0-1",
-                                         "0-63", "0 0, 1 1", "1 2", "fixed", "greedy, fixed", "fixed, fixed", "ekf",
-                                         "kf", "ekf, kf", "fixed.ekf 1", "greedy.kf 2, fixed.kf 3", "a.b 1", "run", "dm",
+    static const std::string values[] = {"default",
+                                         "none",
+                                         "chain",
+                                         "all",
+                                         "0-1",
+                                         "0-1, 1-2",
+                                         "1-0",
+                                         "0-1, 0-1",
+                                         "0-63",
+                                         "0 0, 1 1",
+                                         "1 2",
+                                         "fixed",
+                                         "greedy, fixed",
+                                         "fixed, fixed",
+                                         "ekf",
+                                         "kf",
+                                         "ekf, kf",
+                                         "fixed.ekf 1",
+                                         "greedy.kf 2, fixed.kf 3",
+                                         "a.b 1",
+                                         "run",
+                                         "dm",
                                          "\xc3\xa9"};
     switch (random() % 4) {
         case 0: return one_of(values, random);

@@ -86,7 +86,8 @@ TEST_CASE("draws: normal draws are distributed as a normal, from every source", 
 
 TEST_CASE("draws: the two components, neighbouring keys and other sources are independent") {
     // Ten scores beyond 5 with 6e-6. Squares too: Box and Muller's pair shares its radius.
-    const std::vector<Vector2<double>> walk = normal_pairs(3, never), other = normal_pairs(3, never, Source::deformation);
+    const std::vector<Vector2<double>> walk = normal_pairs(3, never),
+                                       other = normal_pairs(3, never, Source::deformation);
     const auto column = [](const std::vector<Vector2<double>>& draws, bool second, std::size_t shift, bool squared) {
         std::vector<double> values;
         for (std::size_t i = 0; i < draws.size(); ++i) {

@@ -20,11 +20,13 @@ using namespace credence;
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr Source all_sources[] = {Source::odometry_heading, Source::odometry_position, Source::walk, Source::deformation,
-                                  Source::measurement, Source::edge, Source::detection, Source::landmark_prior};
+constexpr Source all_sources[] = {Source::odometry_heading, Source::odometry_position, Source::walk,
+                                  Source::deformation,      Source::measurement,       Source::edge,
+                                  Source::detection,        Source::landmark_prior};
 
 /// The four words that belong to a key, by Random123 and the counter's documented layout.
-philox4x32_ctr_t reference_words(std::uint64_t seed, std::uint64_t trial, int pose, Source source, int index, int attempt) {
+philox4x32_ctr_t reference_words(std::uint64_t seed, std::uint64_t trial, int pose, Source source, int index,
+                                 int attempt) {
     const auto what = static_cast<std::uint32_t>(attempt) << 20 | static_cast<std::uint32_t>(source) << 16 |
                       static_cast<std::uint32_t>(index);
     const philox4x32_ctr_t counter{{static_cast<std::uint32_t>(trial), static_cast<std::uint32_t>(trial >> 32),
@@ -39,7 +41,8 @@ double fraction(std::uint32_t low, std::uint32_t high) {
 }
 
 /// Box and Muller's pair by the C library, from Random123's words.
-Vector2<double> reference_normal(std::uint64_t seed, std::uint64_t trial, int pose, Source source, int index, int attempt) {
+Vector2<double> reference_normal(std::uint64_t seed, std::uint64_t trial, int pose, Source source, int index,
+                                 int attempt) {
     const philox4x32_ctr_t words = reference_words(seed, trial, pose, source, index, attempt);
     const double radius = std::sqrt(-2 * std::log(1 - fraction(words[0], words[1])));
     const double angle = 2 * pi * fraction(words[2], words[3]);
@@ -68,7 +71,8 @@ void check_together(const KeyedDraws<double>& draws, Count count) {
 
 TEST_CASE("draws: philox gives Random123's published known answers") {
     // kat_vectors of Random123: philox4x32 10, counter and key of zeros, of ones, and of pi's digits.
-    const auto words = [](std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d, std::uint32_t k0, std::uint32_t k1) {
+    const auto words = [](std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d, std::uint32_t k0,
+                          std::uint32_t k1) {
         const PhiloxBlock<std::uint64_t> r = philox<std::uint64_t>({{a, b, c, d}}, PhiloxKeys(k0, k1));
         std::vector<std::uint64_t> low;
         for (const std::uint64_t word : r.word) low.push_back(word & 0xffffffff);
@@ -139,7 +143,8 @@ TEST_CASE("draws: 52 random bits become every number from 1 to below 2") {
     CHECK(in_one_to_two<double>(0, 0x1000) == 1 + 0x1p-52);
     CHECK(in_one_to_two<double>(0, 0x0fff) == 1.0);
     // So Box and Muller's u1 = 2 - that is never 0, and the radius at most sqrt(104 log 2).
-    CHECK(std::sqrt(-2 * log_of_normal(2 - in_one_to_two<double>(0xffffffff, 0xffffffff))) == Approx(std::sqrt(104 * std::log(2.0))));
+    CHECK(std::sqrt(-2 * log_of_normal(2 - in_one_to_two<double>(0xffffffff, 0xffffffff))) ==
+          Approx(std::sqrt(104 * std::log(2.0))));
 }
 
 TEST_CASE("draws: changing any part of the key changes the draw") {

@@ -128,7 +128,8 @@ TEST_CASE("elementary: rotation of turns is within 2 ulp") {
     std::mt19937_64 random(5);
     std::uniform_int_distribution<std::uint64_t> fraction(0, (std::uint64_t{1} << 52) - 1);
     double worst = 0;
-    for (int i = 0; i < 200000; ++i) worst = std::max(worst, turns_error(static_cast<double>(fraction(random)) * 0x1p-52));
+    for (int i = 0; i < 200000; ++i)
+        worst = std::max(worst, turns_error(static_cast<double>(fraction(random)) * 0x1p-52));
     for (int eighth = 0; eighth <= 8; ++eighth)
         for (int step = -500; step <= 500; ++step) {
             const double turns = eighth / 8.0 + step * 0x1p-52;

@@ -27,11 +27,13 @@ namespace {
 #ifdef CREDENCE_LANE_MASKS_V4
 bool runs_v4() {
     const std::vector<Target> targets = runnable_targets();
-    return std::any_of(targets.begin(), targets.end(), [](const Target& target) { return std::string(target.name) == "v4"; });
+    return std::any_of(targets.begin(), targets.end(),
+                       [](const Target& target) { return std::string(target.name) == "v4"; });
 }
 #endif
 
-constexpr double infinite = std::numeric_limits<double>::infinity(), no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity(),
+                 no_number = std::numeric_limits<double>::quiet_NaN();
 const std::vector<double> ends{0, std::numeric_limits<double>::denorm_min(), 0.01, 4, 1e300, infinite};
 
 /// Every end, its neighbours and what is no number, in every lane of eight.
@@ -87,7 +89,8 @@ TEST_CASE("lanes: each lane takes the candidates that are left in it, in order, 
         ScreeningWorkspace<StateLayout, Real> work;
         std::vector<double> expected[4], taken[4];
         for (int i = 0; i < (count + 7) / 8 * 8; ++i) {
-            work.left[i] = static_cast<std::uint8_t>(random() % 16);  // behind the last one too, where it must not matter
+            // Behind the last one too, where it must not matter.
+            work.left[i] = static_cast<std::uint8_t>(random() % 16);
             if (i >= count) continue;
             for (int lane = 0; lane < 4; ++lane)
                 if (work.left[i] >> lane & 1) expected[lane].push_back(first + i);

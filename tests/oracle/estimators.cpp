@@ -128,8 +128,8 @@ struct First {
     VectorXd points;  ///< first estimates at their places in the state
 };
 
-Estimate euclidean_step(const DeformableSettings& scenario, Estimator estimator, const RunStep& previous, const RunStep& step,
-                        const Estimate& before, const VectorXd& feature_motion, First& first) {
+Estimate euclidean_step(const DeformableSettings& scenario, Estimator estimator, const RunStep& previous,
+                        const RunStep& step, const Estimate& before, const VectorXd& feature_motion, First& first) {
     const Eigen::Index n = before.mean.size();
     const VectorXd x = predicted_mean(before.mean, step, before.mean + feature_motion);
     Vector2d displacement = point(x, r) - point(before.mean, r);

@@ -86,7 +86,8 @@ private:
 
     void predict(int k) {
         const double turn = loop_.turn() - s_.noise.heading * noise_.normal(Source::odometry_heading, k, 0)[0];
-        const Vector2d move = Vector2d(s_.loop.step, 0) - s_.noise.odometry * noise_.normal(Source::odometry_position, k, 0);
+        const Vector2d move =
+            Vector2d(s_.loop.step, 0) - s_.noise.odometry * noise_.normal(Source::odometry_position, k, 0);
         const VectorXd before = x();
         x().segment<2>(r) += rotation(before[theta]) * move;
         x()[theta] += turn;

@@ -60,9 +60,11 @@ Eigen::VectorXd measurements(const DeformableSettings& scenario, const World& wo
     return z;
 }
 
-/// Whether a measurement of feature j, with the sigma that the filter believes, lies within the filter's gate: nu' S^-1 nu
+/// Whether a measurement of feature j, with the sigma that the filter believes, lies within the filter's gate: nu' S^-1
+/// nu
 /// <= -2 log(1 - gate), the quantile of chi-square with two degrees of freedom [docs/model.md, Filter, See].
-bool inside_gate(const DeformableSettings& scenario, const Belief& prior, const Eigen::Vector2d& z, double sigma, int j) {
+bool inside_gate(const DeformableSettings& scenario, const Belief& prior, const Eigen::Vector2d& z, double sigma,
+                 int j) {
     const Eigen::MatrixXd H = measurement_rows(scenario, prior.x, j);
     const Eigen::Matrix2d S = H * prior.P * H.transpose() + sigma * sigma * Eigen::Matrix2d::Identity();
     const Eigen::Vector2d nu = z - predicted_measurement(scenario, prior.x, j);
@@ -71,8 +73,8 @@ bool inside_gate(const DeformableSettings& scenario, const Belief& prior, const 
 
 /// Sees at pose k and updates the prior, gating and taking sigma at the true range; without a row the prior stays
 /// [docs/model.md, Filter, See to Update].
-Belief see_and_update(const DeformableSettings& scenario, const World& world, const Belief& prior, int k, const Noise& noise,
-                      Step& step) {
+Belief see_and_update(const DeformableSettings& scenario, const World& world, const Belief& prior, int k,
+                      const Noise& noise, Step& step) {
     Eigen::VectorXd sigma(number_of_features(scenario));
     for (int j = 0; j < number_of_features(scenario); ++j) {
         const double q = (world.p.col(j) - world.r).norm();

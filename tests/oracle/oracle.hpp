@@ -84,15 +84,19 @@ struct World {
     Eigen::Matrix2Xd c, p;
 };
 
-Eigen::Vector2d translation(const DeformableSettings& scenario, int k);      ///< t_k, of every feature from pose k to k+1
+/// T_k, of every feature from pose k to k+1.
+Eigen::Vector2d translation(const DeformableSettings& scenario, int k);
 Eigen::Vector2d local_deformation(const DeformableSettings& scenario, int k, int j);  ///< o_{k,j}
 World first_world(const DeformableSettings& scenario, const Noise& noise);
-World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise);
+World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k,
+                 const Noise& noise);
 Eigen::VectorXd true_state(const DeformableSettings& scenario, const World& world);   ///< n, ordered as the filter's x
 bool in_range(const DeformableSettings& scenario, double q);                 ///< r_min <= q <= r_max
 double measurement_sigma(const DeformableSettings& scenario, double q);      ///< true sigma_feat(q), length
-Eigen::Vector2d measurement_noise(const DeformableSettings& scenario, int k, int j, const Noise& noise);  ///< over sigma
-Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise);
+/// Over sigma.
+Eigen::Vector2d measurement_noise(const DeformableSettings& scenario, int k, int j, const Noise& noise);
+Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j,
+                                 const Noise& noise);
 Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise);
 
 // Filter [docs/model.md, Filter] --------------------------------------------------------------------------------------
@@ -115,16 +119,18 @@ struct Correction {
 };
 
 Belief first_belief(const DeformableSettings& scenario, const World& world, const Noise& noise);
-Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control, int k);
-Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control);
+Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control,
+                               int k);
+Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x,
+                                    const Control& control);
 Eigen::MatrixXd process_noise(const DeformableSettings& scenario);           ///< Q
 Belief predict(const DeformableSettings& scenario, const Belief& belief, const Control& control, int k);
 Eigen::Vector2d predicted_measurement(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j);
 Eigen::MatrixXd measurement_rows(const DeformableSettings& scenario, const Eigen::VectorXd& x, int j);
 Eigen::Vector2d predicted_edge(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Edge& edge);
 Eigen::MatrixXd edge_rows(const DeformableSettings& scenario, const Edge& edge);
-Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x, const std::vector<bool>& seen,
-                                  const Eigen::VectorXd& sigma);
+Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x,
+                                  const std::vector<bool>& seen, const Eigen::VectorXd& sigma);
 Correction correct(const Eigen::MatrixXd& P_prior, const Prediction& prediction);
 
 // Controllers [docs/model.md, Controllers] ----------------------------------------------------------------------------

@@ -38,7 +38,8 @@ Belief first_belief(const DeformableSettings& scenario, const World& world, cons
 
 /// Mean (n) predicted for pose k from x at pose k-1: theta + omega; r + R(theta) v; f_j + t_{k-1} + d_{k,j},
 /// d_{k,j} = o_{k,j} - o_{k-1,j} [docs/model.md, Filter, Predict].
-Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control, int k) {
+Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control,
+                               int k) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
     Eigen::VectorXd x_prior = x;
     if (scenario.process == Process::heading) x_prior[0] += control.turn;
@@ -52,7 +53,8 @@ Eigen::VectorXd predicted_mean(const DeformableSettings& scenario, const Eigen::
 
 /// F (n x n) at the mean x before the prediction: the identity, except F[r, theta] = R(theta) J v in the heading model
 /// [docs/model.md, Filter, Predict].
-Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x, const Control& control) {
+Eigen::MatrixXd prediction_jacobian(const DeformableSettings& scenario, const Eigen::VectorXd& x,
+                                    const Control& control) {
     const int n = state_dimension(scenario);
     const Eigen::Vector2d v(control.move.x, control.move.y);
     Eigen::MatrixXd F = Eigen::MatrixXd::Identity(n, n);
@@ -118,8 +120,8 @@ Eigen::MatrixXd edge_rows(const DeformableSettings& scenario, const Edge& edge) 
 
 /// Joint predicted measurement at the mean x: the seen features (M flags), each with the sigma that the filter believes
 /// (M, length), then all edges with sigma_def times filter.edges [docs/model.md, Filter].
-Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x, const std::vector<bool>& seen,
-                                  const Eigen::VectorXd& sigma) {
+Prediction predicted_measurements(const DeformableSettings& scenario, const Eigen::VectorXd& x,
+                                  const std::vector<bool>& seen, const Eigen::VectorXd& sigma) {
     const std::vector<Edge> edges = graph(scenario);
     int m = 2 * static_cast<int>(edges.size());
     for (const bool feature_seen : seen) m += feature_seen ? 2 : 0;

@@ -224,7 +224,8 @@ Control baseline_control(const DeformableSettings& scenario, Controller controll
     switch (controller) {
         case Controller::random: {
             const std::vector<Control> list = candidates(scenario);
-            return list[static_cast<std::size_t>(noise.uniform(Source::control, k, 0) * static_cast<double>(list.size()))];
+            return list[static_cast<std::size_t>(noise.uniform(Source::control, k, 0) *
+                                                 static_cast<double>(list.size()))];
         }
         case Controller::nearest:
             return towards(scenario, belief, x.segment<2>(row_of_feature(scenario, least_known)));

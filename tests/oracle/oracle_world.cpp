@@ -15,7 +15,9 @@ int number_of_features(const DeformableSettings& scenario) {
 
 int pose_dimension(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 3 : 2; }
 
-int state_dimension(const DeformableSettings& scenario) { return pose_dimension(scenario) + 2 * number_of_features(scenario); }
+int state_dimension(const DeformableSettings& scenario) {
+    return pose_dimension(scenario) + 2 * number_of_features(scenario);
+}
 
 int row_of_position(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 1 : 0; }
 
@@ -91,8 +93,8 @@ Eigen::Matrix2Xd deformed(const DeformableSettings& scenario, const Eigen::Matri
     return p;
 }
 
-/// f_0 of a feature (2, world): given, or uniform in a box or ring about the first of features.positions [docs/model.md,
-/// Truth].
+/// f_0 of a feature (2, world): given, or uniform in a box or ring about the first of features.positions
+/// [docs/model.md, Truth].
 Eigen::Vector2d first_place(const DeformableSettings& scenario, int j, const Noise& noise) {
     const FeatureSettings& features = scenario.features;
     const auto given = [&](int i) {
@@ -127,7 +129,8 @@ World first_world(const DeformableSettings& scenario, const Noise& noise) {
 /// World at pose k from that at pose k-1 and the control between them: the robot turns and moves by its heading of
 /// before; centres translate and walk, and with deformation = walk gain the deformation too [docs/model.md, Truth;
 /// Truth against filter].
-World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k, const Noise& noise) {
+World next_world(const DeformableSettings& scenario, const World& world, const Control& control, int k,
+                 const Noise& noise) {
     const Eigen::Vector2d v(control.move.x, control.move.y);
     World next;
     next.theta = 0;
@@ -182,14 +185,16 @@ Eigen::Vector2d measurement_noise(const DeformableSettings& scenario, int k, int
         case Tails::student:
             return normal.normalized() * std::sqrt(nu * std::expm1(length * length / nu)) * std::sqrt((nu - 2) / nu);
         case Tails::contaminated:
-            return noise.uniform(Source::outlier, k, j) < settings.outlier_share ? settings.outlier_scale * normal : normal;
+            return noise.uniform(Source::outlier, k, j) < settings.outlier_share ? settings.outlier_scale * normal
+                                                                                 : normal;
     }
     return normal;
 }
 
 /// Measurement z_j (2, body frame) = R(theta)' (p_j - r) + sigma_feat(q) eps^meas at pose k [docs/model.md, Filter,
 /// See].
-Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j, const Noise& noise) {
+Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World& world, int k, int j,
+                                 const Noise& noise) {
     const Eigen::Vector2d offset = world.p.col(j) - world.r;
     return rotation(world.theta).transpose() * offset +
            measurement_sigma(scenario, offset.norm()) * measurement_noise(scenario, k, j, noise);
@@ -197,7 +202,8 @@ Eigen::Vector2d measured_feature(const DeformableSettings& scenario, const World
 
 /// Construction measurement z (2, world frame) = p_b - p_a of edge e in graph order at pose k, plus sigma_def eps^edge
 /// with independent edge noise [docs/model.md, Filter, Edges; Truth against filter].
-Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e, const Noise& noise) {
+Eigen::Vector2d measured_edge(const DeformableSettings& scenario, const World& world, int k, int e,
+                              const Noise& noise) {
     const Edge edge = graph(scenario)[static_cast<std::size_t>(e)];
     Eigen::Vector2d z = world.p.col(edge.to) - world.p.col(edge.from);
     if (scenario.truth.edge_noise == EdgeNoise::independent)

@@ -199,7 +199,8 @@ TEST_CASE("compare: what is not shown is said so, and ranks against the mean are
         const CompareReport report = compared({{"made-up.h5", study}});
         std::string text = compare_text(report);
         const std::size_t begin = text.find("trace_P: ");
-        if (const std::size_t at = text.find("\n    ", begin); at < text.find("\n\n", begin)) text.replace(at, 5, " ");  // wrapped
+        // Wrapped.
+        if (const std::size_t at = text.find("\n    ", begin); at < text.find("\n\n", begin)) text.replace(at, 5, " ");
         return conclusion_name(report.pairs[0].conclusion) + "; " + text.substr(begin, text.find('\n', begin) - begin);
     };
     const auto odd = [](std::size_t i) { return i % 2 == 0 ? 1.0 : -1.0; };

@@ -107,9 +107,9 @@ TEST_CASE("page: verdicts, findings and why come before tables, tables before ch
     const Report& report = small_report();
     const std::string page = page_of(report);
     std::size_t last = 0;
-    for (const char* part :
-         {"<h1>", "<h2 id=\"verdict\">", "<h3>Findings</h3>", "<h3>Columns of the trials</h3>", "<h3>Is the covariance right?</h3>",
-          ">Charts</h3>", "<h3>Scenario</h3>", "<h2 id=\"provenance\">", "<h2 id=\"again\">", "<h2 id=\"terms\">"}) {
+    for (const char* part : {"<h1>", "<h2 id=\"verdict\">", "<h3>Findings</h3>", "<h3>Columns of the trials</h3>",
+                             "<h3>Is the covariance right?</h3>", ">Charts</h3>", "<h3>Scenario</h3>",
+                             "<h2 id=\"provenance\">", "<h2 id=\"again\">", "<h2 id=\"terms\">"}) {
         CAPTURE(part);
         CHECK(count_of(page, part) == 1);
         CHECK(page.find(part) > last);
@@ -126,8 +126,8 @@ TEST_CASE("page: verdicts, findings and why come before tables, tables before ch
 
 TEST_CASE("page: every chart has marks with their values, and words for who does not see it") {
     const std::string page = page_of(small_report());
-    // The verdict's picture and coverage; directions and 2 ellipses; NEES of 6 groups; NIS of 3 groups; whiteness of 2 arms; 3 distributions; 6
-    // differences.
+    // The verdict's picture and coverage; directions and 2 ellipses; NEES of 6 groups; NIS of 3 groups; whiteness of 2
+    // arms; 3 distributions; 6 differences.
     CHECK(count_of(page, "<svg viewBox") == 2 + 3 + 6 + 3 + 2 + 3 + 6);
     for (auto at = page.find("<svg viewBox"); at != std::string::npos; at = page.find("<svg viewBox", at + 1)) {
         const std::string svg = page.substr(at, page.find("</svg>", at) - at);

@@ -43,8 +43,9 @@ TEST_CASE("table: row heads have lines of their own where a line would be too lo
 
 TEST_CASE("table: as HTML, numbers carry their exact values") {
     const std::string html = html_of(example("key")).text();
-    CHECK_THAT(html, Contains("<tr><th scope=\"row\"><data value=\"0.5\">0.5</data></th><th scope=\"row\">ekf</th>"
-                              "<td><data value=\"1.25\">1.25</data> ± 0.25</td><td><data value=\"0\">0</data></td></tr>"));
+    CHECK_THAT(html,
+               Contains("<tr><th scope=\"row\"><data value=\"0.5\">0.5</data></th><th scope=\"row\">ekf</th>"
+                        "<td><data value=\"1.25\">1.25</data> ± 0.25</td><td><data value=\"0\">0</data></td></tr>"));
     CHECK_THAT(html, Contains("<th scope=\"rowgroup\" colspan=\"4\">first</th>"));
 }
 

@@ -20,7 +20,8 @@ TEST_CASE("watch: a run that is begun anew is followed anew") {
     RunWatch watch(path);
     run_and_die(path, small(1000), 3);
     CHECK(watch.snapshot().trials_done() == 3 * block_size);
-    CHECK_THAT(watch_text(watch.snapshot()), Catch::Contains("\ntranslation-circle: not run yet, 1000 trials asked for\n"));
+    CHECK_THAT(watch_text(watch.snapshot()),
+               Catch::Contains("\ntranslation-circle: not run yet, 1000 trials asked for\n"));
     Asked other = small(1000);
     for (const std::uint64_t seed : {2u, 3u, 3u}) {
         other.root_seed = seed;

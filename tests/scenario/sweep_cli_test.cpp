@@ -30,10 +30,12 @@ TEST_CASE("sweep: grown, and merged from shards, a grid is what it is run at onc
     for (const char* part : {"0", "1"}) run("--trials 600 --shard " + std::string(part) + "/2 -o part" + part + ".h5");
     REQUIRE(here.credence("merge part1.h5 part0.h5 -o merged.h5").exit_code == 0);
     const std::string json = here.credence("report once.h5 --format json").out;
-    CHECK_THAT(json, Contains("\"of\": \"base\"") && Contains("\"noise.heading\": 0.1") && Contains("\"sensor.noise\": \"ranged\""));
+    CHECK_THAT(json, Contains("\"of\": \"base\"") && Contains("\"noise.heading\": 0.1") &&
+                         Contains("\"sensor.noise\": \"ranged\""));
     for (const char* other : {"grown.h5", "merged.h5"})
         CHECK(here.credence("report " + std::string(other) + " --format json").out == json);
-    const Outcome others = here.credence("run base.ini --sweep noise.heading=0.01:0.1:3 --trials 600 -o once.h5 --resume");
+    const Outcome others =
+        here.credence("run base.ini --sweep noise.heading=0.01:0.1:3 --trials 600 -o once.h5 --resume");
     CHECK(others.exit_code == 2);
     CHECK_THAT(others.err, Contains("it has 4 scenarios, not 3"));
 }

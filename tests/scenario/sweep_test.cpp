@@ -83,7 +83,8 @@ TEST_CASE("sweep: what is no sweep is refused in one line that says why") {
         {{"noise.heading=0:2:3:log"}, "a range with log has ends above 0"},
         {{"noise.heading=-1:-2:3:log"}, "a range with log has ends above 0"},
         {{"noise.heading=0.1,1e-1"}, "0.1 is given twice"},
-        {{"noise.heading=0.1", "noise.heading=0.2"}, "invalid --sweep=noise.heading=0.2 (noise.heading is swept twice)"},
+        {{"noise.heading=0.1", "noise.heading=0.2"},
+         "invalid --sweep=noise.heading=0.2 (noise.heading is swept twice)"},
         {{"scenario.name=a,b"}, "scenario.name changes nothing"},
         {{"scenario.title=a,b"}, "scenario.title changes nothing"},
         {{"scenario.length_unit=m,dm"}, "scenario.length_unit changes nothing"},
@@ -99,7 +100,8 @@ TEST_CASE("sweep: what is no sweep is refused in one line that says why") {
 }
 
 TEST_CASE("sweep: a grid has every combination once, the first key slowest") {
-    const auto points = grid_points(parse_grid({"noise.heading=0.1,0.2", "sensor.noise=constant,ranged", "noise.walk=1"}));
+    const auto points =
+        grid_points(parse_grid({"noise.heading=0.1,0.2", "sensor.noise=constant,ranged", "noise.walk=1"}));
     Texts texts;
     for (const auto& point : points) texts.push_back(coordinates_text(point));
     CHECK(texts == Texts{"noise.heading=0.1, sensor.noise=constant, noise.walk=1",
@@ -128,7 +130,8 @@ TEST_CASE("sweep: points have names that can be read and that scenarios may have
 }
 
 TEST_CASE("sweep: a place survives the way through text, its numbers written as everywhere") {
-    const std::vector<SweepCoordinate> at{{"noise.heading", "0.01"}, {"planner.turns", "-0.5, 0"}, {"sensor.noise", "constant"}};
+    const std::vector<SweepCoordinate> at{
+        {"noise.heading", "0.01"}, {"planner.turns", "-0.5, 0"}, {"sensor.noise", "constant"}};
     CHECK(coordinates_text(at) == "noise.heading=0.01, planner.turns=-0.5, 0, sensor.noise=constant");
     CHECK(parse_coordinates(coordinates_text(at)) == at);
     CHECK(parse_coordinates(" noise.heading = 1e-2,planner.turns=-.5 ,0, sensor.noise=constant") == at);
@@ -139,5 +142,6 @@ TEST_CASE("sweep: a place survives the way through text, its numbers written as 
         {"noise.heading=", "noise.heading has no value"}, {"a.b=1, a.b=2", "a.b is given twice"},
         {"scenario.name=a", "no grid can be over scenario.name"}};
     for (const auto& one : cases)
-        CHECK_THAT(refusal([&] { parse_coordinates(one.first); }), Contains("invalid sweep.at=") && Contains(one.second));
+        CHECK_THAT(refusal([&] { parse_coordinates(one.first); }),
+                   Contains("invalid sweep.at=") && Contains(one.second));
 }

@@ -66,7 +66,8 @@ TEST_CASE("baselines: all controllers share the features' truth") {
     const DeformableSettings scenario = steered({{"features.path", "circle"}});
     const AnyNoise noise = keyed_noise(scenario, 5, 3);
     const Eigen::VectorXd fixed = run_arm(scenario, Controller::fixed, noise).steps.back().truth.tail(6);
-    for (const Controller controller : {Controller::random, Controller::nearest, Controller::follow, Controller::waypoints})
+    for (const Controller controller :
+         {Controller::random, Controller::nearest, Controller::follow, Controller::waypoints})
         CHECK(same_bits(Eigen::MatrixXd(run_arm(scenario, controller, noise).steps.back().truth.tail(6)), fixed));
 }
 
@@ -77,7 +78,8 @@ TEST_CASE("baselines: follow is at the predicted centre of the features, as far 
         far.emplace_back("features.positions", "30 40, 30 40");
         const int at = process == std::string("heading") ? 1 : 0;
         const auto first = [&](const Settings& settings) {
-            return Eigen::Vector2d(run_arm(steered(settings), Controller::follow, silent_noise()).steps[1].truth.segment<2>(at));
+            return Eigen::Vector2d(
+                run_arm(steered(settings), Controller::follow, silent_noise()).steps[1].truth.segment<2>(at));
         };
         CHECK((first(still) - Eigen::Vector2d(1.7 / 3, 1.7 / 3)).norm() < 1e-14);
         const double reach = at == 1 ? 4 : 2 * std::sqrt(2.0);  // 2 d ahead, or d in both axes
@@ -135,6 +137,7 @@ TEST_CASE("baselines: without noise waypoints lead along their path at the step 
 
 TEST_CASE("baselines: no candidates are priced where none are needed") {
     const DeformableSettings scenario = steered({});
-    for (const Controller controller : {Controller::random, Controller::nearest, Controller::follow, Controller::waypoints})
+    for (const Controller controller :
+         {Controller::random, Controller::nearest, Controller::follow, Controller::waypoints})
         CHECK(run_arm(scenario, controller, silent_noise()).steps[1].candidate_cost.empty());
 }

@@ -78,7 +78,8 @@ TEST_CASE("controller: fixed controls are the oracle's") {
         const DeformableSettings scenario = scenario_with(settings);
         const std::vector<Control> ours = fixed_controls(scenario);
         REQUIRE(ours.size() == 19);
-        for (int k = 0; k < 19; ++k) CHECK(apart(ours[static_cast<std::size_t>(k)], oracle::fixed_control(scenario, k)) < 4e-15);
+        for (int k = 0; k < 19; ++k)
+            CHECK(apart(ours[static_cast<std::size_t>(k)], oracle::fixed_control(scenario, k)) < 4e-15);
     }
 }
 
@@ -86,7 +87,8 @@ TEST_CASE("controller: both processes lead the robot of the circle along the sam
     // The heading model turns by delta after each step of d (cos delta, sin delta) in its body: one turn ahead of the
     // features in each step but by half a turn's phase; without noise, in the world frame.
     const DeformableSettings heading = scenario_with({{"features.path", "circle"}});
-    const DeformableSettings translation = scenario_with({{"features.path", "circle"}, {"model.process", "translation"}});
+    const DeformableSettings translation =
+        scenario_with({{"features.path", "circle"}, {"model.process", "translation"}});
     const Run turning = run_arm(heading, Controller::fixed, silent_noise());
     const Run sliding = run_arm(translation, Controller::fixed, silent_noise());
     const double delta = heading.features.turn;
@@ -115,11 +117,12 @@ TEST_CASE("controller: the cost of a candidate is the oracle's brute force") {
             prepare_candidates(belief, view.filter, layout, 2, base);
             for (int i = 0; i < view.control.candidate_count; i += 7) {
                 const Control& control = view.control.candidates[i];
-                const double cost =
-                    candidate_cost(base, command_from<double>(control), view.control, view.filter, view.sensor, layout, next);
+                const double cost = candidate_cost(base, command_from<double>(control), view.control, view.filter,
+                                                   view.sensor, layout, next);
                 // cond(S) is below 1e4: 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before, at most some times the
                 // cost.
-                CHECK(relative(cost, oracle::candidate_cost(problem.scenario(), {sample.x, sample.P}, control, 2)) < 1e-10);
+                CHECK(relative(cost, oracle::candidate_cost(problem.scenario(), {sample.x, sample.P}, control, 2)) <
+                      1e-10);
             }
         });
 }
@@ -180,10 +183,13 @@ TEST_CASE("controller: a cost that is no number is never chosen") {
 
 TEST_CASE("controller: standing still ties on all rays, and the last ray wins") {
     // Features that surround a robot at rest; every s = 0 is the same move, and the turn has no cost.
-    const DeformableSettings scenario = scenario_with({{"features.path", "static"}, {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
-                                             {"sensor.noise", "ranged"}, {"features.step", "1"}});
+    const DeformableSettings scenario = scenario_with({{"features.path", "static"},
+                                                       {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"},
+                                                       {"sensor.noise", "ranged"},
+                                                       {"features.step", "1"}});
     const Run run = run_arm(scenario, Controller::greedy, silent_noise());
     CHECK(run.steps[1].control == Control{*scenario.planner.turns->rbegin(), {0, 0}});
     for (int ray = 0; ray < 6; ++ray)  // equal but for the rounding of a trace
-        CHECK(relative(run.steps[1].candidate_cost[static_cast<std::size_t>(21 * ray + 10)], run.steps[1].candidate_cost[10]) < 1e-13);
+        CHECK(relative(run.steps[1].candidate_cost[static_cast<std::size_t>(21 * ray + 10)],
+                       run.steps[1].candidate_cost[10]) < 1e-13);
 }

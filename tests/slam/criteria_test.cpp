@@ -58,7 +58,8 @@ void check_costs(const char* process) {
                     CHECK(std::abs(cost - dense_one) < 1e-2);
                 else
                     CHECK(relative(cost, dense_one) < 1e-12);  // of sums of 9 terms
-                CHECK(same_bits(dense(belief, P.rows()), dense(belief_of<Layout>(VectorXd::Zero(P.rows()), P), P.rows())));
+                CHECK(same_bits(dense(belief, P.rows()),
+                                dense(belief_of<Layout>(VectorXd::Zero(P.rows()), P), P.rows())));
             }
         }
 }

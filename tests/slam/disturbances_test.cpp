@@ -51,13 +51,19 @@ TEST_CASE("placement: a box about the first position is filled evenly") {
     CHECK(count_if(points, [](const auto& p) { return std::abs(p[0]) <= 3 && std::abs(p[1]) <= 3; }) == n);
     for (const int axis : {0, 1})
         for (const double share : {0.25, 0.5, 0.9})
-            CHECK(std::abs(score(count_if(points, [&](const auto& p) { return p[axis] < 6 * share - 3; }), n, share)) < bound);
+            CHECK(std::abs(score(count_if(points, [&](const auto& p) { return p[axis] < 6 * share - 3; }), n, share)) <
+                  bound);
     CHECK(std::abs(score(count_if(points, [](const auto& p) { return p[0] * p[1] > 0; }), n, 0.5)) < bound);
 }
 
 TEST_CASE("placement: a ring about the first position is filled evenly by area") {
-    const auto points = places({{"features.positions", "1 -2"}, {"features.placement", "ring"}, {"features.count", "8"},
-                                {"features.radius_min", "3"}, {"features.radius_max", "5"}, {"scenario.poses", "2"}}, 250);
+    const auto points = places({{"features.positions", "1 -2"},
+                                {"features.placement", "ring"},
+                                {"features.count", "8"},
+                                {"features.radius_min", "3"},
+                                {"features.radius_max", "5"},
+                                {"scenario.poses", "2"}},
+                               250);
     const int n = static_cast<int>(points.size());
     CHECK(count_if(points, [](const auto& p) { return p.norm() > 3 - 1e-12 && p.norm() < 5 + 1e-12; }) == n);
     CHECK(std::abs(score(count_if(points, [](const auto& p) { return p.squaredNorm() < 17; }), n, 0.5)) < bound);
@@ -105,7 +111,8 @@ TEST_CASE("tails: with many degrees of freedom Student's t is the normal draw") 
 TEST_CASE("gate: of a consistent filter it rejects what it should") {
     // In the matched world each sighting of the first step has nu' S^-1 nu ~ chi-square with two degrees of freedom.
     Settings settings = matched_world();
-    settings.insert(settings.end(), {{"model.process", "translation"}, {"filter.gate", "0.9"}, {"scenario.poses", "2"}});
+    settings.insert(settings.end(),
+                    {{"model.process", "translation"}, {"filter.gate", "0.9"}, {"scenario.poses", "2"}});
     const DeformableSettings scenario = scenario_with(settings);
     const int trials = 1000;
     int first = 0;
@@ -117,8 +124,10 @@ TEST_CASE("gate: of a consistent filter it rejects what it should") {
 
 TEST_CASE("gate: it protects the filter from outliers") {
     const auto mean_nees = [](const char* gate) {
-        const DeformableSettings scenario = scenario_with({{"noise.measurement_tails", "contaminated"}, {"filter.gate", gate},
-                                                           {"noise.outlier_scale", "20"}, {"sensor.sigma", "0.1"}});
+        const DeformableSettings scenario = scenario_with({{"noise.measurement_tails", "contaminated"},
+                                                           {"filter.gate", gate},
+                                                           {"noise.outlier_scale", "20"},
+                                                           {"sensor.sigma", "0.1"}});
         double sum = 0;
         for (std::uint64_t trial = 0; trial < 50; ++trial)
             sum += run_arm(scenario, Controller::fixed, keyed_noise(scenario, 8, trial)).columns[column_nees_ratio];
@@ -142,7 +151,8 @@ TEST_CASE("bias: without other noise the robot strays by it at each step, in its
 }
 
 TEST_CASE("every: features are seen at every third pose only, and edges at all") {
-    const DeformableSettings scenario = scenario_with({{"sensor.every", "3"}, {"sensor.range_max", "inf"}, {"sensor.range_min", "0"}});
+    const DeformableSettings scenario =
+        scenario_with({{"sensor.every", "3"}, {"sensor.range_max", "inf"}, {"sensor.range_min", "0"}});
     const Run run = run_arm(scenario, Controller::greedy, keyed_noise(scenario, 1, 1));
     for (int k = 1; k < scenario.poses; ++k) {
         CHECK(run.figure("nis_rows", k) == (k % 3 == 0 ? 12 : 6));

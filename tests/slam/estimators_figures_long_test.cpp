@@ -71,7 +71,8 @@ TEST_CASE("estimators: NEES in the matched world is what an independent implemen
                                      {"arms.estimators", "ekf, ideal, fej, riekf, iekf"}});
     for (const Row& row : table) {
         Settings here = settings;
-        here.insert(here.end(), {{"features.path", row.path}, {"scenario.poses", row.poses}, {"noise.heading", row.sigma}});
+        here.insert(here.end(),
+                    {{"features.path", row.path}, {"scenario.poses", row.poses}, {"noise.heading", row.sigma}});
         const Problem problem(scenario_with(here));
         const std::vector<Ratio> all = ratios(problem, row.blocks, 0, 9), pose = ratios(problem, row.blocks, 1, 3),
                                  invariant = ratios(problem, row.blocks, problem.view().series_count - 1, 3);

@@ -48,8 +48,10 @@ Settings loud(const std::string& path, const std::string& sigma) {
 TEST_CASE("estimators: each is its paper's filter, with dense matrices and the joint update") {
     for (const Estimator estimator : others)
         for (const Settings& settings :
-             {loud("straight", "0.1"), loud("circle", "0.03"), Settings{{"features.path", "circle"}, {"noise.heading", "0.05"}},
-              Settings{{"noise.walk", "0"}, {"noise.deformation", "0"}, {"edges.graph", "none"}, {"noise.heading", "0.05"}}})
+             {loud("straight", "0.1"), loud("circle", "0.03"),
+              Settings{{"features.path", "circle"}, {"noise.heading", "0.05"}},
+              Settings{
+                  {"noise.walk", "0"}, {"noise.deformation", "0"}, {"edges.graph", "none"}, {"noise.heading", "0.05"}}})
             for (const std::uint64_t trial : {0u, 1u, 2u}) {
                 CAPTURE(estimator, trial, described(settings));
                 const DeformableSettings scenario = scenario_with(settings);
@@ -85,19 +87,22 @@ TEST_CASE("estimators: they differ where the heading is not known") {
 }
 
 TEST_CASE("estimators: the iterated filter with one pass is the extended Kalman filter, bit for bit") {
-    with_samples<Layout<Process::heading, 3>>("heading", {}, [](const Problem& problem, const Sample& sample, auto layout) {
-        using ThisLayout = decltype(layout);
-        constexpr int capacity = ThisLayout::capacity;
-        auto one = belief_of<ThisLayout>(sample.x, sample.P), other = one;
-        const Sighting<double> sightings[]{{true, {0.3, 0.2}, 0.1}, {false, {1, 2}, 0.1}, {true, {-1, 0.5}, 0.2}};
-        const auto edge = [](int e) { return Vector2<double>{0.1 * e, -0.3}; };
-        Update<double, capacity> update;
-        FilterOfPasses<ThisLayout, double, 1> iterated;
-        update_belief(one, problem.view().filter, layout, sightings, edge, AtMean<ThisLayout, double>(one.mean), update);
-        iterated.update(other, problem.view().filter, layout, sightings, edge, AtMean<ThisLayout, double>(other.mean), update);
-        CHECK(same_bits(MatrixXd(mean_of(one, sample.x.size())), MatrixXd(mean_of(other, sample.x.size()))));
-        CHECK(same_bits(dense(one, sample.x.size()), dense(other, sample.x.size())));
-    });
+    with_samples<Layout<Process::heading, 3>>(
+        "heading", {}, [](const Problem& problem, const Sample& sample, auto layout) {
+            using ThisLayout = decltype(layout);
+            constexpr int capacity = ThisLayout::capacity;
+            auto one = belief_of<ThisLayout>(sample.x, sample.P), other = one;
+            const Sighting<double> sightings[]{{true, {0.3, 0.2}, 0.1}, {false, {1, 2}, 0.1}, {true, {-1, 0.5}, 0.2}};
+            const auto edge = [](int e) { return Vector2<double>{0.1 * e, -0.3}; };
+            Update<double, capacity> update;
+            FilterOfPasses<ThisLayout, double, 1> iterated;
+            update_belief(one, problem.view().filter, layout, sightings, edge, AtMean<ThisLayout, double>(one.mean),
+                          update);
+            iterated.update(other, problem.view().filter, layout, sightings, edge,
+                            AtMean<ThisLayout, double>(other.mean), update);
+            CHECK(same_bits(MatrixXd(mean_of(one, sample.x.size())), MatrixXd(mean_of(other, sample.x.size()))));
+            CHECK(same_bits(dense(one, sample.x.size()), dense(other, sample.x.size())));
+        });
 }
 
 TEST_CASE("estimators: rows are the measurement's derivatives where the estimator linearises") {
@@ -151,11 +156,16 @@ namespace {
 
 /// Carries the turn of everything about the origin, which nothing observes, through an estimator's own F, and returns
 /// the most that its own rows say of it: 0 for a filter that does not believe to learn what it cannot
-/// [docs/estimators.md, A heading that nothing observes]. Static features on a loop; estimates wander about the truth as a filter's would.
+/// [docs/estimators.md, A heading that nothing observes]. Static features on a loop; estimates wander about the truth
+/// as a filter's would.
 template <template <class, class> class Type>
 double learned_of_the_turn(unsigned seed) {
-    DeformableSettings scenario = scenario_with({{"features.path", "static"}, {"control.path", "circle"}, {"scenario.poses", "121"},
-                                       {"edges.graph", "none"}, {"features.turn", "0.1"}, {"features.step", "1"}});
+    DeformableSettings scenario = scenario_with({{"features.path", "static"},
+                                                 {"control.path", "circle"},
+                                                 {"scenario.poses", "121"},
+                                                 {"edges.graph", "none"},
+                                                 {"features.turn", "0.1"},
+                                                 {"features.step", "1"}});
     const Problem problem(scenario);
     FilterParameters filter = problem.view().filter;
     filter.variance_heading = filter.variance_odometry = filter.variance_feature = 0;  // P carries N N' alone
@@ -183,7 +193,8 @@ double learned_of_the_turn(unsigned seed) {
     double most = 0;
     for (int k = 1; k < scenario.poses; ++k) {
         const Command<double> command = command_from<double>(problem.view().control.fixed[k - 1]);
-        truth.position = truth.position + rotate(truth.rotation, command.move) + Vector2<double>{0.1 * normal(random), 0.1 * normal(random)};
+        truth.position = truth.position + rotate(truth.rotation, command.move) +
+                         Vector2<double>{0.1 * normal(random), 0.1 * normal(random)};
         truth.heading += command.turn + 0.05 * normal(random);
         truth.rotation = rotation(truth.heading);
         estimator.predict(belief, filter, layout, command, truth, k);

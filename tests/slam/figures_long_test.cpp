@@ -84,7 +84,8 @@ TEST_CASE("figures: the filter is pessimistic about the features and right about
             for (const RangeNoise noise : {RangeNoise::constant, RangeNoise::ranged}) {
                 const ScenarioResults r = run(cell(process, path, noise), 2000);
                 for (std::size_t arm = 0; arm < 2; ++arm) {
-                    const double nees = column(r, arm, column_nees_ratio).mean, nis = column(r, arm, column_nis_ratio).mean;
+                    const double nees = column(r, arm, column_nees_ratio).mean,
+                                 nis = column(r, arm, column_nis_ratio).mean;
                     CHECK((nees > 0.57 && nees < 0.91));
                     CHECK(nis == Approx(0.715).margin(0.025));
                     CHECK(group_ratio(r, arm, "pose") == Approx(1).margin(0.1));

@@ -51,10 +51,16 @@ TEST_CASE("filter: update keeps the covariance symmetric and positive definite, 
     }
 }
 
-TEST_CASE("filter: starts at 0 with features where they were first seen, of the factors only that of the measurement counts") {
-    const DeformableSettings scenario = scenario_with({{"sensor.noise", "ranged"}, {"filter.measurement", "0.5"}, {"filter.heading", "3"},
-                                             {"filter.odometry", "3"}, {"filter.features", "3"}, {"filter.edges", "3"},
-                                             {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
+TEST_CASE(
+    "filter: starts at 0 with features where they were first seen, and of the factors the measurement's alone counts") {
+    const DeformableSettings scenario = scenario_with({{"sensor.noise", "ranged"},
+                                                       {"filter.measurement", "0.5"},
+                                                       {"filter.heading", "3"},
+                                                       {"filter.odometry", "3"},
+                                                       {"filter.features", "3"},
+                                                       {"filter.edges", "3"},
+                                                       {"noise.initial_heading", "0.2"},
+                                                       {"noise.initial_position", "0.3"}});
     const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 1, 4));
     const RunStep& start = run.steps.front();
     CHECK(start.mean.head(3).norm() == 0);
@@ -75,12 +81,14 @@ TEST_CASE("filter: without noise the translation model's estimate is the truth")
     const DeformableSettings scenario = scenario_with({{"model.process", "translation"}, {"features.path", "circle"},
                                              {"features.sway_amplitude", "0.4"}});
     const Run run = run_arm(scenario, Controller::fixed, silent_noise());
-    for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // rounding of positions below 40
+    // Rounding of positions below 40.
+    for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);
     CHECK(run.columns[column_pose_error] < 1e-25);
 }
 
 TEST_CASE("filter: without noise the heading model's estimate is the truth") {
-    const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.sway_amplitude", "0.4"}});
+    const DeformableSettings scenario =
+        scenario_with({{"features.path", "circle"}, {"features.sway_amplitude", "0.4"}});
     const Run run = run_arm(scenario, Controller::fixed, silent_noise());
     for (const RunStep& step : run.steps) CHECK((step.mean - step.truth).norm() < 1e-13);  // as above
     CHECK(run.steps.back().truth[0] == Approx(19 * 0.31415926535897931).epsilon(1e-14));
@@ -91,9 +99,10 @@ template <int n>
 SquaredError<double> squared_error(const Symmetric<double, n>& P, const VectorXd& e, int first, int count) {
     Elimination<double, n> work;
     SquaredError<double> result;
-    nested_squared_errors<false>(P, e.data(), first, first + count, work, [&](int i, const SquaredError<double>& so_far) {
-        if (i == first) result = so_far;
-    });
+    nested_squared_errors<false>(P, e.data(), first, first + count, work,
+                                 [&](int i, const SquaredError<double>& so_far) {
+                                     if (i == first) result = so_far;
+                                 });
     return result;
 }
 
@@ -179,7 +188,8 @@ TEST_CASE("filter: three features known to the compiler give the same bits as an
                 CAPTURE(described(cell), static_cast<int>(controller));
             for (std::uint64_t trial = 0; trial < 3; ++trial) {
                 const AnyNoise noise = keyed_noise(scenario, 2, trial);
-                const Run three = run_arm(scenario, controller, noise), any = run_arm(scenario, controller, noise, Form::any_number);
+                const Run three = run_arm(scenario, controller, noise),
+                          any = run_arm(scenario, controller, noise, Form::any_number);
                 CHECK(same_bits(three.columns, any.columns));
                 CHECK(same_bits(three.figures, any.figures));
                 CHECK(same_bits(three.steps.back().covariance, any.steps.back().covariance));
@@ -190,12 +200,14 @@ TEST_CASE("filter: three features known to the compiler give the same bits as an
 TEST_CASE("filter: the covariance factor scales what is reported and touches nothing else") {
     for (const Controller controller : {Controller::fixed, Controller::greedy}) {
         const Settings cell{{"features.path", "circle"}, {"sensor.noise", "ranged"}};
-        const DeformableSettings plain = scenario_with(cell), scaled = scenario_with(plain, {{"filter.covariance", "4"}});
+        const DeformableSettings plain = scenario_with(cell),
+                                 scaled = scenario_with(plain, {{"filter.covariance", "4"}});
         const Run one = run_arm(plain, controller, keyed_noise(plain, 2, 1));
         const Run four = run_arm(scaled, controller, keyed_noise(plain, 2, 1));
         // Powers of two, so to the bit.
         CHECK(four.columns[column_trace_P] == 4 * one.columns[column_trace_P]);
-        CHECK(four.columns[column_nees_ratio] == Approx(one.columns[column_nees_ratio] / 4).epsilon(1e-14));  // one more rounding a step
+        // One more rounding a step.
+        CHECK(four.columns[column_nees_ratio] == Approx(one.columns[column_nees_ratio] / 4).epsilon(1e-14));
         for (const int same : {column_unseen, column_pose_error, column_nis_ratio, column_status})
             CHECK(four.columns[static_cast<std::size_t>(same)] == one.columns[static_cast<std::size_t>(same)]);
         for (std::size_t k = 0; k < one.steps.size(); ++k) {

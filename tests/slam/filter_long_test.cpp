@@ -103,7 +103,8 @@ TEST_CASE("filter: 200 poses agree with the oracle") {
 TEST_CASE("filter: 1 to 7 features agree with the oracle on fixed paths") {
     for (const char* process : {"heading", "translation"})
         for (const int count : {1, 2, 4, 5, 6, 7})
-            for (std::uint64_t trial = 0; trial < 5; ++trial) check_trial(with_features(process, count), Controller::fixed, trial);
+            for (std::uint64_t trial = 0; trial < 5; ++trial)
+                check_trial(with_features(process, count), Controller::fixed, trial);
 }
 
 TEST_CASE("filter: 1 to 7 features agree with the oracle on planned paths") {
@@ -142,7 +143,8 @@ TEST_CASE("filter: 64 features with all 2016 edges agree with the update in info
     REQUIRE(edges.size() == 2016);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const Eigen::Vector2d z = step.edge.row(static_cast<Eigen::Index>(e));
-        add(oracle::edge_rows(scenario, edges[e]), z - oracle::predicted_edge(scenario, step.prior_mean, edges[e]), 0.2);
+        add(oracle::edge_rows(scenario, edges[e]), z - oracle::predicted_edge(scenario, step.prior_mean, edges[e]),
+            0.2);
     }
     const MatrixXd P = information.inverse();
     // Both inverses lose the condition of the prior, below 1e6, and 2080 updates add their rounding: 1e6 * 131 * 2^-53.

@@ -84,7 +84,8 @@ TEST_CASE("filter: P is carried by the Jacobian of the predicted mean, plus Q") 
     with_both({{"noise.heading", "0.3"}}, [](const Problem& problem, const Sample& sample, auto layout) {
         using Layout = decltype(layout);
         const Command<double> command{0.3, {1.2, -0.7}};
-        const MatrixXd F = jacobian([&](const VectorXd& x) { return predicted<Layout>(problem, x, command); }, sample.x);
+        const MatrixXd F =
+            jacobian([&](const VectorXd& x) { return predicted<Layout>(problem, x, command); }, sample.x);
         auto belief = belief_of<Layout>(sample.x, sample.P);
         predict_robot(belief, problem.view().filter, layout, command);
         predict_features(belief, problem.view().filter, layout, 2);
@@ -94,14 +95,15 @@ TEST_CASE("filter: P is carried by the Jacobian of the predicted mean, plus Q") 
 }
 
 TEST_CASE("filter: a belief that is certain is predicted with exactly Q") {
-    with_both({{"noise.heading", "0.25"}, {"filter.heading", "3"}, {"filter.odometry", "2"}, {"filter.features", "0.5"}},
-              [](const Problem& problem, const Sample& sample, auto layout) {
-                  auto belief = belief_of<decltype(layout)>(sample.x, MatrixXd::Zero(sample.x.size(), sample.x.size()));
-                  predict_robot(belief, problem.view().filter, layout, {0.3, {1.2, -0.7}});
-                  predict_features(belief, problem.view().filter, layout, 2);
-                  const MatrixXd Q = oracle::process_noise(problem.scenario());
-                  CHECK((dense(belief, Q.rows()) - Q).norm() <= 1e-16);  // the same squares of the same products
-              });
+    with_both(
+        {{"noise.heading", "0.25"}, {"filter.heading", "3"}, {"filter.odometry", "2"}, {"filter.features", "0.5"}},
+        [](const Problem& problem, const Sample& sample, auto layout) {
+            auto belief = belief_of<decltype(layout)>(sample.x, MatrixXd::Zero(sample.x.size(), sample.x.size()));
+            predict_robot(belief, problem.view().filter, layout, {0.3, {1.2, -0.7}});
+            predict_features(belief, problem.view().filter, layout, 2);
+            const MatrixXd Q = oracle::process_noise(problem.scenario());
+            CHECK((dense(belief, Q.rows()) - Q).norm() <= 1e-16);  // the same squares of the same products
+        });
 }
 
 TEST_CASE("filter: rows of H are the Jacobian of what the sensor measures") {
@@ -144,13 +146,15 @@ TEST_CASE("filter: contrasts carry the information of all edges together") {
                 ours += H.transpose() * H / contrast.scale;
             }
             CHECK((ours - theirs).norm() < 1e-14);  // small integers and their quotients
-            CHECK(filter.laplacian_bound >= Eigen::SelfAdjointEigenSolver<MatrixXd>(theirs).eigenvalues().maxCoeff() - 1e-12);
+            CHECK(filter.laplacian_bound >=
+                  Eigen::SelfAdjointEigenSolver<MatrixXd>(theirs).eigenvalues().maxCoeff() - 1e-12);
         }
 }
 
 TEST_CASE("filter: updating with two rows after two is the joint update") {
     for (const char* graph : {"all", "chain", "none", "0-2"})
-        with_both({{"edges.graph", graph}, {"filter.measurement", "0.9"}}, [](const Problem& problem, const Sample& sample, auto layout) {
+        with_both({{"edges.graph", graph}, {"filter.measurement", "0.9"}}, [](const Problem& problem,
+                                                                              const Sample& sample, auto layout) {
             const FilterParameters& filter = problem.view().filter;
             const InterimAnalysis look(filter.edge_count, sample);
             auto belief = belief_of<decltype(layout)>(sample.x, sample.P);

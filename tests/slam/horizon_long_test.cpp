@@ -22,7 +22,9 @@ Settings with(Settings settings, const Settings& more) {
 }
 
 /// A scenario whose arms plan ahead.
-DeformableSettings planning(const Settings& settings) { return scenario_with(with(settings, {{"arms.controllers", "greedy, horizon"}})); }
+DeformableSettings planning(const Settings& settings) {
+    return scenario_with(with(settings, {{"arms.controllers", "greedy, horizon"}}));
+}
 
 /// Both processes, paths and noises, with few candidates.
 std::vector<Settings> small_kinds() {
@@ -35,7 +37,8 @@ std::vector<Settings> small_kinds() {
 
 /// The least sum of trace(P) over `steps` steps by brute force of controller.hpp's plain ones.
 template <class Layout, class Belief>
-double plain_cost(const ProblemView& view, const Layout& layout, const Belief& belief, int candidate, int k, int steps) {
+double plain_cost(const ProblemView& view, const Layout& layout, const Belief& belief, int candidate, int k,
+                  int steps) {
     const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
     prepare_candidates(belief, view.filter, layout, k, *base);
     const double cost = candidate_cost(*base, command_from<double>(view.control.candidates[candidate]), view.control,
@@ -82,7 +85,8 @@ TEST_CASE("horizon: controls and their costs are the oracle's brute force, two a
                 const DeformableSettings scenario = planning(with(kind, {{"planner.horizon", steps}}));
                 const AnyNoise noise = keyed_noise(scenario, 6, trial);
                 const Run ours = run_arm(scenario, Controller::horizon, noise);
-                const Difference worst = difference(ours, oracle::run(scenario, Controller::horizon, for_oracle(noise)));
+                const Difference worst =
+                    difference(ours, oracle::run(scenario, Controller::horizon, for_oracle(noise)));
                 CAPTURE(described(kind), steps, trial);
                 CHECK(worst.same_control);
                 // cond(S) is below 1e4: up to three updates of 12 rows * 1e4 * 2^-53 = 1.3e-11 of the trace before
@@ -154,8 +158,9 @@ TEST_CASE("horizon: it ends at the last pose") {
     CHECK(costs("3", 1) != costs("2", 1));
     const DeformableSettings scenario = planning(with(short_run, {{"planner.horizon", "8"}}));
     const Run run = run_arm(scenario, Controller::horizon, keyed_noise(scenario, 3, 2));
-    CHECK(relative(run.steps[3].candidate_cost[0], oracle::candidate_cost(scenario, {run.steps[2].mean, run.steps[2].covariance},
-                                                                          planner_candidates(scenario)[0], 3)) < 1e-10);
+    CHECK(relative(run.steps[3].candidate_cost[0],
+                   oracle::candidate_cost(scenario, {run.steps[2].mean, run.steps[2].covariance},
+                                          planner_candidates(scenario)[0], 3)) < 1e-10);
 }
 
 TEST_CASE("horizon: the sum counts, not the next step alone") {
@@ -176,7 +181,8 @@ TEST_CASE("horizon: the sum counts, not the next step alone") {
         REQUIRE(found != candidates.end());
         const std::size_t chosen = static_cast<std::size_t>(found - candidates.begin()),
                           greedy = static_cast<std::size_t>(oracle::greedy_choice(scenario, next));
-        const double of_chosen = next[static_cast<Eigen::Index>(chosen)], of_greedy = next[static_cast<Eigen::Index>(greedy)];
+        const double of_chosen = next[static_cast<Eigen::Index>(chosen)],
+                     of_greedy = next[static_cast<Eigen::Index>(greedy)];
         CHECK(of_greedy <= of_chosen * (1 + 1e-12));
         CHECK(step.candidate_cost[chosen] <= step.candidate_cost[greedy] * (1 + 1e-12));
         differ += step.candidate_cost[chosen] < step.candidate_cost[greedy] * 0.999;

@@ -17,8 +17,8 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// A scalar of the filters' equations with 50 decimal digits. Its functions are calls: where the equations ask for all of
-/// them to be inlined, the compiler would take minutes.
+/// A scalar of the filters' equations with 50 decimal digits. Its functions are calls: where the equations ask for all
+/// of them to be inlined, the compiler would take minutes.
 struct FiftyReal {
     test::Fifty value = 0;
 
@@ -217,8 +217,8 @@ void compare_with_fifty_digits(int count) {
             ours->step(k);
             exact->step(k);
             if (ours->seen != exact->seen) {
-                // The sightings are gated about a prediction that rounding has changed, or that is wrong by thousands of
-                // sigma and a number of its last digits.
+                // The sightings are gated about a prediction that rounding has changed, or that is wrong by thousands
+                // of sigma and a number of its last digits.
                 CHECK((lost > enough || most > 1e6));
                 ++apart;
                 break;

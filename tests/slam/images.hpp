@@ -97,7 +97,8 @@ inline Image permuted(const DeformableSettings& scenario, const AnyNoise& noise,
             const Vector2<double> draw = noise.normal(source, pose, edge.before);
             return Vector2<double>{edge.sign * draw.x, edge.sign * draw.y};
         }
-        const bool of_feature = source == Source::walk || source == Source::deformation || source == Source::measurement;
+        const bool of_feature =
+            source == Source::walk || source == Source::deformation || source == Source::measurement;
         return noise.normal(source, pose, of_feature ? before(index) : index);
     };
     image.noise.uniform_draw = [=](Source source, int pose, int index) {

@@ -33,7 +33,8 @@ VectorXd logarithm_of_error(const VectorXd& truth, const VectorXd& estimate) {
 /// xi' (T P T')^-1 xi, P the Euclidean covariance at the estimate: T = I with the column of the heading (1; -J p^).
 double nees_in_group(const VectorXd& truth, const VectorXd& estimate, const MatrixXd& P, Eigen::Index size) {
     MatrixXd T = MatrixXd::Identity(truth.size(), truth.size());
-    for (Eigen::Index i = 1; i < truth.size(); i += 2) T.block<2, 1>(i, 0) = -oracle::quarter_turn() * estimate.segment<2>(i);
+    for (Eigen::Index i = 1; i < truth.size(); i += 2)
+        T.block<2, 1>(i, 0) = -oracle::quarter_turn() * estimate.segment<2>(i);
     const MatrixXd own = (T * P * T.transpose()).topLeftCorner(size, size);
     const VectorXd xi = logarithm_of_error(truth, estimate).head(size);
     return xi.dot(own.ldlt().solve(xi));
@@ -65,7 +66,8 @@ TEST_CASE("invariant chart: NEES is that of the logarithm in the group, whole st
     }
 }
 
-TEST_CASE("invariant chart: without an error of the heading it is the Euclidean one, and the heading's own is the same") {
+TEST_CASE(
+    "invariant chart: without an error of the heading it is the Euclidean one, and the heading's own is the same") {
     using HeadingLayout = Layout<Process::heading, 3>;
     const Sample sample(9, 7);
     VectorXd error = Sample(9, 8).x;
@@ -85,8 +87,10 @@ TEST_CASE("invariant chart: a trial reports it where other estimators run beside
     double most = 0;
     for (int k = 1; k < 20; ++k) {
         const RunStep& step = run.steps[static_cast<std::size_t>(k)];
-        CHECK(relative(run.figure("nees_invariant", k), nees_in_group(step.truth, step.mean, step.covariance, 9)) < 1e-9);
-        CHECK(relative(run.figure("nees_invariant_pose", k), nees_in_group(step.truth, step.mean, step.covariance, 3)) < 1e-9);
+        CHECK(relative(run.figure("nees_invariant", k), nees_in_group(step.truth, step.mean, step.covariance, 9)) <
+              1e-9);
+        CHECK(relative(run.figure("nees_invariant_pose", k), nees_in_group(step.truth, step.mean, step.covariance, 3)) <
+              1e-9);
         most = std::max(most, relative(run.figure("nees_invariant", k), run.figure("nees", k)));
     }
     CHECK(most > 0.01);  // the charts are not the same

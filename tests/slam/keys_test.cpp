@@ -26,15 +26,16 @@ struct Influence {
 
 constexpr Controller fixed = Controller::fixed, greedy = Controller::greedy, horizon = Controller::horizon,
                      waypoints = Controller::waypoints;
-const Settings circle{{"features.path", "circle"}}, ranged{{"sensor.noise", "ranged"}}, swaying{{"features.sway_amplitude", "0.8"}},
-    turning{{"noise.heading", "0.02"}}, flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}},
-    turned{{"noise.heading", "0.05"}, {"features.path", "circle"}},
-    boxed{{"features.placement", "box"}}, ringed{{"features.placement", "ring"}},
-    coarse{{"sensor.sigma", "0.5"}, {"noise.degrees_of_freedom", "2.1"}},
+const Settings circle{{"features.path", "circle"}}, ranged{{"sensor.noise", "ranged"}},
+    swaying{{"features.sway_amplitude", "0.8"}}, turning{{"noise.heading", "0.02"}},
+    flat{{"model.process", "translation"}}, far{{"sensor.sigma_far", "0.5"}},
+    turned{{"noise.heading", "0.05"}, {"features.path", "circle"}}, boxed{{"features.placement", "box"}},
+    ringed{{"features.placement", "ring"}}, coarse{{"sensor.sigma", "0.5"}, {"noise.degrees_of_freedom", "2.1"}},
     tailed{{"sensor.sigma", "0.5"}, {"noise.degrees_of_freedom", "2.1"}, {"noise.measurement_tails", "student"}},
     soiled{{"sensor.sigma", "0.5"}, {"noise.measurement_tails", "contaminated"}},
     walked{{"arms.controllers", "waypoints"}, {"control.waypoints", "2 0, 40 0"}},
-    ahead{{"model.process", "translation"}, {"features.path", "circle"}, {"arms.controllers", "fixed, greedy, horizon"}};
+    ahead{
+        {"model.process", "translation"}, {"features.path", "circle"}, {"arms.controllers", "fixed, greedy, horizon"}};
 const std::vector<ColumnIndex> sight{column_unseen}, beliefs{column_unseen, column_trace_P},
     all{column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio},
     all_but_reported{column_unseen, column_pose_error, column_nis_ratio};
@@ -110,9 +111,9 @@ const std::vector<Influence>& influences() {
 
 /// Keys that change no column: names, and settings that are only shown or select among arms
 /// (tests/engine/block_test.cpp).
-const std::set<std::string> silent_keys{"scenario.name",      "scenario.title",   "scenario.length_unit",
-                                        "arms.controllers",   "arms.estimators",  "published.trace_P",    "published.unseen",
-                                        "published.pose_error"};
+const std::set<std::string> silent_keys{"scenario.name",    "scenario.title",      "scenario.length_unit",
+                                        "arms.controllers", "arms.estimators",     "published.trace_P",
+                                        "published.unseen", "published.pose_error"};
 
 constexpr std::uint64_t trials = 20;
 
@@ -184,10 +185,14 @@ TEST_CASE("keys: every changed scenario agrees with the oracle on both paths") {
 
 TEST_CASE("keys: names, titles, units and published values change no bit") {
     const DeformableSettings plain = scenario_with({});
-    const DeformableSettings named = scenario_with({{"scenario.name", "other"}, {"scenario.title", "Other"}, {"scenario.length_unit", "m"},
-                                          {"arms.controllers", "greedy"}, {"planner.horizon", "1"},
-                                          {"published.trace_P", "fixed.ekf 0.1"}, {"published.unseen", "fixed.ekf 3"},
-                                          {"published.pose_error", "fixed.ekf 0.2"}});
+    const DeformableSettings named = scenario_with({{"scenario.name", "other"},
+                                                    {"scenario.title", "Other"},
+                                                    {"scenario.length_unit", "m"},
+                                                    {"arms.controllers", "greedy"},
+                                                    {"planner.horizon", "1"},
+                                                    {"published.trace_P", "fixed.ekf 0.1"},
+                                                    {"published.unseen", "fixed.ekf 3"},
+                                                    {"published.pose_error", "fixed.ekf 0.2"}});
     for (const Controller controller : {fixed, greedy}) {
         const auto before = columns_of(plain, controller), after = columns_of(named, controller);
         for (std::size_t trial = 0; trial < trials; ++trial) CHECK(same_bits(before[trial], after[trial]));

@@ -43,8 +43,8 @@ inline double share(double a, double b, double size) {
     return a == b || (std::isnan(a) && std::isnan(b)) ? 0 : std::abs(a - b) / size;
 }
 
-/// Greatest difference of the image's belief and truth at a pose from the image of the belief and the truth, in standard
-/// deviations of the belief.
+/// Greatest difference of the image's belief and truth at a pose from the image of the belief and the truth, in
+/// standard deviations of the belief.
 inline double state_difference(const RunStep& step, const RunStep& other, const MatrixXd& map) {
     const VectorXd mean = map * step.mean, truth = map * step.truth;
     const MatrixXd P = map * step.covariance * map.transpose();
@@ -59,8 +59,8 @@ inline double state_difference(const RunStep& step, const RunStep& other, const 
     return greatest;
 }
 
-/// Greatest difference of the series without a unit at pose k, as a share of 1 + the value; infinite where other features
-/// are seen.
+/// Greatest difference of the series without a unit at pose k, as a share of 1 + the value; infinite where other
+/// features are seen.
 inline double series_difference(const Run& run, const Run& other, const Image& image, int k) {
     double greatest = 0;
     const auto compare = [&](const std::string& name, const std::string& before) {
@@ -90,8 +90,8 @@ inline double difference(const Run& run, const Run& other, const Image& image) {
     return greatest;
 }
 
-/// Whether a filter is ever a hundred standard deviations off. Where it linearises has then little to do with the truth,
-/// and what rounding leaves is multiplied from pose to pose.
+/// Whether a filter is ever a hundred standard deviations off. Where it linearises has then little to do with the
+/// truth, and what rounding leaves is multiplied from pose to pose.
 inline bool is_lost(const Run& run) { return !(run.series("nees").maxCoeff() < 1e4); }
 
 /// What rounding may do to all of this. An update that leaves a share 1/loss of a variance leaves rounding errors of
@@ -105,7 +105,8 @@ inline double rounding_of(const Run& run) {
         const RunStep& step = run.steps[k];
         const VectorXd prior = step.prior_covariance.diagonal(), left = step.covariance.diagonal();
         if (!(left.minCoeff() > 0)) return infinity;
-        raise(bound, std::max(rounding_bound(step.prior_covariance, epsilon), rounding_bound(step.covariance, epsilon)));
+        raise(bound,
+              std::max(rounding_bound(step.prior_covariance, epsilon), rounding_bound(step.covariance, epsilon)));
         raise(loss, prior.cwiseQuotient(left).maxCoeff());
         raise(size, step.truth.cwiseQuotient(left.cwiseSqrt()).cwiseAbs().maxCoeff());
     }

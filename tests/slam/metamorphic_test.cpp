@@ -1,6 +1,7 @@
-// Trials of random scenarios, often badly conditioned, and their images in a world whose difference the equations do not
-// know: another unit of length, other numbers for the features, left for right, more poses to come. The robot always
-// starts at the origin and heads along x, so that a shifted or a turned world is no scenario (rigid_motion_test.cpp).
+// Trials of random scenarios, often badly conditioned, and their images in a world whose difference the equations do
+// not know: another unit of length, other numbers for the features, left for right, more poses to come. The robot
+// always starts at the origin and heads along x, so that a shifted or a turned world is no scenario
+// (rigid_motion_test.cpp).
 
 #include "catch.hpp"
 #include "metamorphic.hpp"
@@ -29,7 +30,8 @@ double column_difference(const Run& run, const Run& other, const Image& image) {
     raise(greatest, share(other.columns[column_pose_error], pose_error, pose_error + trace));
     for (const int column : {column_unseen, column_nees_ratio, column_nis_ratio}) {
         const double value = run.columns[static_cast<std::size_t>(column)];
-        if (!std::isnan(value)) raise(greatest, share(other.columns[static_cast<std::size_t>(column)], value, 1 + value));
+        if (!std::isnan(value))
+            raise(greatest, share(other.columns[static_cast<std::size_t>(column)], value, 1 + value));
     }
     return greatest;
 }
@@ -77,9 +79,9 @@ constexpr bool to_the_bit = true, to_rounding = false;
 /// In units that are no power of two apart, and with the features in another order.
 void compare_to_rounding(unsigned scenarios) {
     for (const double factor : {1e-3, 0.1, 1e3}) {
-        const Compared units = compare("unit", scenarios, to_rounding, [&](const auto& scenario, const auto& noise, unsigned) {
-            return in_unit(scenario, noise, factor);
-        });
+        const Compared units = compare(
+            "unit", scenarios, to_rounding,
+            [&](const auto& scenario, const auto& noise, unsigned) { return in_unit(scenario, noise, factor); });
         CHECK(units.trials > units.left_out);
         CHECK(units.closest > 1e-4);  // or the bound would say little
     }
@@ -90,11 +92,13 @@ void compare_to_rounding(unsigned scenarios) {
 
 }  // namespace
 
-TEST_CASE("metamorphic: in another unit of length, and with features in another order, trials are the same to rounding") {
+TEST_CASE(
+    "metamorphic: in another unit of length, and with features in another order, trials are the same to rounding") {
     compare_to_rounding(100);
 }
 
-TEST_CASE("metamorphic: thousands of trials are the same in another unit and with features in another order", "[long]") {
+TEST_CASE("metamorphic: thousands of trials are the same in another unit and with features in another order",
+          "[long]") {
     compare_to_rounding(2000);
 }
 

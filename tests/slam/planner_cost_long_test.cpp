@@ -36,10 +36,12 @@ struct Planner {
         return world_move<Layout>(heading, Vector2<double>{v.x, v.y});
     }
     double plain(int i) {
-        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.control, view.filter, view.sensor,
-                              layout, next);
+        return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.control, view.filter,
+                              view.sensor, layout, next);
     }
-    double cost(int i) { return cost_in_measurement_space(work->space, move(i), view.filter, view.sensor, layout, *room); }
+    double cost(int i) {
+        return cost_in_measurement_space(work->space, move(i), view.filter, view.sensor, layout, *room);
+    }
 };
 
 const std::vector<Settings> worlds{
@@ -134,7 +136,8 @@ TEST_CASE("planner: the bound touches the cost at its reference, and its slope i
     Settings nearly = world;
     nearly.push_back({"filter.measurement", "1.0001"});
     with_both(world, [&](const Problem& problem, const Sample& sample, auto layout) {
-        Settings settings{{"model.process", layout.has_heading ? "heading" : "translation"}, {"features.path", "circle"},
+        Settings settings{{"model.process", layout.has_heading ? "heading" : "translation"},
+                          {"features.path", "circle"},
                           {"features.sway_amplitude", "0.4"}};
         settings.insert(settings.end(), nearly.begin(), nearly.end());
         const Problem other(scenario_with(settings));

@@ -35,7 +35,9 @@ TEST_CASE("planner: no control costs more than the least, on eight features and 
     CHECK(tally.dearer == 0);
 }
 
-TEST_CASE("planner: no control costs more than the least, on 3,000 random hard scenarios") { check_random<double>(3000); }
+TEST_CASE("planner: no control costs more than the least, on 3,000 random hard scenarios") {
+    check_random<double>(3000);
+}
 
 TEST_CASE("planner: no control costs more than the least, on 100 random hard scenarios in every lane width") {
     check_random<Lane<2>>(100);

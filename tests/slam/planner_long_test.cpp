@@ -42,10 +42,13 @@ std::vector<Settings> kinds() {
                 all.push_back(more);
             };
             with({{"features.positions", "1 1"}});
-            with({{"features.positions", "1 1, 0.2 0.4, -0.5 1"}, {"planner.speeds", "7"}});  // more than a chunk in translation
+            // More than a chunk in translation.
+            with({{"features.positions", "1 1, 0.2 0.4, -0.5 1"}, {"planner.speeds", "7"}});
             with({{"features.positions", "1 1, 0 1"}, {"edges.graph", "none"}});
             with({{"features.positions", "0.5 0.5, 0.9 0.8, 0.3 0.4, -1 0, 0 -1, 1 -1"}, {"edges.graph", "chain"}});
-            with({{"features.positions", "0 1, 1 0, 0 -1, -1 0, 1 1, -1 1, 1 -1, 2 0"}, {"filter.edges", "0.5"}, {"planner.speeds", "7"}});
+            with({{"features.positions", "0 1, 1 0, 0 -1, -1 0, 1 1, -1 1, 1 -1, 2 0"},
+                  {"filter.edges", "0.5"},
+                  {"planner.speeds", "7"}});
         }
     }
     all.push_back({{"sensor.noise", "ranged"}, {"sensor.sigma_near", "0.05"}, {"sensor.sigma_far", "0.05"}});
@@ -62,7 +65,9 @@ void check_choices(std::int64_t candidates) {
 
 }  // namespace
 
-TEST_CASE("planner: every fast form chooses as the plain form, on 20,000 candidates of each kind") { check_choices(20000); }
+TEST_CASE("planner: every fast form chooses as the plain form, on 20,000 candidates of each kind") {
+    check_choices(20000);
+}
 
 TEST_CASE("planner: every fast form chooses as the plain form, on 200,000 candidates of each kind", "[long]") {
     check_choices(200000);
@@ -70,10 +75,13 @@ TEST_CASE("planner: every fast form chooses as the plain form, on 200,000 candid
 
 TEST_CASE("planner: ties are decided alike") {
     // Standing still is one move on six rays; in the translation model with constant noise all that see the same tie.
-    for (const Settings& kind : {Settings{{"features.path", "static"}, {"sensor.noise", "ranged"}, {"features.step", "1"},
-                                          {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"}},
-                                 {{"model.process", "translation"}, {"features.path", "circle"}},
-                                 {{"model.process", "translation"}, {"features.path", "circle"}, {"planner.speeds", "8"}}}) {
+    for (const Settings& kind :
+         {Settings{{"features.path", "static"},
+                   {"sensor.noise", "ranged"},
+                   {"features.step", "1"},
+                   {"features.positions", "0.5 0, -0.5 0, 0 0.5, 0 -0.5"}},
+          {{"model.process", "translation"}, {"features.path", "circle"}},
+          {{"model.process", "translation"}, {"features.path", "circle"}, {"planner.speeds", "8"}}}) {
         const ChoiceTally tally = compared(kind, 50000);
         CAPTURE(described(kind));
         CHECK(tally.ties > tally.choices / 20);

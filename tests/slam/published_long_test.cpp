@@ -72,10 +72,13 @@ TEST_CASE("published: the table of results, trace(P) to all its digits and the u
 
 TEST_CASE("published: docs/model.md has the same figures") {
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/model.md");
-    const auto text = [](const Cell& cell) { return std::string(cell.trace_P) + " / " + std::to_string(cell.unseen) + " |"; };
+    const auto text = [](const Cell& cell) {
+        return std::string(cell.trace_P) + " / " + std::to_string(cell.unseen) + " |";
+    };
     for (std::size_t i = 0; i < std::size(cells); i += 2) {
         const std::string noise = cells[i].noise == std::string("constant") ? "constant σ_feat" : cells[i].noise;
-        const std::string row = std::string("\n| ") + cells[i].path + ", " + noise + " | " + text(cells[i]) + " " + text(cells[i + 1]);
+        const std::string row =
+            std::string("\n| ") + cells[i].path + ", " + noise + " | " + text(cells[i]) + " " + text(cells[i + 1]);
         CAPTURE(row);
         CHECK(page.find(row) != std::string::npos);
     }

@@ -25,12 +25,21 @@ struct KeyCase {
 const std::vector<KeyCase>& key_cases() {
     static const std::vector<std::string> not_a_length{"-1", "-1e-9", "2e9"}, not_positive{"0", "-1", "2e9"};
     static const std::vector<KeyCase> cases{
-        {"scenario.name", "scenario", {"a", "kf-circle_2", std::string(100, 'x')}, {"", "a b", "a/b", "ä", "..", std::string(101, 'x')}},
-        {"scenario.title", "", {"EKF (heading model), 0.01 rad", "Größe"}, {"a # b", std::string(301, 'x'), "tab\there"}},
+        {"scenario.name",
+         "scenario",
+         {"a", "kf-circle_2", std::string(100, 'x')},
+         {"", "a b", "a/b", "ä", "..", std::string(101, 'x')}},
+        {"scenario.title",
+         "",
+         {"EKF (heading model), 0.01 rad", "Größe"},
+         {"a # b", std::string(301, 'x'), "tab\there"}},
         {"scenario.length_unit", "dm", {"m", "km", "µm"}, {"", "a b", "m^2", std::string(17, 'm')}},
         {"scenario.poses", "20", {"2", "100000"}, {"1", "0", "-5", "100001", "2.5", "9223372036854775808"}},
         {"model.process", "heading", {"translation"}, {"Heading", "ekf"}},
-        {"features.positions", "0.5 0.5, 0.9 0.8, 0.3 0.4", {"1 2", "-1 -2, 3 4"}, {"1", "1 2, 3", "1 2,", "1 2 3", "2e9 0", "1 inf"}},
+        {"features.positions",
+         "0.5 0.5, 0.9 0.8, 0.3 0.4",
+         {"1 2", "-1 -2, 3 4"},
+         {"1", "1 2, 3", "1 2,", "1 2 3", "2e9 0", "1 inf"}},
         {"features.count", "default", {"1", "64"}, {"0", "65", "-1", "1.5", "all"}},
         {"features.placement", "given", {"box", "ring"}, {"random", "Box"}},
         {"features.extent", "2", {"0.5"}, not_positive},
@@ -63,7 +72,9 @@ const std::vector<KeyCase>& key_cases() {
         {"noise.truncate", "none", {"2", "0.1", "8"}, {"0.09", "8.1", "-2", "never"}},
         {"truth.deformation", "jitter", {"walk"}, {"none"}},
         {"truth.edge_noise", "none", {"independent"}, {"jitter"}},
-        {"edges.graph", "all", {"chain", "none", "0-1", "0-1, 1-2"},
+        {"edges.graph",
+         "all",
+         {"chain", "none", "0-1", "0-1, 1-2"},
          {"1-0", "1-1", "0-1, 0-1", "0-64", "0", "0-", "-1-2", "0-1,", "0-1.5", "some"}},
         {"filter.heading", "1", {"0", "0.5"}, not_a_length},
         {"filter.odometry", "1", {"0", "0.5"}, not_a_length},
@@ -74,14 +85,23 @@ const std::vector<KeyCase>& key_cases() {
         {"filter.gate", "1", {"0.99", "0.5"}, {"0", "1.01", "-1"}},
         {"control.path", "as-features", {"straight", "circle"}, {"static", "features"}},
         {"control.waypoints", "none", {"1 2", "-1 -2, 3 4"}, {"1", "1 2, 3", "1 2,", "2e9 0", "some"}},
-        {"planner.criterion", "trace", {"log_det", "max_eigenvalue", "pose_trace", "pose_log_det", "features_trace"}, {"det", "Trace"}},
+        {"planner.criterion",
+         "trace",
+         {"log_det", "max_eigenvalue", "pose_trace", "pose_log_det", "features_trace"},
+         {"det", "Trace"}},
         {"planner.heading_weight", "1", {"0", "25"}, not_a_length},
         {"planner.speeds", "default", {"1", "5", "100"}, {"0", "101", "-1", "1.5", "none"}},
         {"planner.turns", "default", {"none", "0", "-0.5, 0, 0.5"}, {"3.3", "0, x", "0,,1", "a"}},
         {"planner.horizon", "default", {"1", "8"}, {"0", "9", "-1", "1.5", "none"}},
-        {"arms.controllers", "fixed, greedy", {"fixed", "greedy", "greedy, fixed", "fixed, greedy, horizon", "random, nearest, follow, waypoints"}, {"fixed, fixed", "best", "fixed,"}},
+        {"arms.controllers",
+         "fixed, greedy",
+         {"fixed", "greedy", "greedy, fixed", "fixed, greedy, horizon", "random, nearest, follow, waypoints"},
+         {"fixed, fixed", "best", "fixed,"}},
         {"arms.estimators", "default", {"ekf", "kf"}, {"ukf", "ekf, ekf"}},
-        {"published.trace_P", "", {"fixed.ekf 0.1061", "fixed.ekf 0.1061, greedy.ekf 0.1034"}, {"fixed.ekf", "fixed.ekf x", "fixed.ekf 1 2"}},
+        {"published.trace_P",
+         "",
+         {"fixed.ekf 0.1061", "fixed.ekf 0.1061, greedy.ekf 0.1034"},
+         {"fixed.ekf", "fixed.ekf x", "fixed.ekf 1 2"}},
         {"published.unseen", "", {"fixed.ekf 3"}, {"fixed.ekf", "fixed.ekf inf"}},
         {"published.pose_error", "", {"fixed.ekf 0.1629"}, {"fixed.ekf"}},
     };
@@ -173,7 +193,8 @@ TEST_CASE("scenario: every key refuses what is out of range, naming itself") {
 TEST_CASE("scenario: every key that is no text refuses garbage") {
     for (const KeyCase& one : key_cases()) {
         if (one.name == "scenario.name" || one.name == "scenario.title" || one.name == "scenario.length_unit") continue;
-        for (const char* value : {"garbage", "nan", "1 x", "1;2", "\"1\"", "0x10", "1e400", ";"}) check_refused(one.name, value);
+        for (const char* value : {"garbage", "nan", "1 x", "1;2", "\"1\"", "0x10", "1e400", ";"})
+            check_refused(one.name, value);
         if (!one.name.starts_with("published.")) check_refused(one.name, "");
     }
 }

@@ -89,8 +89,11 @@ TEST_CASE("sensor: ranged noise grows from near to far, is flat below the range 
     CHECK(std::abs(ranged_sigma(sensor, 3.9) - 0.17) < few_ulp);
     for (const double q : {0.05, 0.1, 0.7, 1.9})  // a root of a square is off by an ulp at most
         CHECK(std::abs(sigma_at(sensor, q * q) - ranged_sigma(sensor, q)) < few_ulp);
-    const SensorParameters other = sensor_of({{"sensor.noise", "ranged"}, {"sensor.range_min", "1"}, {"sensor.range_max", "3"},
-                                              {"sensor.sigma_near", "0.2"}, {"sensor.sigma_far", "0.6"}});
+    const SensorParameters other = sensor_of({{"sensor.noise", "ranged"},
+                                              {"sensor.range_min", "1"},
+                                              {"sensor.range_max", "3"},
+                                              {"sensor.sigma_near", "0.2"},
+                                              {"sensor.sigma_far", "0.6"}});
     CHECK(std::abs(ranged_sigma(other, 2.5) - 0.5) < few_ulp);
 }
 
@@ -170,7 +173,8 @@ TEST_CASE("sensor: a feature in range is seen with the probability of detection,
 
 TEST_CASE("sensor: a share of the features in range is detected") {
     // 38000 sightings: the share errs by 5 of its standard deviations with 6e-7.
-    const DeformableSettings scenario = scenario_with({{"sensor.detection", "0.3"}, {"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
+    const DeformableSettings scenario =
+        scenario_with({{"sensor.detection", "0.3"}, {"sensor.range_min", "0"}, {"sensor.range_max", "inf"}});
     double seen = 0, looks = 0;
     for (std::uint64_t trial = 0; trial < 667; ++trial) {
         const Run run = run_arm(scenario, Controller::fixed, keyed_noise(scenario, 8, trial));

@@ -14,7 +14,9 @@ namespace {
 
 constexpr double completed = 0, diverged = 1, not_positive_definite = 2, non_finite = 3;
 
-Run run_with(const DeformableSettings& scenario, const AnyNoise& noise) { return run_arm(scenario, Controller::fixed, noise); }
+Run run_with(const DeformableSettings& scenario, const AnyNoise& noise) {
+    return run_arm(scenario, Controller::fixed, noise);
+}
 
 void check_status(const Run& run, double status, double pose) {
     CHECK(run.columns[column_status] == status);
@@ -22,7 +24,8 @@ void check_status(const Run& run, double status, double pose) {
 }
 
 /// The outcome of the step evaluation of one belief: only what note_trouble checks.
-Outcome<double> trouble_with(const Belief<double, 9>& belief, double squared_errors = 1, bool positive_definite = true) {
+Outcome<double> trouble_with(const Belief<double, 9>& belief, double squared_errors = 1,
+                             bool positive_definite = true) {
     Outcome<double> outcome;
     note_trouble(belief, 9, squared_errors, positive_definite, 4, outcome);
     return outcome;
@@ -34,7 +37,8 @@ const Settings lost{{"noise.odometry", "1e7"}};
 }  // namespace
 
 TEST_CASE("status: numbers and names of the statuses") {
-    CHECK(status_names() == std::vector<std::string>{"completed", "diverged", "covariance_not_positive_definite", "non_finite"});
+    CHECK(status_names() ==
+          std::vector<std::string>{"completed", "diverged", "covariance_not_positive_definite", "non_finite"});
     CHECK_FALSE(failed(Status::completed));
     CHECK_FALSE(failed(Status::diverged));
     CHECK(failed(Status::covariance_not_positive_definite));
@@ -79,7 +83,8 @@ TEST_CASE("status: a heading that is lost by 10^4 times the sensor's sigma does 
 
 TEST_CASE("status: a feature whose truth is no number is not seen, and the trial fails all the same") {
     const DeformableSettings scenario = scenario_with({{"edges.graph", "none"}});
-    const Run run = run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::deformation, 5, 1, {not_a_number, 0}));
+    const Run run =
+        run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::deformation, 5, 1, {not_a_number, 0}));
     check_status(run, non_finite, 5);
     CHECK_FALSE(run.steps[5].seen[1]);
     CHECK(run.steps.back().mean.allFinite());  // the filter never knew
@@ -174,8 +179,10 @@ TEST_CASE("status: the short check finds trouble wherever the long one does") {
 
 TEST_CASE("status: an innovation covariance that is not positive definite is noticed") {
     // With P at 1e16 and N at 1e-6, S of a sighting after the first is all rounding; P itself recovers.
-    const DeformableSettings scenario = scenario_with({{"model.process", "translation"}, {"noise.odometry", "1e8"}, {"sensor.sigma", "1e-3"},
-                                             {"sensor.range_max", "inf"}});
+    const DeformableSettings scenario = scenario_with({{"model.process", "translation"},
+                                                       {"noise.odometry", "1e8"},
+                                                       {"sensor.sigma", "1e-3"},
+                                                       {"sensor.range_max", "inf"}});
     const Run run = run_with(scenario, keyed_noise(scenario, 30, 0));
     CHECK(smallest_eigenvalue(run.steps[1].covariance) > 0);
     check_status(run, not_positive_definite, 1);
@@ -183,8 +190,10 @@ TEST_CASE("status: an innovation covariance that is not positive definite is not
 
 TEST_CASE("status: a covariance that is not positive definite has its own status") {
     // x and P are finite here; the NEES is not, and must not be taken for the trouble.
-    const DeformableSettings scenario = scenario_with({{"noise.odometry", "1e7"}, {"sensor.sigma", "1e-3"}, {"sensor.range_max", "inf"},
-                                             {"model.process", "translation"}});
+    const DeformableSettings scenario = scenario_with({{"noise.odometry", "1e7"},
+                                                       {"sensor.sigma", "1e-3"},
+                                                       {"sensor.range_max", "inf"},
+                                                       {"model.process", "translation"}});
     const Run run = run_with(scenario, keyed_noise(scenario, 30, 0));
     REQUIRE(run.steps[1].covariance.allFinite());
     REQUIRE(smallest_eigenvalue(run.steps[1].covariance) < 0);
@@ -193,7 +202,8 @@ TEST_CASE("status: a covariance that is not positive definite has its own status
 
 TEST_CASE("status: a failed trial keeps its status and pose; its other columns are filled") {
     const DeformableSettings scenario = scenario_with({{"sensor.range_max", "inf"}});
-    const Run run = run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::measurement, 5, 1, {not_a_number, 0}));
+    const Run run =
+        run_with(scenario, with_draw(keyed_noise(scenario, 60, 0), Source::measurement, 5, 1, {not_a_number, 0}));
     std::vector<double> columns = run.columns;
     CHECK(fill_failed(trial_columns(scenario), columns.data()));
     for (const int column : {column_trace_P, column_pose_error, column_nees_ratio, column_nis_ratio})

@@ -1,11 +1,12 @@
-// A step that is taken in N equal parts, each with 1/N of the variances and of the moves [docs/model.md, Truth, Filter].
+// A step that is taken in N equal parts, each with 1/N of the variances and of the moves [docs/model.md, Truth,
+// Filter].
 //
 // In the translation model F = I, so that N parts are exactly the step. In the heading model they are where turn and
 // heading noise come with the last part: the robot moves by R(theta) v at the heading with which it leaves a pose, and
 // the fresh noise of the heading moves nothing in its own step. Heading noise in every part is carried by the parts
 // after it, which adds to P what is given below; a turn in every part leads elsewhere, along an arc. Where the
-// deformation walks, the truth is split likewise. Jitter has no parts: each pose draws it anew with the whole sigma_def,
-// while the filter, whose Q lets it accumulate, splits sigma_def^2 as well.
+// deformation walks, the truth is split likewise. Jitter has no parts: each pose draws it anew with the whole
+// sigma_def, while the filter, whose Q lets it accumulate, splits sigma_def^2 as well.
 
 #include "catch.hpp"
 #include "filter_samples.hpp"

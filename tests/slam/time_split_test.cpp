@@ -1,5 +1,6 @@
 // Time that is split: a trial that goes on from one of its poses is the whole trial. All that it needs there is the
-// truth, the belief, the estimator's own state, and the draws of the poses to come. (step_parts_test.cpp splits a step.)
+// truth, the belief, the estimator's own state, and the draws of the poses to come. (step_parts_test.cpp splits a
+// step.)
 
 #include "catch.hpp"
 #include "continued.hpp"

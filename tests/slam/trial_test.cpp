@@ -133,8 +133,10 @@ TEST_CASE("trial: columns are what the page of the model says, from the steps") 
 
 TEST_CASE("trial: pose 0 counts in the pose error and in nothing else") {
     // Features 100 away are not seen at any pose; the robot starts 0.3 off, and its belief with it.
-    const DeformableSettings scenario = scenario_with({{"features.positions", "100 0, 0 100"}, {"noise.initial_position", "0.3"},
-                                             {"edges.graph", "none"}, {"scenario.poses", "2"}});
+    const DeformableSettings scenario = scenario_with({{"features.positions", "100 0, 0 100"},
+                                                       {"noise.initial_position", "0.3"},
+                                                       {"edges.graph", "none"},
+                                                       {"scenario.poses", "2"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_position, 0, 0, {1, 2});
     const Run run = run_arm(scenario, Controller::fixed, noise);
     CHECK(run.columns[column_unseen] == 2);
@@ -154,7 +156,8 @@ TEST_CASE("trial: series of a step are what their names say") {
             // Tolerances: a few roundings, and for the squared errors another factorisation, cond(P) below 1e4.
             for (const ComponentGroup& block : state_groups(scenario)) {
                 const std::string name = block.name == "all" ? "nees" : "nees_" + block.name;
-                CHECK(run.figure(name, k) == Approx(squared_error(step, block.first, block.count, 2.25)).epsilon(1e-11));
+                CHECK(run.figure(name, k) ==
+                      Approx(squared_error(step, block.first, block.count, 2.25)).epsilon(1e-11));
             }
             int seen = 0;
             for (const bool one : step.seen) seen += one;
@@ -173,12 +176,13 @@ TEST_CASE("trial: series of a step are what their names say") {
 
 TEST_CASE("trial: a heading error is evaluated the short way round") {
     // The robot turns by 3.1 a step: after two steps truth and belief have passed pi, with different windings.
-    const DeformableSettings scenario = scenario_with({{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"},
-                                             {"sensor.range_max", "0.11"}});
+    const DeformableSettings scenario = scenario_with(
+        {{"features.path", "circle"}, {"features.turn", "3.1"}, {"noise.heading", "1"}, {"sensor.range_max", "0.11"}});
     const AnyNoise noise = with_draw(silent_noise(), Source::odometry_heading, 1, 0, {2 * M_PI + 0.5, 0});
     const Run run = run_arm(scenario, Controller::fixed, noise);
     CHECK(run.steps[1].mean[0] - run.steps[1].truth[0] < -6);
     // The difference of two headings near 9 has lost a digit.
-    CHECK(run.figure("standardised_error_theta", 1) == Approx(-0.5 / std::sqrt(run.steps[1].covariance(0, 0))).epsilon(1e-12));
+    CHECK(run.figure("standardised_error_theta", 1) ==
+          Approx(-0.5 / std::sqrt(run.steps[1].covariance(0, 0))).epsilon(1e-12));
     CHECK(run.figure("nees_heading", 1) == Approx(0.25 / run.steps[1].covariance(0, 0)).epsilon(1e-12));
 }

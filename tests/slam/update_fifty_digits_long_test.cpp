@@ -1,5 +1,5 @@
-// What rounding leaves of one step of the filter, prediction and update, as the conditions of P and S grow to 10^20, beside
-// the joint equations in 50 digits [docs/model.md, Filter].
+// What rounding leaves of one step of the filter, prediction and update, as the conditions of P and S grow to 10^20,
+// beside the joint equations in 50 digits [docs/model.md, Filter].
 
 #include "catch.hpp"
 #include "fifty_digits_filter.hpp"
@@ -80,8 +80,8 @@ TEST_CASE("fifty digits: a step of the filter loses what the condition takes, an
     double closest = 0;
     const auto any = [](std::mt19937_64& random, double condition) { return conditioned(random, n, condition); };
     each_condition(any, [&](const Step& step) {
-        // Each row changes P by n products that are rounded, and errors of the rows hardly add. The bound is one of small
-        // errors.
+        // Each row changes P by n products that are rounded, and errors of the rows hardly add. The bound is one of
+        // small errors.
         const double error = step.error(), bound = n * epsilon * step.condition();
         CAPTURE(error, bound);
         if (bound > 1) return;

@@ -108,7 +108,8 @@ TEST_CASE("scenario: what depends on the process and the path is filled in") {
     CHECK(scenario_with({{"features.path", "circle"}, {"control.path", "straight"}}).planner.turns->size() == 1);
     CHECK(scenario_with({{"control.path", "circle"}}).planner.turns->size() == 6);
     CHECK(scenario_with({{"features.path", "circle"}, {"features.turn", "0.1"}}).planner.turns == circle.planner.turns);
-    const DeformableSettings translation = scenario_with({{"model.process", "translation"}, {"features.path", "circle"}});
+    const DeformableSettings translation =
+        scenario_with({{"model.process", "translation"}, {"features.path", "circle"}});
     CHECK(translation.planner.speeds == 5);
     CHECK(translation.planner.turns->empty());
     CHECK(translation.arms.estimators == std::vector{Estimator::kf});
@@ -150,7 +151,8 @@ TEST_CASE("scenario: graphs have their edges in order") {
 TEST_CASE("scenario: the state has the pose's and the features' components") {
     CHECK(state_size(scenario_with({})) == 9);
     CHECK(pose_size(scenario_with({})) == 3);
-    const DeformableSettings translation = scenario_with({{"model.process", "translation"}, {"features.positions", "1 1"}});
+    const DeformableSettings translation =
+        scenario_with({{"model.process", "translation"}, {"features.positions", "1 1"}});
     CHECK(state_size(translation) == 4);
     CHECK(pose_size(translation) == 2);
 }
@@ -170,7 +172,8 @@ TEST_CASE("scenario: a refusal is one line, whatever was given") {
     std::vector<std::string> torn;
     for (const DeformableKey& key : scenario_keys()) {
         DeformableSettings scenario;
-        if (refusal([&] { set_key(scenario, key.name, "1\n2"); }).find('\n') != std::string::npos) torn.push_back(key.name);
+        if (refusal([&] { set_key(scenario, key.name, "1\n2"); }).find('\n') != std::string::npos)
+            torn.push_back(key.name);
     }
     CHECK(torn == std::vector<std::string>{});
 }

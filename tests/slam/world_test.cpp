@@ -88,7 +88,8 @@ TEST_CASE("world: the walk leaving a pose and the deformation at a pose move the
         const Point start = problem.scenario().features.positions[static_cast<std::size_t>(j)];
         const double walked = 0.5 * ((200 + 0.1 * j) + (201 + 0.1 * j)), deformed = 0.25 * (302 + 0.1 * j);
         CHECK(distance(truth.centre[j], start.x + 4 + walked, start.y - 2 * walked) < rounding);
-        CHECK(distance(truth.feature[j], start.x + 4 + walked + deformed, start.y - 2 * (walked + deformed)) < rounding);
+        CHECK(distance(truth.feature[j], start.x + 4 + walked + deformed, start.y - 2 * (walked + deformed)) <
+              rounding);
     }
 }
 
@@ -132,7 +133,8 @@ TEST_CASE("world: paths of the features") {
     CHECK(at_end("static", "0.3").norm() == 0);
     // A polygon of equal steps: from its chord of 19 turns, at the mean direction delta/2 + 9 delta.
     const double delta = 0.3, chord = 1.5 * std::sin(19 * delta / 2) / std::sin(delta / 2), direction = 9.5 * delta;
-    CHECK((at_end("circle", "0.3") - chord * Eigen::Vector2d(std::cos(direction), std::sin(direction))).norm() < rounding);
+    CHECK((at_end("circle", "0.3") - chord * Eigen::Vector2d(std::cos(direction), std::sin(direction))).norm() <
+          rounding);
 }
 
 TEST_CASE("world: sway is A (sin psi, cos psi) less its value at pose 0, and the filter knows its increment") {
@@ -158,8 +160,10 @@ TEST_CASE("world: sway is A (sin psi, cos psi) less its value at pose 0, and the
 TEST_CASE("world: moments of the truth at the last pose") {
     // 4000 trials, 3 features, 2 axes: per case six scores beyond 5 with 4e-6 (features of a trial are independent).
     for (const char* deformation : {"jitter", "walk"}) {
-        const DeformableSettings scenario = scenario_with({{"truth.deformation", deformation}, {"noise.heading", "0.05"},
-                                                 {"noise.initial_heading", "0.2"}, {"noise.initial_position", "0.3"}});
+        const DeformableSettings scenario = scenario_with({{"truth.deformation", deformation},
+                                                           {"noise.heading", "0.05"},
+                                                           {"noise.initial_heading", "0.2"},
+                                                           {"noise.initial_position", "0.3"}});
         const Problem problem(scenario);
         Moments feature, heading, position;
         for (std::uint64_t trial = 0; trial < 4000; ++trial) {

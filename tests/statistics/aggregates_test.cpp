@@ -81,8 +81,10 @@ void check_totals_of(const ScenarioResults& aggregates, const ScenarioResults& t
                                           differences = paired_differences(own, other);
                 const DifferenceTotals& totals = arm.differences[b][c];
                 check_moments(totals.difference, differences);
-                CHECK(totals.below == std::count_if(differences.begin(), differences.end(), [](double d) { return d < 0; }));
-                CHECK(totals.above == std::count_if(differences.begin(), differences.end(), [](double d) { return d > 0; }));
+                CHECK(totals.below ==
+                      std::count_if(differences.begin(), differences.end(), [](double d) { return d < 0; }));
+                CHECK(totals.above ==
+                      std::count_if(differences.begin(), differences.end(), [](double d) { return d > 0; }));
             }
         }
     }
@@ -96,8 +98,9 @@ Block made_up_block(const std::vector<Column>& columns) {
         ArmBlock& arm = block.arms[a];
         for (std::size_t c = 0; c < columns.size(); ++c)
             for (std::size_t i = 0; i < trials; ++i)
-                arm.columns.push_back(columns[c].type == ColumnType::real ? std::sqrt(static_cast<double>(3 + a + c + 7 * i))
-                                                                          : static_cast<double>(a + i));
+                arm.columns.push_back(columns[c].type == ColumnType::real
+                                          ? std::sqrt(static_cast<double>(3 + a + c + 7 * i))
+                                          : static_cast<double>(a + i));
     }
     const auto set = [&](std::size_t arm, ColumnIndex column, std::vector<double> values) {
         std::copy(values.begin(), values.end(), block.arms[arm].columns.begin() + column * static_cast<int>(trials));
@@ -119,7 +122,8 @@ TEST_CASE("aggregates: the sums of a block are those that are added one value at
         for (int i = 0; i < 512; ++i) {
             const int widest = repeat % 2 == 0 ? 4 : 2040;
             const double mantissa = (static_cast<double>(random()) - 0x1p30) * 0x1p22 + static_cast<double>(random()),
-                         value = std::ldexp(mantissa, static_cast<int>(random() % static_cast<unsigned>(widest)) - 1072);
+                         value =
+                             std::ldexp(mantissa, static_cast<int>(random() % static_cast<unsigned>(widest)) - 1072);
             if (std::abs(value) > 1e290) continue;
             fast.add(value);
             slow.add(value);

@@ -74,7 +74,8 @@ TEST_CASE("paired: arms that never differ tie, and no test rejects") {
 
 TEST_CASE("paired: values that are both infinite are no pair, and the ranks come to an end") {
     const double infinite = std::numeric_limits<double>::infinity();
-    const PairedComparison comparison = compare_paired({infinite, 1, -infinite, 2}, {infinite, 3, -infinite, 5}, 1, "x");
+    const PairedComparison comparison =
+        compare_paired({infinite, 1, -infinite, 2}, {infinite, 3, -infinite, 5}, 1, "x");
     CHECK(comparison.pairs == 2);
     CHECK(comparison.difference.mean == -2.5);
     CHECK(comparison.wins_a == 1);

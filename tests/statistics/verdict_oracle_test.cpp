@@ -1,5 +1,5 @@
-// Bounds, directions, bias, advice, tails and lags against their slow version, tests/oracle/verdict_oracle.py. Its values
-// are stored: python3 tests/reference/make_verdict.py > tests/reference/verdict.json
+// Bounds, directions, bias, advice, tails and lags against their slow version, tests/oracle/verdict_oracle.py. Its
+// values are stored: python3 tests/reference/make_verdict.py > tests/reference/verdict.json
 
 #include <map>
 

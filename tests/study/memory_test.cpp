@@ -92,7 +92,8 @@ TEST_CASE("memory: totals that are not in memory are found by a run that was sto
 TEST_CASE("memory: totals that stay in a results file are those that are read from it") {
     const TemporaryFolder folder;
     run_to_end(folder / "x.h5", some());
-    const Study kept = read_results(folder / "x.h5", 0).study, unseen = read_results_without_totals(folder / "x.h5").study;
+    const Study kept = read_results(folder / "x.h5", 0).study,
+                unseen = read_results_without_totals(folder / "x.h5").study;
     CHECK(in_memory(kept) == 0);
     CHECK(in_memory(unseen) == 0);
     CHECK(in_memory(results_in(folder / "x.h5")) == 5);

@@ -11,7 +11,8 @@ using namespace credence::test;
 
 namespace {
 
-const std::string first = release_name("0.1.0", "aaaaaaaaaaaa"), second = release_name("0.1.7", "v0.1.7-3-gbbbbbbbbbbbb-dirty"),
+const std::string first = release_name("0.1.0", "aaaaaaaaaaaa"),
+                  second = release_name("0.1.7", "v0.1.7-3-gbbbbbbbbbbbb-dirty"),
                   foreign = release_name("0.2.0", "cccccccccccc");
 
 Asked by(const std::string& release, std::int64_t trials, Shard shard = {}) {

@@ -98,9 +98,10 @@ TEST_CASE("results: totals are those of the trials that did not fail") {
     const ScenarioResults results = results_of(scenario, 300);
     double sum = 0;
     std::int64_t counted = 0;
-    const std::size_t trace = static_cast<std::size_t>(
-        std::find_if(results.all_series.begin(), results.all_series.end(), [](const Series& f) { return f.name == "trace_P_step"; }) -
-        results.all_series.begin());
+    const std::size_t trace =
+        static_cast<std::size_t>(std::find_if(results.all_series.begin(), results.all_series.end(),
+                                              [](const Series& f) { return f.name == "trace_P_step"; }) -
+                                 results.all_series.begin());
     for (const double value : results.arms[0].columns[column_trace_P]) {
         if (value != value) continue;
         sum += value;
@@ -126,7 +127,8 @@ TEST_CASE("results: taking everything back leaves nothing") {
     const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}});
     const Problem problem(scenario);
     ScenarioResults results = results_of(scenario, 300);
-    for (const std::int64_t index : {0, 1}) remove_totals(results, run_block(problem, seed, index, trials_in_block(300, index)));
+    for (const std::int64_t index : {0, 1})
+        remove_totals(results, run_block(problem, seed, index, trials_in_block(300, index)));
     CHECK(same_bits(parts_of(results), parts_of(empty_results(scenario))));
 }
 

@@ -112,7 +112,8 @@ TEST_CASE("stopping: the engine's own intervals cover, where the truth is known 
         Study study = new_study({resolved(matched)}, seed);
         const InterimAnalysis analysis = run_until(study, rule, {0, 1, {}});
         REQUIRE(analysis.met);
-        for (std::size_t g = 0; g < 2; ++g) missed[g] += std::abs(analysis.states[g].mean - 1) > analysis.states[g].half_width;
+        for (std::size_t g = 0; g < 2; ++g)
+            missed[g] += std::abs(analysis.states[g].mean - 1) > analysis.states[g].half_width;
         beyond_the_first += analysis.number > 1;
     }
     CAPTURE(missed[0], missed[1], beyond_the_first);

@@ -157,8 +157,9 @@ TEST_CASE("stopping: a study stops at the first analysis that is precise enough,
         DeformableSettings scenario = small_scenarios()[0];
         scenario.arms.controllers = {Controller::fixed};
         Study study = new_study({scenario}, 1);
-        const InterimAnalysis last = run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
-                                    [&](const InterimAnalysis& analysis) { analyses.push_back(analysis.trials); });
+        const InterimAnalysis last =
+            run_until(study, {goals({"trace_P=" + std::to_string(width)}), 2000, 256}, {0, 2, {}},
+                      [&](const InterimAnalysis& analysis) { analyses.push_back(analysis.trials); });
         CHECK(study.scenarios[0].trials == last.trials);  // no trials beyond the analysis
         CHECK(study.complete);
         return last;

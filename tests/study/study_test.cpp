@@ -40,7 +40,8 @@ TEST_CASE("study: root seeds s and s + 1 share no trial") {
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
         const ScenarioResults results = small_study(seed, 512, 2).scenarios.front();
         const auto& columns = results.arms.front().columns;
-        for (std::size_t i = 0; i < 512; ++i) ends.emplace(columns[column_pose_error][i], columns[column_nees_ratio][i]);
+        for (std::size_t i = 0; i < 512; ++i)
+            ends.emplace(columns[column_pose_error][i], columns[column_nees_ratio][i]);
     }
     CHECK(ends.size() == 3 * 512);
 }
@@ -95,6 +96,7 @@ TEST_CASE("study: the footprint grows by what a trial keeps") {
     CHECK(many.file - few.file == 1000 * 4 * (8 + 40 + 8 + 1));
     // A detailed one keeps 7 steps of NEES and n errors too, in single precision, and moments of 8 or 7 groups.
     const Footprint none = footprint(study, 1000, 1), more = footprint(study, 2000, 1);
-    CHECK(more.file - none.file == 1000 * (4 * 57 + 2 * 7 * 4 * (10 + 9) + 2 * 8 * (moment_count(9, 8) + moment_count(8, 6))));
+    CHECK(more.file - none.file ==
+          1000 * (4 * 57 + 2 * 7 * 4 * (10 + 9) + 2 * 8 * (moment_count(9, 8) + moment_count(8, 6))));
     CHECK(many.memory > few.memory);
 }

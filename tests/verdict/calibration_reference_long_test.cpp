@@ -101,11 +101,13 @@ TEST_CASE("calibration: NIS of rows that vary has their number of degrees, and w
 TEST_CASE("calibration: the correlation of innovations has Student's interval by the spread of the trials") {
     ScenarioResults made = results(1);
     ProductTotals& products = made.arms.front().products;
-    for (std::size_t i = 0; i < lags; ++i) products.square_sum[i] = ExactSum::from_parts({2.0 * static_cast<double>(products.count[i])});
+    for (std::size_t i = 0; i < lags; ++i)
+        products.square_sum[i] = ExactSum::from_parts({2.0 * static_cast<double>(products.count[i])});
     const Evidence found = evidence_of(made, made.arms.front());
     for (std::size_t i = 0; i < lags; ++i) {
         const double N = trials, p = products.sum[i].rounded(), c = static_cast<double>(products.count[i]);
-        const double sd = std::sqrt((2 * c - p * p / N) / (N - 1)), half = sd / std::sqrt(N) / (c / N) / found.nis.front().ratio;
+        const double sd = std::sqrt((2 * c - p * p / N) / (N - 1)),
+                     half = sd / std::sqrt(N) / (c / N) / found.nis.front().ratio;
         check_agrees(found.whiteness[i].bound, t_quantile(0.05, N - 1) * half);
         check_agrees(found.whiteness[i].simultaneous_bound, t_quantile(0.05 / lags, N - 1) * half);
     }
@@ -150,7 +152,8 @@ TEST_CASE("calibration: NumPy's draws are called what they are, with their inter
         CHECK(finding.when == "over all steps");
         check_agrees(finding.value * claimed, number(whole["run"]["mean"]));
         const double level = level_of_group(levels::run, 0, static_cast<int>(expected()["groups"].size())) / 2,
-                     mean = number(whole["run"]["mean"]), half = t_quantile(2 * level, trials - 1.0) * number(whole["run"]["se"]);
+                     mean = number(whole["run"]["mean"]),
+                     half = t_quantile(2 * level, trials - 1.0) * number(whole["run"]["se"]);
         check_agrees(finding.interval.low * claimed, mean - half);
         // Trials of three sigma, as rare as can be where none was seen.
         check_agrees(finding.interval.high * claimed, mean + half + (1 - std::pow(level, 1.0 / trials)) * 8 * mean);

@@ -77,7 +77,8 @@ TEST_CASE("consistency: innovations of the wrong size are noted where the state 
     const Consistency verdict = judge(evidence, 0.05);
     CHECK(verdict.verdict == Verdict::consistent);
     REQUIRE(verdict.cautions.size() == 1);
-    CHECK(sentence(verdict.cautions.front()) == "optimistic: innovations (all), over all steps, NIS/m 3.9 (3.7 to 4.1)");
+    CHECK(sentence(verdict.cautions.front()) ==
+          "optimistic: innovations (all), over all steps, NIS/m 3.9 (3.7 to 4.1)");
     evidence.nis = {nis_of(1.05, 0.02)};  // beyond the margin, but not for sure
     CHECK(judge(evidence, 0.05).cautions.empty());
 }

@@ -143,7 +143,8 @@ TEST_CASE("consistency: a dropped correlation, which mean NEES cannot see, is fo
                size = static_cast<std::size_t>(results.moment_count()), place = groups + n + 1;  // of e1 e0, row 1 of S
     const auto at = [&](std::size_t trial, std::size_t entry) -> double& { return arm.moments[trial * size + entry]; };
     for (std::size_t trial = 0; trial < 600; ++trial)
-        at(trial, place) += 0.5 * 0.5 * (at(trial, place - 1) + at(trial, place + 1));  // S_10 by 0.5 of the mean variance
+        // S_10 by 0.5 of the mean variance.
+        at(trial, place) += 0.5 * 0.5 * (at(trial, place - 1) + at(trial, place + 1));
     const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     CHECK(verdict_name(c.verdict) == "mixed");
     const auto direction = std::find_if(c.findings.begin(), c.findings.end(), [](const Finding& f) {
@@ -191,9 +192,9 @@ TEST_CASE("consistency: of failed trials exactly the share is not more, whatever
 TEST_CASE("consistency: trials that are left out and trials that diverged count alike as failed") {
     Evidence evidence;
     evidence.all_trials = 200;
-    for (const auto& [left_out, diverged, verdict] : {std::tuple(2, 0, Verdict::undecided), std::tuple(0, 2, Verdict::undecided),
-                                                      std::tuple(3, 0, Verdict::failed), std::tuple(0, 3, Verdict::failed),
-                                                      std::tuple(2, 1, Verdict::failed)}) {
+    for (const auto& [left_out, diverged, verdict] :
+         {std::tuple(2, 0, Verdict::undecided), std::tuple(0, 2, Verdict::undecided), std::tuple(3, 0, Verdict::failed),
+          std::tuple(0, 3, Verdict::failed), std::tuple(2, 1, Verdict::failed)}) {
         CAPTURE(left_out, diverged);
         evidence.left_out = left_out;
         evidence.diverged = diverged;

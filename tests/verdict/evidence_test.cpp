@@ -31,7 +31,9 @@ std::vector<Settings> worlds() {
     return worlds;
 }
 
-double quadratic(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) { return e.size() == 0 ? 0 : e.dot(P.ldlt().solve(e)); }
+double quadratic(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) {
+    return e.size() == 0 ? 0 : e.dot(P.ldlt().solve(e));
+}
 
 /// The whitened innovation with a place for every row, NaN where it was not observed.
 Eigen::VectorXd whitened_rows(const oracle::Step& step, Eigen::Index features, Eigen::Index edges) {
@@ -83,9 +85,12 @@ TEST_CASE("evidence: NIS of features and of edges, squared errors and variances 
                                rest = step.innovation.size() - seen;
             // Conditioning of S as in the tests of the filter: 1e-9 leaves room for it.
             CHECK(run.figure("nis_features", k) ==
-                  Approx(quadratic(step.innovation.head(seen), step.innovation_covariance.topLeftCorner(seen, seen))).epsilon(1e-9));
-            CHECK(run.figure("nis_edges", k) ==
-                  Approx(quadratic(step.innovation.tail(rest), step.innovation_covariance.bottomRightCorner(rest, rest))).epsilon(1e-9));
+                  Approx(quadratic(step.innovation.head(seen), step.innovation_covariance.topLeftCorner(seen, seen)))
+                      .epsilon(1e-9));
+            CHECK(
+                run.figure("nis_edges", k) ==
+                Approx(quadratic(step.innovation.tail(rest), step.innovation_covariance.bottomRightCorner(rest, rest)))
+                    .epsilon(1e-9));
             for (const ComponentGroup& block : state_groups(scenario)) {
                 const auto e = (step.mean - step.truth).segment(block.first, block.count);
                 const auto P = step.covariance.diagonal().segment(block.first, block.count);
@@ -150,8 +155,11 @@ TEST_CASE("evidence: later blocks have no details, and many edges are not whiten
 
 TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
     // Near singular: some trials fail.
-    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"}, {"noise.heading", "0.9"}, {"sensor.sigma", "1e-9"},
-                                             {"noise.odometry", "1e-7"}, {"filter.edges", "1e-7"}});
+    const DeformableSettings scenario = scenario_with({{"arms.controllers", "fixed"},
+                                                       {"noise.heading", "0.9"},
+                                                       {"sensor.sigma", "1e-9"},
+                                                       {"noise.odometry", "1e-7"},
+                                                       {"filter.edges", "1e-7"}});
     for (const DeformableSettings& world : {scenario, scenario_with({{"arms.controllers", "fixed"}})}) {
         ScenarioResults results = empty_results(world);
         extend(results, 300);
@@ -173,17 +181,22 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
                     const double value = run.figures(static_cast<Eigen::Index>(b), k);
                     const boost::math::chi_squared distribution(state_groups(world)[b].count);
                     const double share = boost::math::cdf(distribution, std::min(value, 1e6));
-                    for (Eigen::Index level = 0; level < 4; ++level) covered[b](k, level) += share < coverage_levels[level];
-                    if (b == 0) ++cells(k, std::min<Eigen::Index>(distribution_cells - 1, static_cast<Eigen::Index>(share * distribution_cells)));
+                    for (Eigen::Index level = 0; level < 4; ++level)
+                        covered[b](k, level) += share < coverage_levels[level];
+                    if (b == 0)
+                        ++cells(k, std::min<Eigen::Index>(distribution_cells - 1,
+                                                          static_cast<Eigen::Index>(share * distribution_cells)));
                 }
         }
         for (std::size_t b = 0; b < covered.size(); ++b)
             for (Eigen::Index k = 0; k < steps; ++k)
                 for (Eigen::Index level = 0; level < 4; ++level)
-                    CHECK(static_cast<double>(arm.totals[b].covered[static_cast<std::size_t>(4 * k + level)]) == covered[b](k, level));
+                    CHECK(static_cast<double>(arm.totals[b].covered[static_cast<std::size_t>(4 * k + level)]) ==
+                          covered[b](k, level));
         for (Eigen::Index k = 0; k < steps; ++k)
             for (Eigen::Index cell = 0; cell < distribution_cells; ++cell)
-                if (static_cast<double>(arm.cells[static_cast<std::size_t>(k * distribution_cells + cell)]) != cells(k, cell))
+                if (static_cast<double>(arm.cells[static_cast<std::size_t>(k * distribution_cells + cell)]) !=
+                    cells(k, cell))
                     FAIL_CHECK("cell " << cell << " of step " << k + 1);
     }
 }

@@ -28,7 +28,8 @@ struct Values {
 
     Values() {
         Normals normals(7);
-        for (std::size_t i = 0; i < trials * steps * n; ++i) error.push_back(normals()), innovation.push_back(normals());
+        for (std::size_t i = 0; i < trials * steps * n; ++i)
+            error.push_back(normals()), innovation.push_back(normals());
         for (std::size_t i = 0; i < trials * steps; ++i) covariance.insert(covariance.end(), {1, 0, 0, 1});
         innovation_covariance = covariance;
     }
@@ -37,7 +38,8 @@ struct Values {
             for (const char* name : {"error", "innovation"})
                 replace<double>(root, name, {trials, steps, n}, *(name[0] == 'e' ? &error : &innovation));
             for (const char* name : {"covariance", "innovation_covariance"})
-                replace<double>(root, name, {trials, steps, n, n}, *(name[0] == 'c' ? &covariance : &innovation_covariance));
+                replace<double>(root, name, {trials, steps, n, n},
+                                *(name[0] == 'c' ? &covariance : &innovation_covariance));
             if (!declared.empty())
                 hdf5::write_dataset(root, "steps", hdf5::type_of<std::int32_t>(), declared.data(), {trials}, {"", ""});
         });
@@ -73,17 +75,37 @@ const std::vector<FailingTrial> failing{
     {"error NaN in one component", [](Values& v, std::size_t t) { v.error[vector_at(t, 3)] = nan; }},
     {"error infinite", [](Values& v, std::size_t t) { v.error[vector_at(t, 0)] = -infinite; }},
     {"covariance NaN", [](Values& v, std::size_t t) { fill(v.covariance, matrix_at(t, 2), n * n, nan); }},
-    {"covariance NaN to the end", [](Values& v, std::size_t t) { fill(v.covariance, matrix_at(t, 2), (steps - 2) * n * n, nan); }},
+    {"covariance NaN to the end",
+     [](Values& v, std::size_t t) { fill(v.covariance, matrix_at(t, 2), (steps - 2) * n * n, nan); }},
     {"covariance infinite", [](Values& v, std::size_t t) { v.covariance[matrix_at(t, 3)] = infinite; }},
-    {"covariance singular", [](Values& v, std::size_t t) { set_matrix(v.covariance, t, {1, 1, 1, 1}); }},
-    {"covariance 0", [](Values& v, std::size_t t) { set_matrix(v.covariance, t, {0, 0, 0, 0}); }},
-    {"covariance indefinite", [](Values& v, std::size_t t) { set_matrix(v.covariance, t, {1, 2, 2, 1}); }},
-    {"covariance negative", [](Values& v, std::size_t t) { set_matrix(v.covariance, t, {-1, 0, 0, -1}); }},
+    {"covariance singular",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.covariance, t, {1, 1, 1, 1});
+     }},
+    {"covariance 0",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.covariance, t, {0, 0, 0, 0});
+     }},
+    {"covariance indefinite",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.covariance, t, {1, 2, 2, 1});
+     }},
+    {"covariance negative",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.covariance, t, {-1, 0, 0, -1});
+     }},
     {"innovation infinite", [](Values& v, std::size_t t) { v.innovation[vector_at(t, 1)] = infinite; }},
     {"S NaN", [](Values& v, std::size_t t) { v.innovation_covariance[matrix_at(t, 1)] = nan; }},
-    {"S singular", [](Values& v, std::size_t t) { set_matrix(v.innovation_covariance, t, {1, 1, 1, 1}); }},
-    {"S negative", [](Values& v, std::size_t t) { set_matrix(v.innovation_covariance, t, {-1, 0, 0, -1}); }},
-    {"diverged, and P with it", [](Values& v, std::size_t t) {
+    {"S singular",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.innovation_covariance, t, {1, 1, 1, 1});
+     }},
+    {"S negative",
+     [](Values& v, std::size_t t) {
+         set_matrix(v.innovation_covariance, t, {-1, 0, 0, -1});
+     }},
+    {"diverged, and P with it",
+     [](Values& v, std::size_t t) {
          for (std::size_t i = 0; i < n; ++i) v.error[vector_at(t, 3) + i] *= 1e7;
          for (std::size_t i = 0; i < n * n; ++i) v.covariance[matrix_at(t, 3) + i] *= 1e14;
      }},
@@ -116,7 +138,8 @@ TEST_CASE("failed: no record with more failed trials than the share is consisten
     CHECK(judge(evidence_with(failing.front(), 0), limits(0)).verdict == Verdict::consistent);
     for (const FailingTrial& failure : failing) {
         CAPTURE(failure.what);
-        const Evidence one = evidence_with(failure, 1), ten = evidence_with(failure, 10), most = evidence_with(failure, 990);
+        const Evidence one = evidence_with(failure, 1), ten = evidence_with(failure, 10),
+                       most = evidence_with(failure, 990);
         CHECK(judge(one, limits()).verdict == Verdict::consistent);
         CHECK(judge(one, limits(0)).verdict == Verdict::failed);
         CHECK(judge(ten, limits(0.01)).verdict == Verdict::consistent);  // exactly the share is not above it
@@ -129,10 +152,12 @@ TEST_CASE("failed: no record with more failed trials than the share is consisten
 
 TEST_CASE("failed: the verdict takes precedence over the other trials and over every finding") {
     for (const double scale : {0.1, 1.0, 10.0}) {
-        const FailingTrial failure{"errors of another size, and a tenth of the trials cut", [&](Values& v, std::size_t t) {
-                                  if (t < 100) return cut(v, t);
-                                  for (std::size_t i = 0; i < steps * n; ++i) v.error[vector_at(t, 0) + i] *= scale;
-                              }};
+        const FailingTrial failure{"errors of another size, and a tenth of the trials cut",
+                                   [&](Values& v, std::size_t t) {
+                                       if (t < 100) return cut(v, t);
+                                       for (std::size_t i = 0; i < steps * n; ++i)
+                                           v.error[vector_at(t, 0) + i] *= scale;
+                                   }};
         const TemporaryFolder folder;
         Values values;
         for (std::size_t trial = 0; trial < trials; ++trial) failure.apply(values, trial);
@@ -142,7 +167,9 @@ TEST_CASE("failed: the verdict takes precedence over the other trials and over e
         CHECK(evidence.failed_trials() == 100);
         const Consistency with = judge(evidence, limits()), without = judge(evidence, limits(1));
         CHECK(with.verdict == Verdict::failed);
-        CHECK(without.verdict == (scale < 1 ? Verdict::pessimistic : scale > 1 ? Verdict::optimistic : Verdict::consistent));
+        CHECK(without.verdict == (scale < 1   ? Verdict::pessimistic
+                                  : scale > 1 ? Verdict::optimistic
+                                              : Verdict::consistent));
         CHECK(with.findings.size() == without.findings.size());
         CHECK(with.trials_needed.value == 0);
     }
@@ -175,8 +202,10 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
     CHECK(make_report(with_statuses(1, 2), {0.05, 0.03}).arms.front().consistency.verdict != Verdict::failed);
 
     const std::string text = report_text(report), row = text.substr(text.find("  heading-straight/fixed.ekf"));
-    CHECK_THAT(text, Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
-                              "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
+    CHECK_THAT(
+        text,
+        Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
+                 "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3"));
     CHECK_THAT(row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %\n"));
     const Json json = Json::parse(report_json(report));
@@ -186,7 +215,8 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
     CHECK(json[0]["reason"] == "3 of 100 trials failed (2 of them diverged), more than 1 %");
     CHECK_THAT(report_csv(report), Contains("heading-straight,fixed.ekf,100,1,trace_P,") && Contains(",failed,3\n"));
     const std::string page = report_html(report, {"r.h5", {}, "test"});
-    CHECK_THAT(page, Contains("<span class=\"badge failed\">") && Contains("3 of 100 trials failed (2 of them diverged)") &&
+    CHECK_THAT(page, Contains("<span class=\"badge failed\">") &&
+                         Contains("3 of 100 trials failed (2 of them diverged)") &&
                          Contains(" trials failed, <data value=\"2\">2</data> of them diverged"));
     CHECK_THROWS_WITH(require_consistent(report), Contains("heading-straight/fixed.ekf failed, "));
 }
@@ -194,7 +224,8 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
 TEST_CASE("failed: the program's gate, its share and its refusals") {
     const Workplace here;
     REQUIRE(here.credence("run " + seed_scenario("ekf-straight-constant") +
-                          " --set noise.heading=1e9 --set arms.controllers=fixed --trials 60 --quiet -o r.h5").exit_code == 0);
+                          " --set noise.heading=1e9 --set arms.controllers=fixed --trials 60 --quiet -o r.h5")
+                .exit_code == 0);
     const Outcome gate = here.credence("report r.h5 --require consistent --failed 5%");
     CHECK(gate.exit_code == 1);
     CHECK_THAT(gate.err, Contains("required consistent, but ekf-straight-constant/fixed.ekf failed."));

@@ -53,7 +53,8 @@ std::vector<double> values_with(std::size_t place, double outlier, std::size_t c
 }
 
 /// An interim analysis of the first values, as the program makes it.
-InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count, int number) {
+InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count,
+                              int number) {
     const GoalState state = decide({values.begin(), values.begin() + count}, rule.goals.front(), number);
     return {count, number, analysis_alpha(number), {state}, state.met()};
 }
@@ -61,7 +62,8 @@ InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingR
 }  // namespace
 
 TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and not one of 0") {
-    DeformableSettings s;  // odometry that is worth nothing against measurements that are near perfect: S and P lose their digits
+    // Odometry that is worth nothing against measurements that are near perfect: S and P lose their digits.
+    DeformableSettings s;
     s.noise.odometry = 5e4;
     s.sensor.sigma = 1e-3;
     s.sensor.range_max = std::numeric_limits<double>::infinity();

@@ -150,17 +150,20 @@ TEST_CASE("report: an arm that is not run yet is said to be so, in every form") 
         CHECK(json[3]["trials"] == 0);
         CHECK(json[3]["verdict"] == "undecided");
         CHECK(json[3]["reason"] == "not run yet: no trial of it is in the file");
-        CHECK_THAT(report_csv(report), Contains("translation-circle,fixed.kf,0,0,trace_P,dm^2,,,,,,,,,,,not run yet,0\n"));
+        CHECK_THAT(report_csv(report),
+                   Contains("translation-circle,fixed.kf,0,0,trace_P,dm^2,,,,,,,,,,,not run yet,0\n"));
         const std::string page = report_html(report, {"r.h5", {}, "test"});
-        CHECK_THAT(page, Contains("2 not run yet.") && Contains("</span> not run yet</span>") && !Contains("no trial is left"));
+        CHECK_THAT(page, Contains("2 not run yet.") && Contains("</span> not run yet</span>") &&
+                             !Contains("no trial is left"));
         CHECK_THROWS_WITH(require_consistent(report), Contains("translation-circle/greedy.kf is not run yet"));
 
         const CompareReport compared = compare_studies({{"r.h5", study}}, std::nullopt);
         CHECK(compared.pairs.back().conclusion == Conclusion::not_run);
         CHECK(conclusion_name(Conclusion::not_run) == "not run yet");
-        CHECK_THAT(compare_text(compared), Contains("trace_P: greedy.kf and fixed.kf are not run yet") &&
-                                               Contains("trial by trial: 256 pairs. Negative") &&
-                                               Contains("note: a study is not complete: 1 of 2 comparisons are not run yet."));
+        CHECK_THAT(compare_text(compared),
+                   Contains("trace_P: greedy.kf and fixed.kf are not run yet") &&
+                       Contains("trial by trial: 256 pairs. Negative") &&
+                       Contains("note: a study is not complete: 1 of 2 comparisons are not run yet."));
         CHECK_THAT(compare_html(compared, "test"), Contains("greedy.kf and fixed.kf are not run yet"));
         CHECK(Json::parse(compare_json(compared))[1]["conclusion"] == "not run yet");
     }

@@ -98,7 +98,8 @@ TEST_CASE("fifty digits: NEES errs by no more than the bound, up to conditions a
     CHECK(hidden > 0);
 }
 
-TEST_CASE("fifty digits: a record whose steps are ill-conditioned, each along its own axes, is not judged by what rounding made") {
+TEST_CASE(
+    "fifty digits: a record of steps ill-conditioned along axes of their own is not judged by what rounding made") {
     constexpr int n = 4, trials = 150;
     for (const int exponent : {9, 12, 14, 15}) {
         std::mt19937_64 random(3);

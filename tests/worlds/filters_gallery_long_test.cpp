@@ -38,7 +38,9 @@ TEST_CASE("gallery: the robot's Jacobians are those of its motion and its sensor
             Robot::predict<double>(arm, moved, P, u, Eigen::Matrix3d::Zero());
             // Of an error e before the motion, the one after it is F e, and P = I becomes F F'.
             const Eigen::Matrix3d F = numerical_jacobian(
-                [&](const Eigen::Vector3d& step) { return Robot::difference(invariant, Robot::moved(invariant, X, step) * u, X * u); },
+                [&](const Eigen::Vector3d& step) {
+                    return Robot::difference(invariant, Robot::moved(invariant, X, step) * u, X * u);
+                },
                 nothing<3>);
             CHECK((F * F.transpose() - P).norm() < 1e-9);
             CHECK(jacobian_mismatch(
@@ -55,8 +57,8 @@ TEST_CASE("gallery: the coordinated turn's Jacobian is that of its motion, strai
     for (int sample = 0; sample < 100; ++sample) {
         Eigen::Matrix<double, 5, 1> x = drawn<5>(random);
         if (sample % 10 == 0) x(4) = 0;
-        CHECK(jacobian_mismatch([](const Eigen::Matrix<double, 5, 1>& at) { return CoordinatedTurn::moved(at, 0.7); }, x,
-                                CoordinatedTurn::motion_jacobian(x, 0.7)) < 1e-8);
+        CHECK(jacobian_mismatch([](const Eigen::Matrix<double, 5, 1>& at) { return CoordinatedTurn::moved(at, 0.7); },
+                                x, CoordinatedTurn::motion_jacobian(x, 0.7)) < 1e-8);
     }
 }
 

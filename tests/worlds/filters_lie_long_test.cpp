@@ -204,7 +204,8 @@ void check_group(unsigned seed) {
         REQUIRE(distance(matrix_of(G::exp(back)), exact) < 2e-14);
         if (xi.template head<rotations<G>>().norm() < pi - 1e-9) REQUIRE(distance(back, xi) < 1e-12);
         const typename G::Tangent other = drawn<G>(random);
-        REQUIRE(distance(matrix_of(X * G::exp(other)), matrix_of(G::exp(typename G::Tangent(X.adjoint() * other)) * X)) < 1e-13);
+        REQUIRE(distance(matrix_of(X * G::exp(other)),
+                         matrix_of(G::exp(typename G::Tangent(X.adjoint() * other)) * X)) < 1e-13);
         REQUIRE(distance(matrix_of(X.inverse() * X), matrix_of(G())) < 1e-14);
     }
     for (int sample = 0; sample < 40; ++sample) {
@@ -224,7 +225,9 @@ void check_scipy(const char* name) {
         typename G::Tangent xi;
         for (int i = 0; i < xi.size(); ++i) xi(i) = one.at("xi").at(static_cast<std::size_t>(i));
         const auto entries = [&](const char* of, int columns) {
-            return [&one, of, columns](int i, int j) { return one.at(of).at(static_cast<std::size_t>(i * columns + j)).get<double>(); };
+            return [&one, of, columns](int i, int j) {
+                return one.at(of).at(static_cast<std::size_t>(i * columns + j)).get<double>();
+            };
         };
         CAPTURE(name, xi.transpose());
         const auto X = matrix_of(G::exp(xi));
@@ -232,7 +235,8 @@ void check_scipy(const char* name) {
         CHECK(distance(G::left_jacobian(xi), entries("left_jacobian", static_cast<int>(xi.size()))) < 1e-13);
         if (!one.contains("log")) continue;
         CHECK(distance(X, entries("rotation", 3)) < 1e-14);
-        CHECK(distance(G::exp(xi).log(), entries("log", 1)) < 1e-9);  // a rotation is known to 1e-16, its angle near pi less
+        // A rotation is known to 1e-16, its angle near pi less.
+        CHECK(distance(G::exp(xi).log(), entries("log", 1)) < 1e-9);
     }
 }
 
@@ -251,7 +255,9 @@ TEST_CASE("filters: the groups of the plane are those of their matrices, and the
     check_group<SE2>(2);
 }
 
-TEST_CASE("filters: rotations of space are those of their matrices, and the same bits in every lane") { check_group<SO3>(3); }
+TEST_CASE("filters: rotations of space are those of their matrices, and the same bits in every lane") {
+    check_group<SO3>(3);
+}
 
 TEST_CASE("filters: poses of space are those of their matrices, and the same bits in every lane") {
     check_group<SE3>(4);

@@ -120,7 +120,8 @@ TEST_CASE("filters: predictions and updates are those of the information filter"
         check(iterated_update(all.P, all.R, 3, [&](const Eigen::Vector4d& step) {
                   return Linearised<double, 4, 2>{all.nu - all.H * step, all.H};
               }), exact(all.R));
-        CHECK(distance(exact(all.predicted()), exact(all.F) * exact(all.P) * exact(all.F).transpose() + exact(all.Q)) < 1e-14);
+        CHECK(distance(exact(all.predicted()), exact(all.F) * exact(all.P) * exact(all.F).transpose() + exact(all.Q)) <
+              1e-14);
         CHECK(all.predicted() == all.predicted().transpose());
     }
 }
@@ -135,7 +136,8 @@ TEST_CASE("filters: the iterated update ends where the posterior is largest") {
         ++converged;
         // The gradient of |step|^2 in P + |z - h|^2 in R is 0 there.
         const auto about = all.linearise()(update.step);
-        const Eigen::Vector4d pull = all.P.inverse() * update.step, push = about.H.transpose() * all.R.inverse() * about.innovation;
+        const Eigen::Vector4d pull = all.P.inverse() * update.step,
+                              push = about.H.transpose() * all.R.inverse() * about.innovation;
         CHECK((pull - push).norm() < 1e-9 * std::max(1.0, push.norm()));
         CHECK((update.P - all.joint().P).norm() > 1e-9);
         CHECK(update.S == all.joint().S);

@@ -38,7 +38,9 @@ TEST_CASE("ini: an empty text is the default scenario, under the name given") {
 
 TEST_CASE("ini: sections, comments, blank lines, spaces and carriage returns are read") {
     const DeformableSettings s = read_deformable_text(
-        "# a comment\r\n\n[scenario]\n name = abc # behind\n[model]\r\nprocess=translation\r\n\n[noise]\n  walk =  0.25 \n", "x.ini", "x");
+        "# a comment\r\n\n[scenario]\n name = abc # behind\n[model]\r\nprocess=translation\r\n"
+        "\n[noise]\n  walk =  0.25 \n",
+        "x.ini", "x");
     CHECK(s.name == "abc");
     CHECK(s.process == Process::translation);
     CHECK(s.noise.walk == 0.25);
@@ -58,28 +60,33 @@ TEST_CASE("ini: what scenario_text writes reads back to the same text") {
 }
 
 TEST_CASE("ini: overrides win, the last one most") {
-    const DeformableSettings s = read_deformable_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
+    const DeformableSettings s =
+        read_deformable_text("[noise]\nwalk = 1\n", "x.ini", "x", {{"noise.walk", "2"}, {"noise.walk", "3"}});
     CHECK(s.noise.walk == 3);
 }
 
 TEST_CASE("ini: a refusal names the file, the line and the key") {
-    CHECK(starts(refusal("[noise]\nwalk = 1\nodometry = -1\n"), "x.ini:3: invalid noise.odometry=-1 (must be at least 0"));
+    CHECK(starts(refusal("[noise]\nwalk = 1\nodometry = -1\n"),
+                 "x.ini:3: invalid noise.odometry=-1 (must be at least 0"));
     CHECK(starts(refusal("[noise]\nwalk = nan\n"), "x.ini:2: invalid noise.walk=nan"));
     CHECK(starts(refusal("\n[noise]\nwlak = 1\n"), "x.ini:3: unknown key noise.wlak. Did you mean noise.walk?"));
-    CHECK(starts(refusal("[noise]\nwalk = 1\n\nwalk = 2\n"), "x.ini:4: repeated key noise.walk (it is in line 2 already)"));
+    CHECK(starts(refusal("[noise]\nwalk = 1\n\nwalk = 2\n"),
+                 "x.ini:4: repeated key noise.walk (it is in line 2 already)"));
     CHECK(starts(refusal("[noise]\nwalk = 1\n[sensor]\n[noise]\nwalk = 2\n"), "x.ini:5: repeated key noise.walk"));
     CHECK(starts(refusal("[noise]\njust some words\n"), "x.ini:2: broken line `just some words`"));
     CHECK(starts(refusal("[noise\nwalk = 1\n"), "x.ini:1: broken section `[noise`"));
     CHECK(starts(refusal("walk = 1\n"), "x.ini:1: unknown key walk"));
     CHECK(starts(refusal("[noise]\nwalk =\n"), "x.ini:2: invalid noise.walk="));
-    CHECK(starts(refusal("[sensor]\nrange_min = 3\nrange_max = 2\n"), "x.ini:3: invalid sensor.range_max=2 (must be above sensor.range_min=3)"));
+    CHECK(starts(refusal("[sensor]\nrange_min = 3\nrange_max = 2\n"),
+                 "x.ini:3: invalid sensor.range_max=2 (must be above sensor.range_min=3)"));
     CHECK(starts(refusal("[scenario]\nposes = 1e99\n"), "x.ini:2: invalid scenario.poses=1e99"));
 }
 
 TEST_CASE("ini: a refused override names itself, and keys that contradict each other across file and override") {
     CHECK(starts(refusal("", {{"noise.walk", "-1"}}), "--set noise.walk: invalid noise.walk=-1"));
     CHECK(starts(refusal("[sensor]\nrange_min = 3\n"), "x.ini: invalid sensor.range_max=2"));
-    CHECK(starts(refusal("[sensor]\nrange_max = 3\n", {{"sensor.range_min", "4"}}), "x.ini:2: invalid sensor.range_max=3"));
+    CHECK(starts(refusal("[sensor]\nrange_max = 3\n", {{"sensor.range_min", "4"}}),
+                 "x.ini:2: invalid sensor.range_max=3"));
 }
 
 TEST_CASE("ini: names, titles and units that a file could not hold are refused") {
@@ -92,7 +99,9 @@ TEST_CASE("ini: names, titles and units that a file could not hold are refused")
 }
 
 TEST_CASE("ini: every refusal is one line") {
-    for (const char* text : {"[noise]\nwalk = x\ty\n", "[a]\nb = c\n", "[\n", "= 3\n", "[scenario]\ntitle = a\x01" "b\n"}) {
+    for (const char* text : {"[noise]\nwalk = x\ty\n", "[a]\nb = c\n", "[\n", "= 3\n",
+                             "[scenario]\ntitle = a\x01"
+                             "b\n"}) {
         const std::string message = refusal(text);
         CHECK_FALSE(message.empty());
         CHECK(message.find('\n') == std::string::npos);

@@ -21,7 +21,8 @@ struct Mean {
 /// Sums over the blocks of a study of one scenario.
 class Totals {
 public:
-    Totals(const LandmarkSettings& scenario, int blocks) : figures_(landmark_series(scenario)), steps_(scenario.poses - 1) {
+    Totals(const LandmarkSettings& scenario, int blocks)
+        : figures_(landmark_series(scenario)), steps_(scenario.poses - 1) {
         const LandmarkSimulation simulation(scenario);
         const std::size_t arms = scenario.estimators.size();
         sums_.resize(arms);
@@ -58,7 +59,8 @@ private:
         for (std::size_t i = 0; i < from.size(); ++i) to[i] += from[i];
     }
     std::size_t place(const std::string& name) const {
-        const auto found = std::find_if(figures_.begin(), figures_.end(), [&](const Series& f) { return f.name == name; });
+        const auto found =
+            std::find_if(figures_.begin(), figures_.end(), [&](const Series& f) { return f.name == name; });
         REQUIRE(found != figures_.end());
         return static_cast<std::size_t>(found - figures_.begin());
     }
@@ -96,7 +98,8 @@ TEST_CASE("landmarks: every table of the classical loop is what an independent i
                                 {1.09, 1.08, 1.11, 1.08, 1.11, 1.04, 1.02, 1.10, 1.01, 1.10},
                                 {1.05, 1.05, 1.10, 1.06, 1.06, 1.01, 1.00, 1.07, 0.98, 1.06},
                                 {1.34, 2.11, 2.38, 2.67, 2.81, 2.89, 2.99, 3.12, 2.94, 3.22}};
-    const double full[5][3]{{1.67, 1.94, 2.38}, {1.31, 1.08, 1.05}, {1.51, 1.59, 1.87}, {1.06, 1.03, 1.03}, {1.42, 1.50, 1.71}};
+    const double full[5][3]{
+        {1.67, 1.94, 2.38}, {1.31, 1.08, 1.05}, {1.51, 1.59, 1.87}, {1.06, 1.03, 1.03}, {1.42, 1.50, 1.71}};
     const double error[5][3]{{.0909, .1098, .1141}, {.0654, .0645, .0643}, {.0662, .0655, .0654}, {.0655, .0645, .0645},
                              {.0711, .0898, .0923}};
     const double all_heading[]{.1265, .0806, .0831, .0806, .1052}, all_position[]{1.611, .935, .948, .935, 1.306};
@@ -124,7 +127,8 @@ TEST_CASE("landmarks: every table of the classical loop is what an independent i
     check({invariant.value / 43, invariant.error / 43}, 1.59, 0.01);
     for (std::size_t arm = 0; arm < 5; ++arm)
         for (const int k : tenths)
-            CHECK(std::abs(totals.at(arm, "nees_invariant_pose", k).value - totals.at(arm, "nees_pose", k).value) / 3 < 0.02);
+            CHECK(std::abs(totals.at(arm, "nees_invariant_pose", k).value - totals.at(arm, "nees_pose", k).value) / 3 <
+                  0.02);
     // The mark of the effect; a variance varies little from trial to trial.
     CHECK(std::abs(std::sqrt(totals.at(0, "variance_heading", 600).value) - 0.052) < 0.001);
     for (const std::size_t arm : {std::size_t{1}, std::size_t{3}})

@@ -123,7 +123,8 @@ void compare_to_rounding(int trials) {
 TEST_CASE("landmarks metamorphic: in a unit a power of two apart a trial has the same bits") {
     each_trial(1, [](const auto& scenario, const auto&, const auto& run, Estimator estimator, const auto& noise) {
         const LandmarkProblem image(in_unit(scenario, 0x1p-7));
-        REQUIRE(difference(scenario, run, run_landmarks(image.view(), estimator, noise), scaling(scenario, 0x1p-7)) == 0);
+        REQUIRE(difference(scenario, run, run_landmarks(image.view(), estimator, noise), scaling(scenario, 0x1p-7)) ==
+                0);
     });
 }
 

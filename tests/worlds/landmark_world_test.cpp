@@ -1,4 +1,5 @@
-// The world of landmarks as the engine and the program know it: its settings, its scenario, and its trials on every target.
+// The world of landmarks as the engine and the program know it: its settings, its scenario, and its trials on every
+// target.
 
 #include <credence/detail/block.hpp>
 #include <credence/error.hpp>
@@ -71,7 +72,8 @@ TEST_CASE("landmark world: its keys have help, and their defaults are those of t
     for (const Setting& setting : defaults.settings) {
         if (setting.key == world_key || setting.key == "scenario.name") continue;
         CAPTURE(setting.key);
-        const auto found = std::find_if(keys.begin(), keys.end(), [&](const DescribedKey& key) { return key.key == setting.key; });
+        const auto found =
+            std::find_if(keys.begin(), keys.end(), [&](const DescribedKey& key) { return key.key == setting.key; });
         REQUIRE(found != keys.end());
         CHECK(found->value == setting.value);
     }
@@ -84,7 +86,8 @@ TEST_CASE("landmark world: nonsense is refused with its line") {
     CHECK_THAT(refusal_of("[loop]\nsides = 2\n"), Contains("test:4: invalid loop.sides=2 (must be at least 3"));
     CHECK_THAT(refusal_of("[loop]\nstep = 0\n"), Contains("must be above 0"));
     CHECK_THAT(refusal_of("[landmarks]\ncount = 65\n"), Contains("at most 64"));
-    CHECK_THAT(refusal_of("[landmarks]\noffset = 9.6\n"), Contains("test:4: invalid landmarks.offset=9.6 (must be below"));
+    CHECK_THAT(refusal_of("[landmarks]\noffset = 9.6\n"),
+               Contains("test:4: invalid landmarks.offset=9.6 (must be below"));
     CHECK(refusal_of("[landmarks]\noffset = 9.5\n").empty());
     CHECK_THAT(refusal_of("[sensor]\nsigma = 1e-150\n"), Contains("singular"));
     CHECK_THAT(refusal_of("[noise]\nheading = 0\n"), Contains("must be above 0"));
@@ -105,7 +108,8 @@ TEST_CASE("landmark world: a block is its trials one by one, on every target") {
     constexpr int trials = 11;
     for (const Target& target : runnable_targets()) {
         CAPTURE(target.name);
-        const Block block = run_block(LandmarkSimulation(scenario, target), columns, scenario.estimators.size(), 5, 1, trials);
+        const Block block =
+            run_block(LandmarkSimulation(scenario, target), columns, scenario.estimators.size(), 5, 1, trials);
         const ArmBlock& ekf = block.arms.front();
         for (int trial = 0; trial < trials; ++trial) {
             double own[column_count];

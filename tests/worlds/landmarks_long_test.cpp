@@ -34,15 +34,17 @@ TEST_CASE("landmarks: every estimator is its paper's filter on a state that grow
                     const std::vector<int> places = rows_of(landmarks);
                     truth = std::max(truth, (run.steps[k].truth(places) - true_state).norm());
                     mean = std::max(mean, (run.steps[k].mean(places) - estimate.mean).norm());
-                    covariance = std::max(covariance, (run.steps[k].covariance(places, places) - estimate.covariance).norm() /
-                                                          estimate.covariance.norm());
+                    covariance =
+                        std::max(covariance, (run.steps[k].covariance(places, places) - estimate.covariance).norm() /
+                                                 estimate.covariance.norm());
                     if (k == 0) continue;
                     const int step = static_cast<int>(k);
                     nis = std::max(nis, relative(run.figure(scenario, "nis", step), step_nis));
                     CHECK(run.figure(scenario, "nis_rows", step) == rows);
                     const VectorXd error = (estimate.mean - true_state).head<3>();
-                    nees = std::max(nees, relative(run.figure(scenario, "nees_pose", step),
-                                                   error.dot(estimate.covariance.topLeftCorner<3, 3>().ldlt().solve(error))));
+                    nees = std::max(nees,
+                                    relative(run.figure(scenario, "nees_pose", step),
+                                             error.dot(estimate.covariance.topLeftCorner<3, 3>().ldlt().solve(error))));
                 }
                 // The loop by sums or in closed form: rounding at lengths of 20. Two routes to one update: rounding of
                 // 1e-16, times the condition of S (1e3), over 70 poses.
@@ -87,7 +89,8 @@ TEST_CASE("landmarks: nothing is left of what was believed before first sight") 
     far.landmarks.prior = 1000;
     for (const Estimator estimator : all_estimators) {
         CAPTURE(estimator);
-        const LandmarkRun a = run_landmarks(near, estimator, noise_of(0)), b = run_landmarks(far, estimator, noise_of(0));
+        const LandmarkRun a = run_landmarks(near, estimator, noise_of(0)),
+                          b = run_landmarks(far, estimator, noise_of(0));
         const int seen_all = *std::max_element(a.first_pose.begin(), a.first_pose.end());
         REQUIRE(seen_all < 61);
         for (std::size_t k = static_cast<std::size_t>(seen_all); k < a.steps.size(); ++k) {
@@ -106,7 +109,8 @@ TEST_CASE("landmarks: series count rows, landmarks out of sight and first sights
         const Held& now = run.steps[static_cast<std::size_t>(k)];
         int seen = 0, known = 0;
         for (int j = 0; j < scenario.landmarks.count; ++j) {
-            const bool sees = (now.truth.segment<2>(3 + 2 * j) - now.truth.segment<2>(1)).norm() <= scenario.sensor.range_max;
+            const bool sees =
+                (now.truth.segment<2>(3 + 2 * j) - now.truth.segment<2>(1)).norm() <= scenario.sensor.range_max;
             seen += sees;
             known += sees && run.first_pose[static_cast<std::size_t>(j)] < k;
         }
@@ -160,7 +164,8 @@ struct Watched : Type<Heading, double> {
                  const Command<double>& command, const HeadingTruth& truth, int k) {
         FilterParameters quiet = filter;
         quiet.variance_heading = quiet.variance_odometry = 0;
-        carry(belief, layout, [&](Base& own, HeadingBelief& turned) { own.predict(turned, quiet, layout, command, truth, k); });
+        carry(belief, layout,
+              [&](Base& own, HeadingBelief& turned) { own.predict(turned, quiet, layout, command, truth, k); });
         Base::predict(belief, filter, layout, command, truth, k);
     }
     template <class EdgeMeasurement, class Linearisation>
@@ -176,13 +181,15 @@ struct Watched : Type<Heading, double> {
         Base::update(belief, filter, layout, sightings, edge, linearised, update);
         if (!std::is_same_v<Base, RightInvariantFilter<Heading, double>>) return;
         const VectorXd shift = mean_of(belief, layout.size()) - before;
-        carry(belief, layout, [&](Base&, HeadingBelief& turned) { turn_covariance(turned.covariance, layout, shift.data()); });
+        carry(belief, layout,
+              [&](Base&, HeadingBelief& turned) { turn_covariance(turned.covariance, layout, shift.data()); });
     }
     void initialise(HeadingBelief& belief, const FilterParameters& filter, const Heading& layout, int j,
                     const Sighting<double>& sighting, const HeadingTruth& truth) {
         Sighting<double> exact = sighting;
         exact.sigma = 0;
-        carry(belief, layout, [&](Base& own, HeadingBelief& turned) { own.initialise(turned, filter, layout, j, exact, truth); });
+        carry(belief, layout,
+              [&](Base& own, HeadingBelief& turned) { own.initialise(turned, filter, layout, j, exact, truth); });
         Base::initialise(belief, filter, layout, j, sighting, truth);
     }
 

@@ -55,7 +55,8 @@ std::unique_ptr<const Simulation> oracle(const Scenario& scenario, const typenam
 }
 
 template <class W>
-Block block_of(const Simulation& simulation, const Scenario& scenario, const typename W::Settings& settings, int trials) {
+Block block_of(const Simulation& simulation, const Scenario& scenario, const typename W::Settings& settings,
+               int trials) {
     return run_block(simulation, own_columns(scenario, report_of<W>(settings)), scenario.arms.size(), 7, 0, trials);
 }
 template <class W>
@@ -64,9 +65,11 @@ Block one_at_a_time(const Scenario& scenario, const typename W::Settings& settin
 }
 /// As where the world's function is no template: one trial after the other, evaluated in lanes.
 template <class W>
-Block one_by_one(const Scenario& scenario, const typename W::Settings& settings, const std::string& target, int trials) {
+Block one_by_one(const Scenario& scenario, const typename W::Settings& settings, const std::string& target,
+                 int trials) {
     const Forced forced(target);
-    return block_of<W>(*own_simulation(scenario, report_of<W>(settings), one_trial<W>(settings)), scenario, settings, trials);
+    return block_of<W>(*own_simulation(scenario, report_of<W>(settings), one_trial<W>(settings)), scenario, settings,
+                       trials);
 }
 
 Block in_lanes(const Scenario& scenario, const std::string& target, int trials) {
@@ -128,7 +131,8 @@ void check_same(const Block& lanes, const Block& one, const Scenario& scenario, 
         CHECK(differing(x.square_sums, y.square_sums, tolerance) == 0);
         CHECK(differing(x.run_square_sums, y.run_square_sums, tolerance, 1) == 0);
         // Of two whitened rows, the product is at most the mean of the squares, whose sum is the NIS.
-        const auto groups = static_cast<std::size_t>(shape.group_count), steps = static_cast<std::size_t>(shape.poses - 1);
+        const auto groups = static_cast<std::size_t>(shape.group_count),
+                   steps = static_cast<std::size_t>(shape.poses - 1);
         const double nis = sum_of(y.sums, groups, steps);
         CHECK(differing(x.product_sums, y.product_sums, tolerance, nis) == 0);
         CHECK(differing(x.product_square_sums, y.product_square_sums, tolerance, nis * nis) == 0);
@@ -153,8 +157,9 @@ bool same_bits(const Block& a, const Block& b) {
         const ArmBlock &x = a.arms[i], &y = b.arms[i];
         all = same(x.columns, y.columns) && same(x.sums, y.sums) && same(x.square_sums, y.square_sums) &&
               same(x.run_square_sums, y.run_square_sums) && x.covered == y.covered && x.cells == y.cells &&
-              same(x.errors, y.errors) && same(x.nees, y.nees) && same(x.moments, y.moments) && same(x.product_sums, y.product_sums) &&
-              same(x.product_square_sums, y.product_square_sums) && same(x.product_counts, y.product_counts);
+              same(x.errors, y.errors) && same(x.nees, y.nees) && same(x.moments, y.moments) &&
+              same(x.product_sums, y.product_sums) && same(x.product_square_sums, y.product_square_sums) &&
+              same(x.product_counts, y.product_counts);
     }
     return all;
 }
@@ -208,7 +213,8 @@ TEST_CASE("lanes: a world that is no template has the same bits in every target"
         const Scenario scenario = troubled(s, 9);
         const int trials = 1 + static_cast<int>(random() % 40);
         const Block first = one_by_one<Troubled>(scenario, s, targets.front(), trials);
-        for (const std::string& target : targets) CHECK(same_bits(first, one_by_one<Troubled>(scenario, s, target, trials)));
+        for (const std::string& target : targets)
+            CHECK(same_bits(first, one_by_one<Troubled>(scenario, s, target, trials)));
     }
 }
 

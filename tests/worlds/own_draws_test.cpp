@@ -55,9 +55,10 @@ const bool added = [] {
 /// x of the draws under this key: [arm], normal and uniform.
 std::vector<double> keyed(int source, int pose, int index) {
     const auto set = [](const char* key, int value) { return std::pair{std::string(key), std::to_string(value)}; };
-    const Study study = run(read_scenario_text("[scenario]\nworld = keyed\nposes = 2\n", "test", "mine",
-                                                  {set("draw.source", source), set("draw.pose", pose), set("draw.index", index)}),
-                            1);
+    const Study study =
+        run(read_scenario_text("[scenario]\nworld = keyed\nposes = 2\n", "test", "mine",
+                               {set("draw.source", source), set("draw.pose", pose), set("draw.index", index)}),
+            1);
     const ScenarioResults& results = study.scenarios[0];
     return {results.arms[0].columns[1][0], results.arms[1].columns[1][0]};
 }
@@ -71,7 +72,8 @@ TEST_CASE("own world: a key of a draw that exceeds the counter is refused with i
     REQUIRE_THROWS_WITH(keyed(-1, 1, 0), "world keyed: invalid source of a draw -1 (must be 0 to 15).");
     REQUIRE_THROWS_WITH(keyed(0, -1, 0), "world keyed: invalid pose of a draw -1 (must be 0 to 2147483647).");
     REQUIRE_THROWS_WITH(keyed(0, 1, -1), "world keyed: invalid index of a draw -1 (must be 0 to " + last + ").");
-    REQUIRE_THROWS_WITH(keyed(0, 1, 134217728), "world keyed: invalid index of a draw 134217728 (must be 0 to " + last + ").");
+    REQUIRE_THROWS_WITH(keyed(0, 1, 134217728),
+                        "world keyed: invalid index of a draw 134217728 (must be 0 to " + last + ").");
     const Scenario undeclared = read_scenario_text("[scenario]\nworld = undeclared\n", "test", "mine");
     REQUIRE_THROWS_WITH(run(undeclared, 1), "world undeclared: a column that it does not have is set.");
 }

@@ -201,7 +201,8 @@ TEST_CASE("own world: its keys are read, refused and shown like any other") {
     const auto refused = [](const std::string& text, const std::string& message) {
         REQUIRE_THROWS_WITH(read_scenario_text(text, "file.ini", "mine"), Catch::Contains(message));
     };
-    refused("[scenario]\nworld = trakcer\n", "file.ini:2: invalid scenario.world=trakcer (this program has no such world)");
+    refused("[scenario]\nworld = trakcer\n",
+            "file.ini:2: invalid scenario.world=trakcer (this program has no such world)");
     refused("[scenario]\nworld = tracker\n[sensor]\ndetection = 2\n", "file.ini:4: invalid sensor.detection=2");
     refused("[scenario]\nworld = tracker\n[sensor]\ndetections = 1\n",
             "file.ini:4: unknown key sensor.detections. Did you mean sensor.detection?");

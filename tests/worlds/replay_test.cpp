@@ -112,12 +112,16 @@ TEST_CASE("replay: NEES, NIS and trace(P) of an own world follow from the record
             const auto n = static_cast<Eigen::Index>(scenario.components.size());
             const auto m = values_at(trajectory, "innovation", 0).size();
             for (int k = 0; k < scenario.poses; ++k) {
-                const auto at = [&](const char* name, Eigen::Index columns = 1) { return values_at(trajectory, name, k, columns); };
+                const auto at = [&](const char* name, Eigen::Index columns = 1) {
+                    return values_at(trajectory, name, k, columns);
+                };
                 const double nees = at("nees")(0);
-                CHECK(std::isnan(nees) == (k == 0 || (world == std::string("spoiled") && (arm == 1 || arm == 2) && k >= 3)));
+                CHECK(std::isnan(nees) ==
+                      (k == 0 || (world == std::string("spoiled") && (arm == 1 || arm == 2) && k >= 3)));
                 if (std::isnan(nees)) continue;
                 CHECK(nees == Approx(mahalanobis(at("error"), at("covariance", n))).epsilon(1e-9));
-                CHECK(at("nis")(0) == Approx(mahalanobis(at("innovation"), at("innovation_covariance", m))).epsilon(1e-9));
+                CHECK(at("nis")(0) ==
+                      Approx(mahalanobis(at("innovation"), at("innovation_covariance", m))).epsilon(1e-9));
                 CHECK(at("trace_P")(0) == Approx(at("covariance", n).trace()).epsilon(1e-13));
             }
         }
@@ -126,11 +130,13 @@ TEST_CASE("replay: NEES, NIS and trace(P) of an own world follow from the record
 
 TEST_CASE("replay: a covariance beyond the recorded size is left out, and a note says so") {
     REQUIRE(added);
-    const Trajectory trajectory = replay_trial(read_scenario_text("[scenario]\nworld = large_state\nposes = 3\n", "test", "large"), 0, 1, 0);
+    const Trajectory trajectory =
+        replay_trial(read_scenario_text("[scenario]\nworld = large_state\nposes = 3\n", "test", "large"), 0, 1, 0);
     CHECK(find_variable(trajectory, "covariance") == nullptr);
     CHECK(find_variable(trajectory, "innovation") == nullptr);
     REQUIRE(trajectory.notes.size() == 1);
-    CHECK(trajectory.notes.front() == std::pair<std::string, std::string>("covariance_omitted", "513 rows, more than the 512 that are kept"));
+    CHECK(trajectory.notes.front() ==
+          std::pair<std::string, std::string>("covariance_omitted", "513 rows, more than the 512 that are kept"));
     CHECK(values_at(trajectory, "error", 2).isOnes());
     CHECK(values_at(trajectory, "nees", 2)(0) == Approx(513));
 }

@@ -64,7 +64,8 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
     }
 }
 
-TEST_CASE("trajectory: the planner's choice is the last of its least costs, and the step that follows keeps its promise") {
+TEST_CASE(
+    "trajectory: the planner's choice is the last of its least costs, and the step that follows keeps its promise") {
     const Problem problem(small_scenarios().front());
     const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 4);
     const std::vector<TrajectoryStep> steps = steps_of(t);

@@ -64,7 +64,9 @@ int main(int, char** argv) {
         const int trials = std::stoi(argv[2]);
         double sum = 0;
         const std::clock_t start = std::clock();
-        for (int i = 0; i < trials; ++i) sum += trial(model, [&] { return normal(random); }, [&] { return uniform(random); });
+        for (int i = 0; i < trials; ++i)
+            sum += trial(
+                model, [&] { return normal(random); }, [&] { return uniform(random); });
         std::cout << double(std::clock() - start) / CLOCKS_PER_SEC / trials << ' ' << sum / trials << '\n';
         return 0;
     }
@@ -85,5 +87,6 @@ int main(int, char** argv) {
             },
             [&] { return next[(1 + uniforms++) * draws_of_step + 4]; }));
     }
-    std::ofstream(argv[2], std::ios::binary).write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size() * sizeof(double)));
+    std::ofstream(argv[2], std::ios::binary)
+        .write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size() * sizeof(double)));
 }

@@ -200,9 +200,9 @@ template <int count, class Real>
     noise.template normals<count>(keys, draws);
 }
 
-/// Draws of all keys, six at a time: fewer do not fill the processor's pipelines, more do not fit its reorder buffer. Of
-/// a last group that lacks one, the first is drawn twice: code of its own for five would take the room of other code in
-/// the processor's cache of decoded operations. `keys` [count], `draws` [count].
+/// Draws of all keys, six at a time: fewer do not fill the processor's pipelines, more do not fit its reorder buffer.
+/// Of a last group that lacks one, the first is drawn twice: code of its own for five would take the room of other code
+/// in the processor's cache of decoded operations. `keys` [count], `draws` [count].
 template <class Noise, class Count, class Real>
 void draw_all(const Noise& noise, const DrawKey* keys, Count count, Vector2<Real>* draws) {
     constexpr int most = 6;

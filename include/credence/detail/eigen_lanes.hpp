@@ -62,12 +62,14 @@ struct generic_product_impl<Lhs, Rhs, DenseShape, DenseShape, GemvProduct>
 // The decompositions that look at a pivot, a norm or an eigenvalue and branch. The last argument is the type
 // of a second template parameter, if there is one.
 #define CREDENCE_REFUSE(Decomposition, instead, ...)                                                                  \
-    template <int W, int rows, int columns, int options, int most_rows, int most_columns __VA_OPT__(, __VA_ARGS__ second)> \
-    class Decomposition<Matrix<credence::Lane<W>, rows, columns, options, most_rows, most_columns>                    \
-                        __VA_OPT__(, second)> {                                                                       \
+    template <int W, int rows, int columns, int options, int most_rows,                                               \
+              int most_columns __VA_OPT__(, __VA_ARGS__ second)>                                                      \
+    class Decomposition<Matrix<credence::Lane<W>, rows, columns, options, most_rows, most_columns> __VA_OPT__(        \
+        , second)> {                                                                                                  \
         static_assert(W < 0, "Eigen's " #Decomposition " branches on its numbers, and a Real has several: " instead); \
     }
-#define CREDENCE_OF_COVARIANCE "of a covariance S, write credence::cholesky(S), solve(S, b), inverse(S) or determinant(S)"
+#define CREDENCE_OF_COVARIANCE \
+    "of a covariance S, write credence::cholesky(S), solve(S, b), inverse(S) or determinant(S)"
 CREDENCE_REFUSE(LLT, CREDENCE_OF_COVARIANCE, int);
 CREDENCE_REFUSE(LDLT, CREDENCE_OF_COVARIANCE, int);
 CREDENCE_REFUSE(PartialPivLU, CREDENCE_OF_COVARIANCE);

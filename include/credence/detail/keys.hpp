@@ -1,6 +1,6 @@
 #pragma once
-// Module worlds: the keys of a scenario. One table for each world serves scenario files, `--set`, `credence show`, stored
-// scenarios, the study's hash and the documentation.
+// Module worlds: the keys of a scenario. One table for each world serves scenario files, `--set`, `credence show`,
+// stored scenarios, the study's hash and the documentation.
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -32,7 +32,8 @@ struct KeyOf {
 [[noreturn]] void refuse_again(const InputError& refusal, const std::string& value,
                                const std::vector<std::string>& choices);
 
-/// Sets `section.key` to a value without its outer blanks. Throws InputError for an unknown key or a value out of range.
+/// Sets `section.key` to a value without its outer blanks. Throws InputError for an unknown key or a value out of
+/// range.
 template <class Settings>
 void set_key(const std::vector<KeyOf<Settings>>& keys, Settings& settings, const std::string& name,
              const std::string& value) {

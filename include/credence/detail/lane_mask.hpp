@@ -22,9 +22,10 @@ struct LaneTypes {
 /// What a branch on a mask or a Real gives: a sentence from the compiler.
 template <std::same_as<bool> Bool>
 Bool branch() {
-    static_assert(!std::same_as<Bool, bool>,
-                  "a Real has several trials, which cannot take different branches: write select(mask, yes, no); both, "
-                  "either and negated for &&, || and !; any(mask) or all(mask) where one answer for all lanes is meant");
+    static_assert(
+        !std::same_as<Bool, bool>,
+        "a Real has several trials, which cannot take different branches: write select(mask, yes, no); both, "
+        "either and negated for &&, || and !; any(mask) or all(mask) where one answer for all lanes is meant");
     return {};
 }
 

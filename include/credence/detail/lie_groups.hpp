@@ -8,8 +8,8 @@
 //
 // The tangent vector begins with the rotation. exp and log are those of the matrix groups; the left Jacobian J_l has
 // exp(xi + d) = exp(J_l d) exp(xi) to first order, the right one exp(xi + d) = exp(xi) exp(J_r d), J_r(xi) = J_l(-xi).
-// log gives angles from -pi to pi; at pi itself either sign is right. Errors: 1e-14 relative to the largest entry, and of
-// log 1e-14 rad; rotations stay so through some millions of products (tests/worlds/filters_lie_long_test.cpp).
+// log gives angles from -pi to pi; at pi itself either sign is right. Errors: 1e-14 relative to the largest entry, and
+// of log 1e-14 rad; rotations stay so through some millions of products (tests/worlds/filters_lie_long_test.cpp).
 // [Sola, Deray, Atchuthan 2018, A micro Lie theory for state estimation in robotics], [Barfoot 2017, 7.1, 7.3],
 // [Barrau, Bonnabel 2017, The invariant extended Kalman filter as a stable observer] for SE_2(3)
 
@@ -146,7 +146,8 @@ struct SO3 {
     static Matrix coupling(const Tangent& phi, const Vector& rho) {
         const Stumpff<Real> c(phi.squaredNorm());
         const Matrix turn = cross_matrix(phi), move = cross_matrix(rho), both_ways = turn * move;
-        const Real along = phi.dot(rho), first = along * (Real(2) * c.c4 - c.c3), second = along * (Real(3) * c.c5 - c.c4);
+        const Real along = phi.dot(rho), first = along * (Real(2) * c.c4 - c.c3),
+                   second = along * (Real(3) * c.c5 - c.c4);
         return c.c2 * move + c.c3 * (both_ways + both_ways.transpose()) + first * turn + second * (turn * turn);
     }
     static Matrix crossed(const Vector& v) { return cross_matrix(v); }

@@ -28,7 +28,8 @@ Lane<W> multiply_add(A a, B b, Lane<W> c) { return fma(Lane<W>(a), Lane<W>(b), c
 
 /// A B' + start, column by column: what a column adds up to stays in registers.
 template <class Start, class A, class B>
-auto product_sum(const Eigen::MatrixBase<A>& left, const Eigen::MatrixBase<B>& right, const Eigen::MatrixBase<Start>& start) {
+auto product_sum(const Eigen::MatrixBase<A>& left, const Eigen::MatrixBase<B>& right,
+                 const Eigen::MatrixBase<Start>& start) {
     using Real = typename Eigen::ScalarBinaryOpTraits<typename A::Scalar, typename B::Scalar>::ReturnType;
     constexpr int n = A::RowsAtCompileTime, m = B::RowsAtCompileTime, inner = A::ColsAtCompileTime;
     static_assert(n > 0 && m > 0 && inner > 0, "filters take matrices of sizes that the compiler knows");
@@ -47,7 +48,8 @@ auto product_sum(const Eigen::MatrixBase<A>& left, const Eigen::MatrixBase<B>& r
 
 /// A B' + start where that is known to be symmetric: symmetric to the last bit, by its lower triangle.
 template <class Start, class A, class B>
-auto symmetric_sum(const Eigen::MatrixBase<A>& left, const Eigen::MatrixBase<B>& right, const Eigen::MatrixBase<Start>& start) {
+auto symmetric_sum(const Eigen::MatrixBase<A>& left, const Eigen::MatrixBase<B>& right,
+                   const Eigen::MatrixBase<Start>& start) {
     auto result = product_sum(left, right, start);
     for (Eigen::Index j = 1; j < result.cols(); ++j)
         for (Eigen::Index i = 0; i < j; ++i) result(i, j) = result(j, i);

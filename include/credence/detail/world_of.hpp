@@ -49,7 +49,8 @@ public:
     /// Throws InputError where they contradict each other.
     Scenario scenario_of(const Settings& settings) const {
         const Settings resolved = world_.resolved(settings);
-        Scenario scenario{name(), resolved.name, resolved.title, resolved.length_unit, resolved.poses, {}, {}, {}, {}, {}};
+        Scenario scenario{name(), resolved.name, resolved.title, resolved.length_unit, resolved.poses, {}, {}, {}, {},
+                          {}};
         if (name() != first_world) scenario.settings.push_back({world_key, name()});
         const Settings defaults = world_.defaults();
         for (const KeyOf<Settings>& key : world_.keys()) {

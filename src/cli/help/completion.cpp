@@ -110,8 +110,8 @@ std::string keys_text() {
            joined(names, " ") + "\n           compopt -o nospace 2>/dev/null ;;\n    esac\n}\n\n";
 }
 
-/// The script with what depends on the commands in its places. bash splits words at the = in COMP_WORDBREAKS: the script
-/// joins them again, and removes the part up to the = from the replies, which replace only the part after it.
+/// The script with what depends on the commands in its places. bash splits words at the = in COMP_WORDBREAKS: the
+/// script joins them again, and removes the part up to the = from the replies, which replace only the part after it.
 std::string filled(std::string script, const std::string& place, const std::string& text) {
     return script.replace(script.find(place), place.size(), text);
 }

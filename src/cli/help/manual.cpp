@@ -101,11 +101,12 @@ std::string head() {
         text += (command == all_commands().front() ? "" : ".br\n") + roff::bold(program_name() + " " + command->name) +
                 (command->arguments.empty() ? "" : " " + roff::italic(command->arguments)) + "\n";
     return text + roff::section("DESCRIPTION") +
-           roff::filled("Can a filter's covariance be believed, and does planning a path pay? credence runs thousands\n"
-                        "of seeded trials of EKF-SLAM in a deforming world, on a planned and on a fixed path, and says\n"
-                        "with stated confidence whether the filter is consistent, optimistic or pessimistic, and what\n"
-                        "planning gained. --help works for every command, --version says how the program was\n"
-                        "built.");
+           roff::filled(
+               "Can a filter's covariance be believed, and does planning a path pay? credence runs thousands\n"
+               "of seeded trials of EKF-SLAM in a deforming world, on a planned and on a fixed path, and says\n"
+               "with stated confidence whether the filter is consistent, optimistic or pessimistic, and what\n"
+               "planning gained. --help works for every command, --version says how the program was\n"
+               "built.");
 }
 
 std::string page() {

@@ -9,7 +9,8 @@
 namespace credence::cli {
 
 /// While an object exists, SIGINT, SIGTERM and SIGHUP ask the run to stop, and a second one of them ends the process at
-/// once with 130, unless another program's process does the work. A SIGHUP that was ignored, as nohup arranges it, stays ignored.
+/// once with 130, unless another program's process does the work. A SIGHUP that was ignored, as nohup arranges it,
+/// stays ignored.
 class Interrupt {
 public:
     Interrupt();

@@ -73,7 +73,8 @@ void check_fit(const RunRequest& request, const Study& study) {
     if (const std::int64_t there = memory_limit(); size.memory > there) refuse("memory", size.memory, there);
     std::int64_t missing = 0, all = 0;
     for (const ScenarioResults& results : study.scenarios) {
-        missing += trials_in(missing_blocks(results, request.options.trials, request.options.shard), request.options.trials);
+        missing +=
+            trials_in(missing_blocks(results, request.options.trials, request.options.shard), request.options.trials);
         all += std::max<std::int64_t>(1, request.options.trials / request.options.shard.count);
     }
     // The results are written while the journal, which then also holds the missing trials, still exists.

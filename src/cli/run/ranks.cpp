@@ -41,12 +41,16 @@ std::unique_ptr<Transport> transport_of(const Parsed& parsed) {
     const std::string named = launched ? "the environment has " + launched->names + ", but " : "";
     std::unique_ptr<Transport> post = start_mpi();
     if (!post)
-        throw InputError("cannot share the run among ranks (" + named + "this credence was built without MPI). Build it with "
-                         "-DCREDENCE_MPI=ON, make each process a run of its own: --shard auto -o 'part-{shard}.h5', or run "
-                         "alone: --mpi off.");
+        throw InputError(
+            "cannot share the run among ranks (" + named +
+            "this credence was built without MPI). Build it with "
+            "-DCREDENCE_MPI=ON, make each process a run of its own: --shard auto -o 'part-{shard}.h5', or run "
+            "alone: --mpi off.");
     if (launched && post->size() == 1)
-        throw InputError("cannot share the run among ranks (" + named + "MPI has started this process alone). Start it by the "
-                         "mpirun of " + mpi_library() + ", or run alone: --mpi off.");
+        throw InputError("cannot share the run among ranks (" + named +
+                         "MPI has started this process alone). Start it by the "
+                         "mpirun of " +
+                         mpi_library() + ", or run alone: --mpi off.");
     return post;
 }
 

@@ -23,7 +23,8 @@ std::string output_of(const Parsed& parsed, const Shard& shard) {
     const std::size_t at = name.find(place);
     if (at == std::string::npos) return name;
     if (!parsed.has("shard"))
-        throw invalid_value("-o", name, "there is no --shard that {shard} could stand for", "Give --shard, or another name");
+        throw invalid_value("-o", name, "there is no --shard that {shard} could stand for",
+                            "Give --shard, or another name");
     return name.replace(at, place.size(), std::to_string(shard.index));
 }
 
@@ -57,9 +58,10 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed) {
 void take_stored(const Parsed& parsed, RunRequest& request) {
     for (const char* option : {"set", "sweep", "seed", "keep"})
         if (parsed.has(option))
-            throw InputError(std::string("--") + option +
-                             " needs a scenario (without one, the study in the file goes on as it is). Name one or more "
-                             "SCENARIO.ini, or leave it out.");
+            throw InputError(
+                std::string("--") + option +
+                " needs a scenario (without one, the study in the file goes on as it is). Name one or more "
+                "SCENARIO.ini, or leave it out.");
     StudyDefinition stored = stored_definition(request.output);
     request.scenarios = std::move(stored.scenarios);
     request.root_seed = stored.root_seed;

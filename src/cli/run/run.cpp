@@ -32,22 +32,28 @@ const Command& run_command() {
          set_option(),
          sweep_option(),
          {"until", "METRIC=HALFWIDTH",
-          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, such as "
-          "trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); repeatable: "
-          "all must be met",
+          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, "
+          "such as trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); "
+          "repeatable: all must be met",
           true},
          {"shard", "I/N",
-          "run block b of 256 trials where b mod N = I only; `" + program_name() + " merge` joins the files; auto: the "
-          "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
-         {"mpi", "WHEN", "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off",
-          false, {"auto", "on", "off"}},
+          "run block b of 256 trials where b mod N = I only; `" + program_name() +
+              " merge` joins the files; auto: the "
+              "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
+         {"mpi",
+          "WHEN",
+          "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off",
+          false,
+          {"auto", "on", "off"}},
          {"resume", "",
           "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
-         {"keep", "WHAT",
-          "trials: one number a trial of every column (default); aggregates: their totals over the trials only, in memory, "
-          "journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
-          false, {"trials", "aggregates"}},
+         {"keep",
+          "WHAT",
+          "trials: one number a trial of every column (default); aggregates: their totals over the trials only, in "
+          "memory, journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
+          false,
+          {"trials", "aggregates"}},
          {"commit-every", "BLOCKS",
           "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},

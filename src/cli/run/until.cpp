@@ -38,8 +38,8 @@ std::string prediction_text(const InterimAnalysis& analysis, const StoppingRule&
 
 std::string analysis_text(const InterimAnalysis& analysis, const StoppingRule& rule) {
     const GoalState& state = widest(analysis);
-    return "interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) + " trials: " + state.name + " " +
-           interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " +
+    return "interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) +
+           " trials: " + state.name + " " + interval_text(state) + ", asked ± " + width_text(state.allowed) + "; " +
            (analysis.met ? "precise enough" : prediction_text(analysis, rule));
 }
 
@@ -77,14 +77,16 @@ InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunO
     const StoppingRule rule = request.rule();
     AnalysisProgress progress(request.quiet, rule);
     options.progress = [&](const Progress& now) { progress(now); };
-    return run_until(study, rule, options,
-                     [&](const InterimAnalysis& analysis) { progress.analysis_done(analysis, study.scenarios.size()); });
+    return run_until(study, rule, options, [&](const InterimAnalysis& analysis) {
+        progress.analysis_done(analysis, study.scenarios.size());
+    });
 }
 
 std::string stopping_text(const InterimAnalysis& analysis) {
-    std::string text = "stopped at interim analysis " + std::to_string(analysis.number) + ", " + std::to_string(analysis.trials) +
-                       " trials: " + (analysis.met ? "" : "not ") + "as precise as asked. Intervals at " +
-                       formatted("%.*g", 6, 100 * (1 - analysis.alpha)) + " %, so that all analyses keep 95 %:\n";
+    std::string text = "stopped at interim analysis " + std::to_string(analysis.number) + ", " +
+                       std::to_string(analysis.trials) + " trials: " + (analysis.met ? "" : "not ") +
+                       "as precise as asked. Intervals at " + formatted("%.*g", 6, 100 * (1 - analysis.alpha)) +
+                       " %, so that all analyses keep 95 %:\n";
     std::size_t width = 0;
     for (const GoalState& state : analysis.states) width = std::max(width, state.name.size());
     for (const GoalState& state : analysis.states)

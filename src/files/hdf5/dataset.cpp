@@ -45,7 +45,8 @@ H5D_layout_t Dataset::own_layout(const Handle& creation) const {
 void Dataset::check_storage(H5D_layout_t layout) const {
     if (std::find(extents_.begin(), extents_.end(), hsize_t{0}) != extents_.end()) return;
     const hsize_t stored = H5Dget_storage_size(dataset_.id());
-    if (stored == 0) throw failure(place_, "has no values");  // 0 is also what HDF5 returns after an error of the system
+    // 0 is also what HDF5 returns after an error of the system.
+    if (stored == 0) throw failure(place_, "has no values");
     const hsize_t file = file_size(dataset_);
     // Chunks that were never written take no space in the file, so their extents cannot be checked against its size.
     hsize_t room = (layout == H5D_CHUNKED ? std::min(stored, file) * largest_compression : file) /

@@ -41,8 +41,8 @@ private:
     int exceptions_;
 };
 
-/// The system's error in which the HDF5 call that failed last ended (too many open files, a disk that cannot be read), or
-/// 0. It must be asked for before any other call to HDF5.
+/// The system's error in which the HDF5 call that failed last ended (too many open files, a disk that cannot be read),
+/// or 0. It must be asked for before any other call to HDF5.
 int system_error();
 /// The error of a call to HDF5: the system's reason if there was one, else `problem`.
 Error error_of(int system_error, const std::string& place, const std::string& problem);

@@ -104,7 +104,8 @@ Handle open_file(const std::string& path) {
         return {file, H5Fclose, whole, ""};
     const Error refused = failure(whole, "is truncated or damaged");
     // Where another user of the library in this process has it open, such as h5py, the properties must be the same.
-    if (const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT); file >= 0) return {file, H5Fclose, whole, ""};
+    if (const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT); file >= 0)
+        return {file, H5Fclose, whole, ""};
     throw refused;
 }
 

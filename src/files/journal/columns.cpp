@@ -43,7 +43,8 @@ void Journal::keep(Study& study) {
     computed_by_ = study.computed_by;
     for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
         ScenarioResults& results = study.scenarios[s];
-        Kept kept{BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
+        Kept kept{
+            BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
         kept.placed.blocks = results.blocks;
         results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
         const auto note = [&](std::size_t place) {
@@ -51,9 +52,10 @@ void Journal::keep(Study& study) {
                                                          block_size * static_cast<std::int64_t>(place), true};
         };
         const std::size_t blocks = results.blocks.size();
-        const auto with_values = results.keep == Keep::trials
-                                     ? blocks
-                                     : static_cast<std::size_t>(results.blocks.count_below(kept.layout.detailed_blocks()));
+        const auto with_values =
+            results.keep == Keep::trials
+                ? blocks
+                : static_cast<std::size_t>(results.blocks.count_below(kept.layout.detailed_blocks()));
         for (std::size_t place = 0; place < with_values; ++place) note(place);
         if (results.trials % block_size != 0) note(blocks - 1);
         for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {

@@ -41,7 +41,8 @@ std::int64_t BlockLayout::details_offset(std::size_t arm, std::int64_t trials) c
 }
 
 std::int64_t BlockLayout::details_size(std::int64_t trials) const {
-    return trials * ((errors_ + nees_) * static_cast<std::int64_t>(sizeof(float)) + moments_ * static_cast<std::int64_t>(sizeof(double)));
+    return trials * ((errors_ + nees_) * static_cast<std::int64_t>(sizeof(float)) +
+                     moments_ * static_cast<std::int64_t>(sizeof(double)));
 }
 
 std::int64_t BlockLayout::size(const JournalBlock& block) const {

@@ -102,7 +102,8 @@ void put_commit_start(ByteWriter& to, const CommitStart& start, Keep keep = Keep
 /// Throws BadBytes where the blocks or the release are invalid. With ranges, `layout` determines which of their blocks
 /// have values.
 CommitStart get_commit_start(ByteReader& from, const BlockLayout& layout);
-inline constexpr std::size_t commit_release_size = 64, commit_start_size = 36 + commit_release_size, journal_block_size = 12, journal_range_size = 16;
+inline constexpr std::size_t commit_release_size = 64, commit_start_size = 36 + commit_release_size,
+                             journal_block_size = 12, journal_range_size = 16;
 /// Size in bytes of the list of blocks.
 std::size_t block_list_size(const CommitStart& start, Keep keep);
 
@@ -119,6 +120,8 @@ std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep 
 std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, std::size_t size_after);
 
 /// The checksum over a journal's header and the checksums of its commits, continued with one more checksum.
-inline std::uint32_t seal_with(std::uint32_t seal, std::uint32_t record) { return checksum(&record, sizeof record, seal); }
+inline std::uint32_t seal_with(std::uint32_t seal, std::uint32_t record) {
+    return checksum(&record, sizeof record, seal);
+}
 
 }  // namespace credence

@@ -147,7 +147,8 @@ void Journal::check_unchanged() const {
     } catch (const InputError& error) {
         if (!file_.is_cut()) throw Failure(error.what());  // what the system said
     }
-    throw Failure("cannot read back " + file_.path() + " (another program changed it, or the disk damaged it). What is " +
+    throw Failure("cannot read back " + file_.path() +
+                  " (another program changed it, or the disk damaged it). What is " +
                   "damaged is to be computed again.");
 }
 
@@ -155,7 +156,8 @@ void Journal::finished(const Study& study) {
     if (!keeps_trials()) return;
     for (std::size_t s = 0; s < kept_.size(); ++s) {
         kept_[s].rows.clear();
-        for (const std::int64_t block : study.scenarios[s].blocks) kept_[s].rows.push_back(kept_[s].placed.places.at(block));
+        for (const std::int64_t block : study.scenarios[s].blocks)
+            kept_[s].rows.push_back(kept_[s].placed.places.at(block));
     }
 }
 

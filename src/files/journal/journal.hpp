@@ -36,7 +36,9 @@ struct PlacedBlocks {
     std::int64_t trials_of(std::int64_t block) const;
     std::int64_t trials() const;
     /// Number of trials of the smallest study that has all these blocks.
-    std::int64_t trials_up_to() const { return blocks.empty() ? 0 : blocks.back() * block_size + trials_of(blocks.back()); }
+    std::int64_t trials_up_to() const {
+        return blocks.empty() ? 0 : blocks.back() * block_size + trials_of(blocks.back());
+    }
     /// Whether `other` has the same blocks with as many trials.
     bool has(const PlacedBlocks& others) const;
 };

@@ -16,8 +16,8 @@ namespace {
 void check_same_study(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t file,
                       std::size_t first_file) {
     const auto refuse = [&](const std::string& why) {
-        throw InputError("cannot merge " + paths[file] + " with " + paths[first_file] + " (it is not of the same study: " +
-                         why + "). Merge the shards of one study.");
+        throw InputError("cannot merge " + paths[file] + " with " + paths[first_file] +
+                         " (it is not of the same study: " + why + "). Merge the shards of one study.");
     };
     const std::string difference = difference_of(definition_of(other), definition_of(first));
     if (!difference.empty()) refuse(difference);
@@ -106,7 +106,8 @@ std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
     std::vector<std::pair<std::int64_t, std::size_t>> sizes;
     for (std::size_t file = 0; file < paths.size(); ++file) {
         std::int64_t blocks = 0;
-        for (const ScenarioResults& results : read_results_without_totals(paths[file]).study.scenarios) blocks += results.blocks.count();
+        for (const ScenarioResults& results : read_results_without_totals(paths[file]).study.scenarios)
+            blocks += results.blocks.count();
         sizes.emplace_back(blocks, file);
     }
     std::sort(sizes.begin(), sizes.end());

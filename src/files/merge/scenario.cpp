@@ -21,8 +21,9 @@ public:
 
     std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
         std::vector<double> values;
-        auto span = std::upper_bound(spans_.begin(), spans_.end(), first,
-                                     [](std::int64_t row, const Span& other) { return row < other.begin + other.rows; });
+        auto span = std::upper_bound(spans_.begin(), spans_.end(), first, [](std::int64_t row, const Span& other) {
+            return row < other.begin + other.rows;
+        });
         for (; count > 0; ++span) {
             const std::int64_t skip = first - span->begin, some = std::min(count, span->rows - skip);
             const std::vector<double> read = span->source->values(column, span->first + skip, some);

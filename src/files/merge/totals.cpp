@@ -90,8 +90,9 @@ private:
                 if (same_details(results_, from, a, block)) continue;
                 std::size_t first = 0;
                 while (!merged_.parts_[first].blocks.contains(block)) ++first;
-                refuse_contradiction(path_of(place), {path_of(first)},
-                                     place_text(from, from.arms[a], block, trials_of(block)) + " differ in their errors");
+                refuse_contradiction(
+                    path_of(place), {path_of(first)},
+                    place_text(from, from.arms[a], block, trials_of(block)) + " differ in their errors");
             }
     }
 
@@ -125,7 +126,8 @@ private:
             if (fresh.contains(block)) add_totals(results_, computed);
         }
         if (totals_of(expected) != totals_of(from))
-            refuse_contradiction(path_of(place), others, "their totals of " + from.scenario.name + " contradict each other");
+            refuse_contradiction(path_of(place), others,
+                                 "their totals of " + from.scenario.name + " contradict each other");
     }
 
     /// Throws unless the totals of a file that shares only some of its blocks equal the totals of all its blocks.

@@ -11,7 +11,8 @@
 namespace credence {
 
 /// Throws InputError: a file contradicts others.
-[[noreturn]] void refuse_contradiction(const std::string& path, std::vector<std::string> others, const std::string& why);
+[[noreturn]] void refuse_contradiction(const std::string& path, std::vector<std::string> others,
+                                       const std::string& why);
 
 /// `trials 512 to 767 of b/fixed.ekf`
 std::string place_text(const ScenarioResults& results, const ArmResults& arm, std::int64_t block, std::int64_t trials);

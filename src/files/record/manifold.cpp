@@ -56,7 +56,8 @@ Vector2d turned(double angle, const Vector2d& t) { return Eigen::Rotation2Dd(ang
 
 bool has_quaternion(int coordinates, int dimension) { return coordinates == dimension + 1; }
 
-std::string required_text(const RecordSource& source, const std::string& name, const std::vector<std::string>& choices) {
+std::string required_text(const RecordSource& source, const std::string& name,
+                          const std::vector<std::string>& choices) {
     const std::string place = record_attribute_place(name), remedy = "Write " + joined(choices, " or ");
     if (!source.has_attribute(name)) throw Error(place, "is missing", remedy);
     const std::string text = source.text(name);
@@ -144,8 +145,9 @@ void Manifold::error(const double* truth, const double* estimate, double* error)
     for (const Factor& factor : factors_) {
         double sum = 0;  // NaN or infinite where a coordinate is
         for (int i = 0; i < factor.coordinates; ++i) sum += 0 * truth[i] + 0 * estimate[i];
-        const bool any_nan = std::any_of(truth, truth + factor.coordinates, [](double x) { return std::isnan(x); }) ||
-                             std::any_of(estimate, estimate + factor.coordinates, [](double x) { return std::isnan(x); });
+        const bool any_nan =
+            std::any_of(truth, truth + factor.coordinates, [](double x) { return std::isnan(x); }) ||
+            std::any_of(estimate, estimate + factor.coordinates, [](double x) { return std::isnan(x); });
         if (sum == 0)
             factor_error(factor, truth, estimate, error);
         else

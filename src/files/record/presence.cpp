@@ -60,7 +60,8 @@ std::string PresenceChecker::read(const RecordStep& step, CheckedStep& checked) 
 }
 
 /// Says what is wrong where something comes back that had left.
-std::string PresenceChecker::follow(std::vector<Stay>& stays, std::size_t at, bool here, const std::string& what) const {
+std::string PresenceChecker::follow(std::vector<Stay>& stays, std::size_t at, bool here,
+                                    const std::string& what) const {
     if (here && stays[at] == Stay::after) return what + " is a number again, after it was NaN";
     if (here) stays[at] = Stay::in;
     else if (stays[at] == Stay::in) stays[at] = Stay::after;
@@ -100,14 +101,15 @@ std::string PresenceChecker::matrix_trouble(const double* values, const std::vec
             return of + " of " + in_ticks(name) + " is NaN, and the error is not";
         for (std::size_t j = 0; j < size; ++j)
             if (!(here(i) && here(j)) && !std::isnan(values[i * size + j]))
-                return "the error of " + in_ticks(here(i) ? component_name(shape_, components[j]) : name) + " is NaN, and " +
-                       of + " is not";
+                return "the error of " + in_ticks(here(i) ? component_name(shape_, components[j]) : name) +
+                       " is NaN, and " + of + " is not";
     }
     return {};
 }
 
 std::string PresenceChecker::read_covariance(const RecordStep& step, CheckedStep& checked) {
-    if (!any_number(step.covariance, std::ptrdiff_t{shape_.n} * shape_.n)) return "the covariance is NaN, and the error is not";
+    if (!any_number(step.covariance, std::ptrdiff_t{shape_.n} * shape_.n))
+        return "the covariance is NaN, and the error is not";
     if (std::string wrong = matrix_trouble(step.covariance, members_[0], checked, "the covariance"); !wrong.empty())
         return wrong;
     const bool all = here_.size() == checked.here.size();
@@ -128,7 +130,8 @@ std::string PresenceChecker::read_variances(const RecordStep& step, CheckedStep&
         const bool here = checked.here[static_cast<std::size_t>(j)] != 0;
         const std::string name = in_ticks(component_name(shape_, j));
         if (here && std::isnan(step.covariance[j])) return "the variance of " + name + " is NaN, and the error is not";
-        if (!here && !std::isnan(step.covariance[j])) return "the error of " + name + " is NaN, and the variance is not";
+        if (!here && !std::isnan(step.covariance[j]))
+            return "the error of " + name + " is NaN, and the variance is not";
         if (here) checked.variances(j) = step.covariance[j];
     }
     return checked.variances.allFinite() ? "" : "a variance is not finite";
@@ -139,12 +142,13 @@ std::string PresenceChecker::read_own(const RecordStep& step, std::size_t b, Che
     const std::ptrdiff_t d = group.count;
     checked.own[b].resize(0, 0);
     if (!checked.whole(group) && !any_number(step.own[b], d * d)) return {};
-    if (std::string wrong = matrix_trouble(step.own[b], members_[b], checked, "the covariance of group " + in_ticks(group.name));
+    if (std::string wrong =
+            matrix_trouble(step.own[b], members_[b], checked, "the covariance of group " + in_ticks(group.name));
         !wrong.empty())
         return wrong;
     if (!checked.whole(group)) return {};
-    return read_symmetric("/group/" + group.name + "/covariance", step, step.own[b], group.count, counted_up(group.count),
-                          shape_.group_epsilons[b], checked.own[b])
+    return read_symmetric("/group/" + group.name + "/covariance", step, step.own[b], group.count,
+                          counted_up(group.count), shape_.group_epsilons[b], checked.own[b])
                ? ""
                : "the covariance of group " + in_ticks(group.name) + " is not finite";
 }

@@ -179,7 +179,8 @@ void RecordReader::require_quaternions(const RecordDataset& dataset, std::int64_
     if (wrong < 0) return;
     throw Error(dataset.place(),
                 "trial " + std::to_string(trial) + ", step " + std::to_string(step) +
-                    " (both counted from 0) has no unit quaternion at " + std::to_string(wrong) + ":" + std::to_string(wrong + 4),
+                    " (both counted from 0) has no unit quaternion at " + std::to_string(wrong) + ":" +
+                    std::to_string(wrong + 4),
                 "Write quaternions of length 1, in the order of the attribute `quaternion`");
 }
 

@@ -34,8 +34,8 @@ namespace {
 
 using ReportProgress = std::function<void(const Progress&)>;
 
-/// Reads the record in its own chart or, of states on a manifold with charts, in the other one. `read_again(other)` does
-/// the same once more.
+/// Reads the record in its own chart or, of states on a manifold with charts, in the other one. `read_again(other)`
+/// does the same once more.
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, bool other,
                      const std::function<Record(bool)>& read_again) {
     std::optional<Manifold>& manifold = reader.manifold();
@@ -59,7 +59,8 @@ Record read_file_in_chart(const std::string& path, const ReportProgress& progres
                            });
 }
 
-Record read_arrays_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, bool other) {
+Record read_arrays_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress,
+                            bool other) {
     constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;  // the arrays are in memory: a part fits a cache
     try {
         return read_in_chart(RecordReader(ArraySource(arrays), part_numbers), name, progress, other,

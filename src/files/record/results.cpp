@@ -88,15 +88,18 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
         sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
                             "between components is.");
     else if (!shape.has_joint())
-        sentences.push_back("The record has no covariance of the whole state: correlations between its groups are not judged.");
+        sentences.push_back(
+            "The record has no covariance of the whole state: correlations between its groups are not judged.");
     if (const std::string names = groups_of(shape, GroupSource::variances); !names.empty())
         sentences.push_back("Without a covariance there is no NEES of " + names + ".");
     if (shape.source(0) == GroupSource::nees && shape.has_errors)
         sentences.push_back("Of the whole state there is the NEES and nothing else.");
     if (!shape.has_errors)
-        sentences.push_back("The record has NEES and no errors: bias, directions and the size of the errors are not judged.");
+        sentences.push_back(
+            "The record has NEES and no errors: bias, directions and the size of the errors are not judged.");
     else if (const std::string names = groups_of(shape, GroupSource::nees); !names.empty())
-        sentences.push_back("Of " + names + " there is the NEES and nothing else: bias and directions are not judged by it.");
+        sentences.push_back("Of " + names +
+                            " there is the NEES and nothing else: bias and directions are not judged by it.");
     return sentences;
 }
 

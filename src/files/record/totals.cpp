@@ -34,7 +34,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
     keeps_nees_ = shape.trials <= most_values / shape.steps;
-    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
+    keeps_cells_ =
+        std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
     for (const ComponentGroup& group : shape.groups)
@@ -212,7 +213,8 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        row[RecordColumn::nis_ratio] = record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
+        row[RecordColumn::nis_ratio] =
+            record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
     for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
 }
@@ -262,7 +264,8 @@ const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
     if (f != 0 || dimensions_.empty() || dimensions_[k] == shape_.n) return &bounds_[f * coverage_level_count];
     double* all = &bounds_by_dimension_[size(dimensions_[k]) * coverage_level_count];
     for (std::size_t l = 0; all[0] == 0 && l < coverage_level_count; ++l)
-        all[coverage_level_count - 1 - l] = stable_chi_square_quantile(coverage_levels[coverage_level_count - 1 - l], dimensions_[k]);
+        all[coverage_level_count - 1 - l] =
+            stable_chi_square_quantile(coverage_levels[coverage_level_count - 1 - l], dimensions_[k]);
     return all;
 }
 

@@ -63,10 +63,12 @@ private:
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
-    std::vector<double> roundings_;              ///< [steps, 1 + groups] trials with the step, sums over them of the bounds
+    /// [steps, 1 + groups] trials with the step, sums over them of the bounds.
+    std::vector<double> roundings_;
     std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
-    std::vector<double> bounds_by_dimension_;    ///< [n + 1, levels] the same of a state of that dimension; 0: not known yet
+    /// [n + 1, levels] the same of a state of that dimension; 0: not known yet.
+    std::vector<double> bounds_by_dimension_;
 
     // State of the current trial.
     CheckedStep checked_;
@@ -74,7 +76,8 @@ private:
     RecordTrouble trouble_;                      ///< why the trial failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
-    std::vector<int> dimensions_;                ///< [steps] of the state, of version 2 with a joint covariance; else empty
+    /// [steps] of the state, of version 2 with a joint covariance; else empty.
+    std::vector<int> dimensions_;
     RowProducts products_;
     TrialMomentSums moments_;
 };

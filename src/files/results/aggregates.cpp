@@ -34,8 +34,9 @@ std::vector<T> each(const List& list, const Get& get) {
 
 Dimension new_column_dimension(const Handle& group, const ScenarioResults& results) {
     const std::vector<std::size_t> reported = reported_columns(results);
-    const auto texts = [&](const std::string& separator, std::string Column::* member) {
-        return joined(each<std::string>(reported, [&](std::size_t c) { return results.columns[c].*member; }), separator);
+    const auto texts = [&](const std::string& separator, std::string Column::*member) {
+        return joined(each<std::string>(reported, [&](std::size_t c) { return results.columns[c].*member; }),
+                      separator);
     };
     Dimension column = numbered<std::int32_t>(group, "column", 0, reported.size(), "column of the trials");
     hdf5::write_text(column.scale, "column_names", texts(" ", &Column::name));
@@ -60,7 +61,8 @@ void write_moments(const Handle& group, const std::string& name, hdf5::Dimension
     const auto sums = each<ExactSum>(items, [&](auto& i) { return moments(i).sum; }),
                squares = each<ExactSum>(items, [&](auto& i) { return moments(i).square_sum; });
     along.push_back(&part);
-    hdf5::new_variable(group, name + "_total", parts_of(sums, part.size), along, {"total of " + what, "see column_units"});
+    hdf5::new_variable(group, name + "_total", parts_of(sums, part.size), along,
+                       {"total of " + what, "see column_units"});
     hdf5::new_variable(group, name + "_square_total", parts_of(squares, part.size), along,
                        {"total of the squares of " + what, "squares of column_units"});
 }
@@ -137,8 +139,8 @@ void write_block_ranges(const Handle& group, const BlockRanges& blocks) {
     Dimension first =
         hdf5::new_dimension(group, "first_block", each<std::int64_t>(ranges, [](auto& range) { return range.first; }),
                             {"first block of a range of those that are there", "1"});
-    hdf5::new_variable(group, "last_block", each<std::int64_t>(ranges, [](auto& range) { return range.last; }), {&first},
-                       {"last block of that range", "1"});
+    hdf5::new_variable(group, "last_block", each<std::int64_t>(ranges, [](auto& range) { return range.last; }),
+                       {&first}, {"last block of that range", "1"});
     first.close();
 }
 

@@ -89,7 +89,8 @@ Sums sums_of_series(const SeriesTotals& totals, Steps steps) {
 /// The columns are rounded, so their sums are; values that are not finite are not compared.
 bool agree(double column, double series) {
     constexpr double tolerance = 1e-9;
-    return !std::isfinite(column) || !std::isfinite(series) || std::abs(column - series) <= tolerance * std::abs(column);
+    return !std::isfinite(column) || !std::isfinite(series) ||
+           std::abs(column - series) <= tolerance * std::abs(column);
 }
 
 void check_arm(const ScenarioResults& results, const ArmResults& arm, const std::string& path) {

@@ -23,8 +23,8 @@ struct CheckedColumn {
     std::optional<std::int64_t> counted;
 };
 
-/// Reads a column of an arm's group. Throws where it has wrong dimensions or the wrong type, holds an invalid status, or
-/// does not have its checksum.
+/// Reads a column of an arm's group. Throws where it has wrong dimensions or the wrong type, holds an invalid status,
+/// or does not have its checksum.
 CheckedColumn check_column(const hdf5::Handle& group, const Column& column, std::int64_t trials);
 
 /// The columns of an arm, in a file that stays open for them; `sums` of each are those of check_column. Reading throws

@@ -91,7 +91,8 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
     Scenario& scenario = results.scenario;
     for (const Setting& setting : settings)
         if (setting.key == "sweep.of") scenario.sweep.of = printable(setting.value);
-        else if (setting.key == "sweep.at") scenario.sweep.at = parse_coordinates(printable(setting.value, setting.value.size()));
+        else if (setting.key == "sweep.at")
+            scenario.sweep.at = parse_coordinates(printable(setting.value, setting.value.size()));
         else scenario.settings.push_back(setting);
     scenario.world = value_of(scenario, world_key);
     scenario.name = value_of(scenario, "scenario.name");

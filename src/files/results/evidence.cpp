@@ -69,8 +69,9 @@ void write_detailed_moments(const Handle& group, const hdf5::Dimension& detailed
                                          "moment: NEES by group, standardised error, its products, correlations of P");
     std::vector<double> values(arm.moments.size());
     std::transform(arm.moments.begin(), arm.moments.end(), values.begin(), one_nan);
-    const Handle moments = hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
-                                              {"means and sums over the steps of standardised errors and covariances", "1"});
+    const Handle moments =
+        hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
+                           {"means and sums over the steps of standardised errors and covariances", "1"});
     hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(NAN)});
     moment.close();
 }

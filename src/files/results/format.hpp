@@ -46,7 +46,8 @@ inline std::string components_text(const ComponentGroup& group) {
     return text;
 }
 
-/// The component groups of a state as the attribute `groups` has them: `pose 0:3, heading 0:1`, without the whole state.
+/// The component groups of a state as the attribute `groups` has them: `pose 0:3, heading 0:1`, without the whole
+/// state.
 inline std::string groups_text(const std::vector<ComponentGroup>& groups) {
     std::vector<std::string> texts;
     for (const ComponentGroup& group : groups)

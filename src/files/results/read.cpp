@@ -64,7 +64,8 @@ struct Opened {
     std::optional<std::int64_t> most_totals;  ///< most bytes of totals to load; nothing: they are not read
 };
 
-/// The arm's columns. Throws where they are not those of its scenario, or hold another number of trials than the totals.
+/// The arm's columns. Throws where they are not those of its scenario, or hold another number of trials than the
+/// totals.
 std::shared_ptr<const KeptColumns> read_columns(const Handle& group, const ScenarioResults& results,
                                                 const ArmResults& arm, const Opened& source) {
     std::vector<std::vector<std::uint32_t>> sums;
@@ -240,7 +241,8 @@ StoredStudy read_study(const Opened& source) {
 }
 
 Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
-    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, schema_version, most_totals};
+    Opened source{
+        std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, schema_version, most_totals};
     source.schema = read_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");

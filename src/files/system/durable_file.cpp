@@ -76,7 +76,8 @@ Output::Output(const std::string& path) : path(path), target(followed(path).stri
 void write_durably(const Output& output, const std::function<int(int descriptor)>& write) {
     // Renaming onto a device would replace the device.
     const std::optional<struct stat> status = status_of(output.target, output.path, Links::themselves);
-    if (status && !S_ISREG(status->st_mode)) fail_to_write(output.path, "there is something that is not a file", EEXIST);
+    if (status && !S_ISREG(status->st_mode))
+        fail_to_write(output.path, "there is something that is not a file", EEXIST);
     const FileSizeSignalIgnored ignored;
     write_and_rename(output, write);
     sync_folder(folder_of(output.target), output.path);

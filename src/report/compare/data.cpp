@@ -48,7 +48,11 @@ std::string csv_of(const ComparedPair& pair, std::size_t column) {
     const ComparedColumn& compared = pair.comparison.columns[column];
     const PairedComparison& paired = compared.paired;
     const Summary& difference = paired.difference;
-    std::vector<Cell> cells{pair.comparison.scenario, pair.comparison.a, pair.comparison.b, compared.name, compared.unit,
+    std::vector<Cell> cells{pair.comparison.scenario,
+                            pair.comparison.a,
+                            pair.comparison.b,
+                            compared.name,
+                            compared.unit,
                             exact_cell(static_cast<double>(paired.pairs))};
     for (const double value :
          {pair.a.mean[column], pair.b.mean[column], difference.mean, difference.standard_error, difference.ci95.low,

@@ -101,8 +101,9 @@ std::string compare_head(const CompareReport& report) {
     std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
     text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
     const bool trials = first_pair.keep == Keep::trials;
-    text += report.of_records ? "Both of a pair are of the same run"
-                              : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
+    text += report.of_records
+                ? "Both of a pair are of the same run"
+                : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
     return text + ". Intervals are two-sided 95 %" +
            (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
                    : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: " + program_name() +
@@ -158,9 +159,11 @@ std::string compare_notes(const CompareReport& report) {
     for (const ComparedPair& pair : report.pairs)
         if (of_different_worlds(pair)) other_worlds.push_back(pair.comparison.scenario);
     if (!other_worlds.empty())
-        text += wrapped("note: A and B are different worlds, as their sensors differ: " + joined(other_worlds) +
-                            ". Their trials still share the truth of the features, the noise of the motion and the draws of "
-                            "the measurements, so differences are of pairs. They show what the sensor does, too.") + "\n";
+        text +=
+            wrapped("note: A and B are different worlds, as their sensors differ: " + joined(other_worlds) +
+                    ". Their trials still share the truth of the features, the noise of the motion and the draws of "
+                    "the measurements, so differences are of pairs. They show what the sensor does, too.") +
+            "\n";
     if (!complete)
         text += "note: a study is not complete" +
                 (not_run == 0 ? "" : ": " + std::to_string(not_run) + " of " + std::to_string(report.pairs.size()) +
@@ -175,8 +178,8 @@ std::string pair_head(const ComparedPair& pair) {
     std::string sides = "A = " + comparison.a + ", B = " + comparison.b + ": " +
                         (pair.not_run() ? not_run_text(pair) : std::to_string(pair.pairs()) + " pairs");
     if (pair.a.trials != pair.b.trials)
-        sides += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " + std::to_string(pair.a.trials) +
-                 ", B has " + std::to_string(pair.b.trials);
+        sides += ", of the " + std::to_string(pair.trials) + " trials that both have: A has " +
+                 std::to_string(pair.a.trials) + ", B has " + std::to_string(pair.b.trials);
     text += "  " + wrapped(sides, 2) + "\n";
     std::vector<std::string> parts;
     for (const KeyDifference& key : pair.differences)

@@ -21,7 +21,8 @@ void check_same_world(const ChosenPair& pair) {
     for (const StudyFile* file : {&pair.file_a, &pair.file_b})
         if (keep_of(file->study) == Keep::aggregates)
             throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path + " trial by trial (" +
-                             file->path + " keeps aggregates: no trials, and differences of its own arms only). Run it " +
+                             file->path +
+                             " keeps aggregates: no trials, and differences of its own arms only). Run it " +
                              "with --keep trials, or compare arms of one file.");
     const Scenario &a = pair.a.results.scenario, &b = pair.b.results.scenario;
     for (const KeyDifference& difference : key_differences(a, b))

@@ -75,13 +75,17 @@ Json chart_json(const ChartEvidence& chart) {
 }
 
 Json nis_json(const NisEvidence& nis) {
-    return {{"rows", nis.part}, {"degrees", nis.degrees}, {"ratio", nis.ratio},
-            {"ratio_ci95", interval_json(nis.ratio95)}, {"scale95", interval_json(nis.scale95)}, {"by_step", banded_json(nis.nis)}};
+    return {{"rows", nis.part},
+            {"degrees", nis.degrees},
+            {"ratio", nis.ratio},
+            {"ratio_ci95", interval_json(nis.ratio95)},
+            {"scale95", interval_json(nis.scale95)},
+            {"by_step", banded_json(nis.nis)}};
 }
 
 Json whiteness_json(const Whiteness& lag) {
-    return {{"lag", lag.lag}, {"correlation", lag.correlation}, {"scaled", lag.scaled}, {"count", lag.count}, {"bound95", lag.bound},
-            {"simultaneous_bound95", lag.simultaneous_bound}};
+    return {{"lag", lag.lag},     {"correlation", lag.correlation}, {"scaled", lag.scaled},
+            {"count", lag.count}, {"bound95", lag.bound},           {"simultaneous_bound95", lag.simultaneous_bound}};
 }
 
 Json bias_json(const BiasEvidence& bias) {
@@ -93,11 +97,12 @@ Json bias_json(const BiasEvidence& bias) {
 Json credibility_json(const CredibilityEvidence& evidence) {
     std::int64_t trials = 0;
     for (const Credibility& step : evidence.step) trials = std::max(trials, step.count);
-    return {{"trials", trials},
-            {"nci", evidence.nci},
-            {"inclination", evidence.inclination},
-            {"nci_by_step", each_json(evidence.step, [](const Credibility& step) { return step.nci; })},
-            {"inclination_by_step", each_json(evidence.step, [](const Credibility& step) { return step.inclination; })}};
+    return {
+        {"trials", trials},
+        {"nci", evidence.nci},
+        {"inclination", evidence.inclination},
+        {"nci_by_step", each_json(evidence.step, [](const Credibility& step) { return step.nci; })},
+        {"inclination_by_step", each_json(evidence.step, [](const Credibility& step) { return step.inclination; })}};
 }
 
 }  // namespace
@@ -108,7 +113,9 @@ Json evidence_json(const Evidence& evidence) {
               {"whiteness", each_json(evidence.whiteness, whiteness_json)},
               {"bias", each_json(evidence.bias, bias_json)},
               {"distribution",
-               {{"exact", evidence.distribution.exact}, {"distance", evidence.distribution.distance}, {"p", evidence.distribution.p}}},
+               {{"exact", evidence.distribution.exact},
+                {"distance", evidence.distribution.distance},
+                {"p", evidence.distribution.p}}},
               {"credibility", credibility_json(evidence.credibility)}};
     if (!evidence.charts.empty()) json["other_charts"] = each_json(evidence.charts, chart_json);
     return json;

@@ -100,8 +100,11 @@ Json directions_json(const DirectionsFound& directions) {
                             {"loadings", loadings_json(one.loadings)}});
         return json;
     };
-    return {{"trials", directions.trials}, {"range95", interval_json(directions.range)}, {"spectrum", directions.spectrum},
-            {"largest", list(directions.largest)}, {"smallest", list(directions.smallest)}};
+    return {{"trials", directions.trials},
+            {"range95", interval_json(directions.range)},
+            {"spectrum", directions.spectrum},
+            {"largest", list(directions.largest)},
+            {"smallest", list(directions.smallest)}};
 }
 
 Json arm_json(const Report& report, const ArmReport& arm) {
@@ -126,7 +129,8 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["hints"] = arm.consistency.hints;
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};
     for (const WorstTrial& one : arm.evidence.worst.trials)
-        json["worst_trials"]["trials"].push_back({{"trial", one.trial}, {"nees_ratio", one.nees_ratio}, {"step", one.step}});
+        json["worst_trials"]["trials"].push_back(
+            {{"trial", one.trial}, {"nees_ratio", one.nees_ratio}, {"step", one.step}});
     json["suspicions"] = suspicions_json(arm.consistency.suspicions);
     json["findings"] = findings_json(arm.consistency.findings);
     json["cautions"] = findings_json(arm.consistency.cautions);
@@ -154,8 +158,8 @@ std::string row_of(Cells cells, const Summary& s, const std::optional<Interval>&
                    const std::optional<PublishedPlace>& published, const Cells& end) {
     const Interval resampled = bootstrap.value_or(Interval{nan, nan});
     const PublishedPlace place = published.value_or(PublishedPlace{nan, nan});
-    for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high, s.median,
-                               s.standard_deviation, place.value, place.percentile})
+    for (const double value : {s.mean, s.standard_error, s.ci95.low, s.ci95.high, resampled.low, resampled.high,
+                               s.median, s.standard_deviation, place.value, place.percentile})
         cells.push_back(exact_cell(value));
     return csv_row(std::move(cells) + end);
 }
@@ -211,7 +215,8 @@ private:
         add(column, moments.mean, moments.standard_error, t_interval(moments), moments.standard_deviation);
     }
     /// For NIS at a step the interval is its joint chi-square band: there is no spread of trials to take one from.
-    void add_steps(const std::string& column, const std::vector<double>& values, const std::vector<Interval>& intervals) {
+    void add_steps(const std::string& column, const std::vector<double>& values,
+                   const std::vector<Interval>& intervals) {
         for (std::size_t k = 0; k < values.size(); ++k)
             add(column + ":" + std::to_string(k + 1), values[k], nan, intervals.empty() ? none : intervals[k]);
     }
@@ -251,16 +256,19 @@ std::string report_csv(const Report& report) {
                       "bootstrap95_low", "bootstrap95_high", "median", "sd", "published", "percentile", "verdict"};
     std::string text = csv_row(heads + sweep.heads() + Cells{"failed_trials"});
     for (const ArmReport& arm : report.arms) {
-        const Cells end = Cells{verdict_word(arm)} + sweep.cells(arm.scenario) + Cells{std::to_string(arm.failed_trials())};
+        const Cells end =
+            Cells{verdict_word(arm)} + sweep.cells(arm.scenario) + Cells{std::to_string(arm.failed_trials())};
         for (const ColumnReport& column : arm.columns)
-            text += row_of(start_of(arm, column.name, column.unit), column.summary, column.bootstrap95, column.published, end);
+            text += row_of(start_of(arm, column.name, column.unit), column.summary, column.bootstrap95,
+                           column.published, end);
         text += EvidenceRows(arm, end).text();
     }
     for (const Comparison& pair : report.pairs)
         for (const ComparedColumn& column : pair.columns)
-            text += row_of({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
-                           column.paired.difference, column.paired.bootstrap95, std::nullopt,
-                           Cells{""} + sweep.cells(pair.scenario) + Cells{""});
+            text +=
+                row_of({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
+                       column.paired.difference, column.paired.bootstrap95, std::nullopt,
+                       Cells{""} + sweep.cells(pair.scenario) + Cells{""});
     return text;
 }
 

@@ -88,12 +88,13 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
         html += "<p>The file was made by</p>\n"_html + command(line);
     const bool all_shown = points_have_sections(swept_scenarios(report));
-    html += all_shown
-                ? "<p>Without the scenario files: save the scenarios of this page, each under its name, and run the same "
-                  "trials. Any number of threads gives the same bits, which the second command checks.</p>\n"_html +
-                      command(run_again(report)) + command("h5diff --exclude-path /run " + file + " again.h5")
-                : "<p>The points of large grids have no section of their own here. The text of every scenario is in the "
-                  "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
+    html +=
+        all_shown
+            ? "<p>Without the scenario files: save the scenarios of this page, each under its name, and run the same "
+              "trials. Any number of threads gives the same bits, which the second command checks.</p>\n"_html +
+                  command(run_again(report)) + command("h5diff --exclude-path /run " + file + " again.h5")
+            : "<p>The points of large grids have no section of their own here. The text of every scenario is in the "
+              "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
     html +=
         "<p>This page, and the same with every digit:</p>\n"_html +
         command(program_name() + " report " + file + limits + " --format html -o page.html") +

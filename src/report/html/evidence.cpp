@@ -60,9 +60,9 @@ Html omitted_groups(const Part& part) {
 }
 
 Html charts_table(const Part& part) {
-    const Table table(
-        part.scenario.name + ": NEES with the error in another chart and the same covariance; the verdict is without it",
-        {"group", "chart", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band"});
+    const Table table(part.scenario.name +
+                          ": NEES with the error in another chart and the same covariance; the verdict is without it",
+                      {"group", "chart", "NEES/dim", "95 %", "standard error", "out of joint band", "out of own band"});
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const ChartEvidence& chart : evidence.charts) {
             const Interval over_steps = t_interval(chart.run);
@@ -116,10 +116,10 @@ Html whiteness_table(const Part& part) {
     return by_arm(part, table, [](const Evidence& evidence, Table& rows) {
         for (const Whiteness& lag : evidence.whiteness) {
             const int digits = decimals_for(lag.bound);
-            rows.row(
-                count_cell(lag.lag),
-                {number_cell(lag.correlation, digits), number_cell(lag.scaled, digits), "± " + number_cell(lag.bound, digits),
-                 "± " + number_cell(lag.simultaneous_bound, digits), count_cell(static_cast<double>(lag.count))});
+            rows.row(count_cell(lag.lag),
+                     {number_cell(lag.correlation, digits), number_cell(lag.scaled, digits),
+                      "± " + number_cell(lag.bound, digits), "± " + number_cell(lag.simultaneous_bound, digits),
+                      count_cell(static_cast<double>(lag.count))});
         }
     });
 }
@@ -145,8 +145,9 @@ Html distribution_table(const Part& part) {
 }  // namespace
 
 Html evidence_tables(const Part& part) {
-    const Html html = groups_table(part) + omitted_groups(part) + charts_table(part) + coverage_table(part) + nis_table(part) +
-                      distribution_table(part) + folded("Whiteness of the innovations, lag by lag", whiteness_table(part)) +
+    const Html html = groups_table(part) + omitted_groups(part) + charts_table(part) + coverage_table(part) +
+                      nis_table(part) + distribution_table(part) +
+                      folded("Whiteness of the innovations, lag by lag", whiteness_table(part)) +
                       direction_tables(part) + worst_trials_table(part);
     return html.empty() ? html : "<h3>Is the covariance right?</h3>\n"_html + html;
 }

@@ -56,7 +56,8 @@ Html operator""_html(const char* text, std::size_t size) { return Html::trusted(
 
 Html escaped(std::string_view text) {
     std::string safe;
-    for (const char& c : with_controls_as(text, [](std::string_view) { return "\xEF\xBF\xBD"; })) safe += entity(c);  // U+FFFD
+    // U+FFFD.
+    for (const char& c : with_controls_as(text, [](std::string_view) { return "\xEF\xBF\xBD"; })) safe += entity(c);
     return Html::trusted(std::move(safe));
 }
 
@@ -94,8 +95,9 @@ namespace {
 
 Html row_html(const Table::Row& row, const Table& table) {
     if (row.heads_group)
-        return "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html + escaped(std::to_string(table.heads().size())) + "\">"_html +
-               html_of(row.cells.front()) + "</th></tr>\n"_html;
+        return "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html +
+               escaped(std::to_string(table.heads().size())) + "\">"_html + html_of(row.cells.front()) +
+               "</th></tr>\n"_html;
     Html html;
     for (std::size_t c = 0; c < row.cells.size(); ++c)
         html += c < table.row_heads() ? element("th", html_of(row.cells[c]), "scope=\"row\""_html)
@@ -115,8 +117,8 @@ Html html_of(const Table& table) {
         rows += row_html(row, table);
     }
     const Html caption = escaped(table.caption());
-    const Html html = element("caption", caption) + "\n<thead><tr>"_html + heads + "</tr></thead>\n<tbody>\n"_html + rows +
-                      "</tbody>"_html;
+    const Html html = element("caption", caption) + "\n<thead><tr>"_html + heads + "</tr></thead>\n<tbody>\n"_html +
+                      rows + "</tbody>"_html;
     return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\""_html + caption + "\">"_html +
            element("table", html) + "</div>\n"_html;
 }

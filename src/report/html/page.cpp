@@ -41,8 +41,8 @@ Html head(const std::string& title) {
 
 Html intro(const Report& report, const PageOrigin& origin) {
     Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
-                element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) + "\n"_html +
-                element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
+                element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) +
+                "\n"_html + element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
     Html warnings;
     for (const std::string& warning : warnings_of(report)) warnings += element("li", escaped(warning));
     if (!warnings.empty()) html += element("ul", warnings, "class=\"warnings\""_html) + "\n"_html;

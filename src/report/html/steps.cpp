@@ -52,10 +52,14 @@ Html group_table(const ArmReport& arm, const GroupEvidence& group) {
         heads.push_back("Wilson 95 %");
     }
     return by_step(name_of(arm) + ": group " + group.name + " by step", arm.evidence.steps, heads, [&](std::size_t k) {
-        std::vector<Cell> cells{
-            short_cell(group.anees.ratio[k]),       short_cell(group.step[k].standard_error),     short_cell(group.anees.degrees[k]),
-            range_cell(group.anees.band[k]),        range_cell(group.anees.simultaneous_band[k]), short_cell(group.variance_ratio[k]),
-            short_cell(at(group.accuracy.rmse, k)), short_cell(at(group.accuracy.predicted, k))};
+        std::vector<Cell> cells{short_cell(group.anees.ratio[k]),
+                                short_cell(group.step[k].standard_error),
+                                short_cell(group.anees.degrees[k]),
+                                range_cell(group.anees.band[k]),
+                                range_cell(group.anees.simultaneous_band[k]),
+                                short_cell(group.variance_ratio[k]),
+                                short_cell(at(group.accuracy.rmse, k)),
+                                short_cell(at(group.accuracy.predicted, k))};
         for (const Coverage& level : group.coverage) {
             cells.push_back(short_cell(level.share[k]));
             cells.push_back(range_cell(level.interval[k]));
@@ -77,8 +81,8 @@ Html chart_table(const ArmReport& arm, const ChartEvidence& chart) {
 Html nis_table(const ArmReport& arm, const NisEvidence& nis) {
     return by_step(name_of(arm) + ": NIS of the rows " + nis.part + " by step", observed(nis.nis.ratio),
                    {"NIS/m", "Σm", "band 95 %", "joint band 95 %"}, [&](std::size_t k) -> std::vector<Cell> {
-                       return {short_cell(nis.nis.ratio[k]), short_cell(nis.nis.degrees[k]), range_cell(nis.nis.band[k]),
-                               range_cell(nis.nis.simultaneous_band[k])};
+                       return {short_cell(nis.nis.ratio[k]), short_cell(nis.nis.degrees[k]),
+                               range_cell(nis.nis.band[k]), range_cell(nis.nis.simultaneous_band[k])};
                    });
 }
 
@@ -101,7 +105,8 @@ Html distribution_table(const ArmReport& arm) {
     return by_step(name_of(arm) + ": distance of the NEES from chi-square, and credibility, by step", evidence.steps,
                    {"distance", "p", "NCI", "I²"}, [&](std::size_t k) -> std::vector<Cell> {
                        const bool known = k < evidence.credibility.step.size();
-                       return {short_cell(at(evidence.distribution.distance, k)), short_cell(at(evidence.distribution.p, k)),
+                       return {short_cell(at(evidence.distribution.distance, k)),
+                               short_cell(at(evidence.distribution.p, k)),
                                short_cell(known ? evidence.credibility.step[k].nci : std::nan("")),
                                short_cell(known ? evidence.credibility.step[k].inclination : std::nan(""))};
                    });

@@ -40,7 +40,8 @@ public:
         for (const std::string& name : arms_) tables += html_of(arm_table(swept_, grid_, name));
         for (const std::string& name : pairs_) tables += html_of(pair_table(swept_, grid_, name));
         return "<section aria-labelledby=\""_html + escaped(id_) + "\">\n"_html +
-               element("h2", escaped("Sweep of " + grid_.of + " over " + keys_), "id=\""_html + escaped(id_) + "\""_html) +
+               element("h2", escaped("Sweep of " + grid_.of + " over " + keys_),
+                       "id=\""_html + escaped(id_) + "\""_html) +
                "\n<h3>Curves</h3>\n"_html + curves() + "<h3>By point</h3>\n"_html + tables + "</section>\n"_html;
     }
 
@@ -62,9 +63,14 @@ private:
         for (const SweptColumn& one : columns_of(arms_, arm)) {
             const bool is_nees = one.name == "nees_ratio", is_ratio = is_nees || one.name == "nis_ratio";
             constexpr double spread = 20;  // beyond it the small values could not be distinguished from 0
-            const SweptCurves drawn{grid_, curve_axis(grid_), arms_, column_words(one.name, one.unit),
-                                    is_ratio ? std::optional<double>(1) : std::nullopt, is_nees ? report_.limits.margin : 0,
-                                    spread, [&](const GridPoint& point, const std::string& name) {
+            const SweptCurves drawn{grid_,
+                                    curve_axis(grid_),
+                                    arms_,
+                                    column_words(one.name, one.unit),
+                                    is_ratio ? std::optional<double>(1) : std::nullopt,
+                                    is_nees ? report_.limits.margin : 0,
+                                    spread,
+                                    [&](const GridPoint& point, const std::string& name) {
                                         return summary_of(swept_.arm(point, name), one.name);
                                     }};
             of_arms += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
@@ -77,7 +83,8 @@ private:
                                     }};
             of_pairs += swept_panels(drawn, id_ + "." + std::to_string(number++) + "-");
         }
-        return legend(arms_) + chart_group("Arms", "Means with their 95 % intervals; shaded: within the margin.", of_arms) +
+        return legend(arms_) +
+               chart_group("Arms", "Means with their 95 % intervals; shaded: within the margin.", of_arms) +
                (of_pairs.empty() ? Html() : legend(pairs_)) +
                chart_group("Pairs, trial by trial", "Below 0 the first arm has less.", of_pairs);
     }

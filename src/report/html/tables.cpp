@@ -97,9 +97,10 @@ Html difference_table(const Comparison& pair) {
         const Summary& s = paired.difference;
         const int digits = decimals_for(half_width(s.ci95), s.mean);
         table.row(column_words(one.name, one.unit),
-                  {number_cell(s.mean, digits), interval_cell(s.ci95, digits), interval_cell(paired.bootstrap95, digits),
-                   number_cell(s.median, digits), share_cell(paired.wins_a), share_cell(paired.wins_b), share_cell(paired.ties),
-                   p_cell(one.holm_p), number_cell(paired.effect_size, 3), number_cell(paired.variance_reduction, 2)});
+                  {number_cell(s.mean, digits), interval_cell(s.ci95, digits),
+                   interval_cell(paired.bootstrap95, digits), number_cell(s.median, digits), share_cell(paired.wins_a),
+                   share_cell(paired.wins_b), share_cell(paired.ties), p_cell(one.holm_p),
+                   number_cell(paired.effect_size, 3), number_cell(paired.variance_reduction, 2)});
     }
     return html_of(table);
 }

@@ -20,9 +20,10 @@ std::string why(const ArmReport& arm) {
     if (arm.not_run()) return no_claim_text(arm);
     const std::vector<Reason> reasons = reasons_of(arm);
     if (arm.consistency.verdict == Verdict::consistent)
-        return "NEES/dim of the whole state and of every group is within 1 ± " + to_text(arm.consistency.limits.margin) +
-               ", the squared error of every direction within 1 ± " + to_text(arm.consistency.limits.direction) +
-               " of P's, every bias within " + to_text(arm.consistency.limits.bias) + " sigma";
+        return "NEES/dim of the whole state and of every group is within 1 ± " +
+               to_text(arm.consistency.limits.margin) + ", the squared error of every direction within 1 ± " +
+               to_text(arm.consistency.limits.direction) + " of P's, every bias within " +
+               to_text(arm.consistency.limits.bias) + " sigma";
     std::vector<std::string> deciding;
     for (const Reason& reason : reasons)
         if (reason.decides) deciding.push_back(reason_text(reason));
@@ -36,10 +37,11 @@ Html numbers_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
     const Summary& nees = column_named(arm.columns, "nees_ratio").summary;
     const Summary& nis = column_named(arm.columns, "nis_ratio").summary;
-    return html_of("NEES/n " + mean_cell(nees.mean, nees.ci95) +
-                   (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) + " of " +
-                   count_cell(static_cast<double>(arm.trials)) + " trials failed" +
-                   (arm.diverged > 0 ? ", " + count_cell(static_cast<double>(arm.diverged)) + " of them diverged" : Cell()));
+    return html_of(
+        "NEES/n " + mean_cell(nees.mean, nees.ci95) +
+        (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) + " of " +
+        count_cell(static_cast<double>(arm.trials)) + " trials failed" +
+        (arm.diverged > 0 ? ", " + count_cell(static_cast<double>(arm.diverged)) + " of them diverged" : Cell()));
 }
 
 Html verdict_line(const ArmReport& arm) {
@@ -80,7 +82,8 @@ Html arm_findings(const ArmReport& arm) {
     all.insert(all.end(), verdict.cautions.begin(), verdict.cautions.end());
     const Html table = html_of(
         findings_table(arm.scenario + ", " + arm.arm + ": findings, and notes that do not bear on the verdict", all));
-    return element("h4", escaped(arm.arm) + " "_html + html_of(verdict_cell(arm))) + "\n"_html + element("ul", lines) + "\n"_html +
+    return element("h4", escaped(arm.arm) + " "_html + html_of(verdict_cell(arm))) + "\n"_html + element("ul", lines) +
+           "\n"_html +
            (all.size() <= most
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
@@ -121,10 +124,12 @@ Html verdicts(const Report& report) {
            "NEES/dim 1 "
            "in every group of components and at every step; the verdict holds all of them against 1 ± "_html +
            escaped(to_text(report.limits.margin) + ", the squared error of every direction against 1 ± " +
-                   to_text(report.limits.direction) + " of what P says, and every bias against " + to_text(report.limits.bias) + " sigma") +
+                   to_text(report.limits.direction) + " of what P says, and every bias against " +
+                   to_text(report.limits.bias) + " sigma") +
            ". Optimistic: the filter believes itself more than its errors warrant (P too small). Pessimistic: less (P "
            "too "
-           "large). Failed: more than "_html + escaped(short_number(100 * report.limits.failed)) +
+           "large). Failed: more than "_html +
+           escaped(short_number(100 * report.limits.failed)) +
            " % of its trials failed. Intervals are two-sided 95 %.</p>\n"_html +
            (lines.empty() ? Html() : "<ul class=\"verdicts\">\n"_html + lines + "</ul>\n"_html) + "</section>\n"_html;
 }

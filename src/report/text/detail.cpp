@@ -61,7 +61,8 @@ std::string charts_part(const Evidence& evidence) {
     std::vector<std::string> parts;
     for (const ChartEvidence& chart : evidence.charts)
         parts.push_back(chart.name + " " + with_interval(chart.run.mean, t_interval(chart.run)));
-    return "    " + wrapped_list("NEES/dim in the " + evidence.charts.front().chart + " chart, not judged:", parts, 4) + "\n";
+    return "    " + wrapped_list("NEES/dim in the " + evidence.charts.front().chart + " chart, not judged:", parts, 4) +
+           "\n";
 }
 
 std::string innovations_part(const Evidence& evidence) {
@@ -74,18 +75,21 @@ std::string innovations_part(const Evidence& evidence) {
     const Whiteness& first = evidence.whiteness.front();
     if (!first.known()) return text + "    innovations: their correlation could not be computed\n";
     const int outside = lags_outside(evidence.whiteness);
-    return text + "    " + wrapped("innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
-                                       " (white within ± " + number(first.bound, 4) + "); " +
-                                       of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
-                                       " lags outside their joint bounds", 4) + "\n";
+    return text + "    " +
+           wrapped("innovations: correlation " + number(first.scaled, 4) + " at lag " + std::to_string(first.lag) +
+                       " (white within ± " + number(first.bound, 4) + "); " +
+                       of_steps(outside, static_cast<int>(evidence.whiteness.size())) +
+                       " lags outside their joint bounds",
+                   4) +
+           "\n";
 }
 
 std::string distribution_part(const Evidence& evidence) {
     std::string text;
     if (const WorstDistribution worst = worst_distribution(evidence.distribution); worst.known > 0)
         text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +
-                std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) + " over all " +
-                std::to_string(worst.known) + " steps)\n";
+                std::to_string(worst.step) + " (p " + (worst.p < 1e-4 ? "< 0.0001" : number(worst.p, 4)) +
+                " over all " + std::to_string(worst.known) + " steps)\n";
     if (std::isfinite(evidence.credibility.nci) && std::isfinite(evidence.credibility.inclination))
         text += "    NCI " + number(evidence.credibility.nci, 3) + ", I² " +
                 number(evidence.credibility.inclination, 3) +
@@ -129,7 +133,8 @@ std::string scenario_detail(const Report& report, const Scenario& scenario) {
     if (!has_run(report, scenario.name)) return text + "  not run yet\n";
     Table table("", {"", "mean ± 95 %", "bootstrap 95 %", "median", "sd",
                      has_published(report, scenario.name) ? "published (pctl.)" : ""});
-    for (const std::string& name : detailed_columns(report, scenario.name)) add_column(table, report, scenario.name, name);
+    for (const std::string& name : detailed_columns(report, scenario.name))
+        add_column(table, report, scenario.name, name);
     text += table_text(table, 0);
     for (const ArmReport& arm : report.arms)
         if (arm.scenario == scenario.name) text += consistency_part(arm);

@@ -19,7 +19,8 @@ namespace {
 std::string why(const ArmReport& arm) {
     constexpr std::size_t indent = 6;
     std::vector<std::string> lines;
-    for (const Reason& reason : reasons_of(arm)) lines.push_back("    " + wrapped_list(reason.head, reason.parts, indent));
+    for (const Reason& reason : reasons_of(arm))
+        lines.push_back("    " + wrapped_list(reason.head, reason.parts, indent));
     return joined(lines, "\n  ");
 }
 
@@ -52,10 +53,11 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
 std::string report_text(const Report& report) {
     std::string text;
     for (const std::string& warning : warnings_of(report)) text += wrapped(warning) + "\n";
-    text += report.source + ": " + trials_text(report) +
-            ".\nA consistent filter has NEES/dim 1 in every group of components and at every step, and errors as large as P says in\n"
-            "every direction. The verdict holds them against 1 ± " + to_text(report.limits.margin) + " and 1 ± " +
-            to_text(report.limits.direction) + ". Intervals are two-sided 95 %.\n\n";
+    text += report.source + ": " + trials_text(report) + ".\n";
+    text +=
+        "A consistent filter has NEES/dim 1 in every group of components and at every step, and errors as large as P ";
+    text += "says in\nevery direction. The verdict holds them against 1 ± " + to_text(report.limits.margin) +
+            " and 1 ± " + to_text(report.limits.direction) + ". Intervals are two-sided 95 %.\n\n";
     const std::vector<const ArmReport*> arms = arms_by_themselves(report);
     text += verdicts_part(arms);
     for (const Scenario& scenario : report.scenarios)

@@ -15,8 +15,10 @@ std::string sweep_text(const Report& report) {
         for (const GridAxis& axis : grid.axes)
             keys.push_back(axis.key + " (" + std::to_string(axis.values.size()) + " values)");
         text += wrapped("sweep of " + grid.of + " over " + joined(keys) + ": mean ± 95 %") + "\n";
-        for (const std::string& name : swept.arm_names(grid)) text += "  " + name + "\n" + table_text(arm_table(swept, grid, name), 4);
-        for (const std::string& name : swept.pair_names(grid)) text += "  " + name + ", trial by trial\n" + table_text(pair_table(swept, grid, name), 4);
+        for (const std::string& name : swept.arm_names(grid))
+            text += "  " + name + "\n" + table_text(arm_table(swept, grid, name), 4);
+        for (const std::string& name : swept.pair_names(grid))
+            text += "  " + name + ", trial by trial\n" + table_text(pair_table(swept, grid, name), 4);
         text += "\n";
     }
     return text.empty() ? text

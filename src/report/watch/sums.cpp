@@ -28,7 +28,8 @@ bool is_of(const Shard& shard, std::int64_t block) { return block % shard.count 
 std::int64_t count_of(const BlockRanges& blocks, const Shard& shard) {
     std::int64_t count = 0;
     for (const BlockRange& range : blocks.ranges())
-        count += blocks_of_shard(shard, block_size * (range.last + 1)) - blocks_of_shard(shard, block_size * range.first);
+        count +=
+            blocks_of_shard(shard, block_size * (range.last + 1)) - blocks_of_shard(shard, block_size * range.first);
     return count;
 }
 

@@ -32,7 +32,8 @@ std::string state_text(const Snapshot& snapshot) {
         case RunState::begun: return "begun, nothing committed yet";
         case RunState::complete: return "complete, " + trials;
         case RunState::incomplete:
-            return (snapshot.shard.count > 1 ? "a whole part, " + trials : "not all there, " + trials) + shard_text(snapshot);
+            return (snapshot.shard.count > 1 ? "a whole part, " + trials : "not all there, " + trials) +
+                   shard_text(snapshot);
         case RunState::running: break;
     }
     const double share = 100 * static_cast<double>(snapshot.trials_done()) /
@@ -68,7 +69,8 @@ Cell mean_cell_of(const Moments& moments) {
 
 void add_scenario(Table& table, const WatchedScenario& scenario) {
     if (scenario.trials == 0) {
-        table.group(wrapped(scenario.name + ": not run yet, " + std::to_string(scenario.trials_asked) + " trials asked for"));
+        table.group(
+            wrapped(scenario.name + ": not run yet, " + std::to_string(scenario.trials_asked) + " trials asked for"));
         return;
     }
     table.group(wrapped(scenario.name + ": " + of_text(scenario.trials, scenario.trials_asked) + " trials, " +

@@ -68,8 +68,8 @@ Real weighted_trace(const Symmetric<Real, capacity>& P, const Layout& layout, co
     return sum;
 }
 
-/// Calls visit(d_j) with the pivots of A = L D L', L unit lower triangular, for j = 0 ... n - 1. entry(i, j) gives A for
-/// i >= j. L D is written to the part of `room` below the diagonal, which is not part of a symmetric matrix.
+/// Calls visit(d_j) with the pivots of A = L D L', L unit lower triangular, for j = 0 ... n - 1. entry(i, j) gives A
+/// for i >= j. L D is written to the part of `room` below the diagonal, which is not part of a symmetric matrix.
 template <class Real, int capacity, class Entry, class Visit>
 void each_pivot(int n, const Entry& entry, Symmetric<Real, capacity>& room, const Visit& visit) {
     auto& LD = room.entry;

@@ -5,9 +5,9 @@
 //   u   a candidate's move in the world, a = J u; d0 = f_j - r before the move; rows H0_j = [-J d0_j, -I, I]
 //   r_j believed variance of sighting j; v_j = 1/(kappa + r_j), 0 where unseen; W the weights of the trace
 // In the frame of the old heading H0 does not depend on the candidate. Without the fresh heading noise, and with kappa
-// below every eigenvalue of H0 P H0', trace(W P+) is convex in v: its tangent at a reference bounds every candidate from
-// below, for some twenty operations each. Candidates whose bound lies above an exact cost that is already known are
-// discarded.
+// below every eigenvalue of H0 P H0', trace(W P+) is convex in v: its tangent at a reference bounds every candidate
+// from below, for some twenty operations each. Candidates whose bound lies above an exact cost that is already known
+// are discarded.
 
 #include <credence/detail/lane.hpp>
 #include "slam/planning/turned_trace.hpp"

@@ -73,8 +73,8 @@ std::vector<Point> feature_translations(const DeformableSettings& scenario);
 std::vector<Point> sway_offsets(const DeformableSettings& scenario);
 /// Control of the fixed path from pose k to k + 1, k = 0 ... K - 2 [docs/model.md, Controllers].
 std::vector<Control> fixed_controls(const DeformableSettings& scenario);
-/// Control along control.waypoints from pose k to k + 1, k = 0 ... K - 2; no motion where there are none [docs/model.md,
-/// Controllers].
+/// Control along control.waypoints from pose k to k + 1, k = 0 ... K - 2; no motion where there are none
+/// [docs/model.md, Controllers].
 std::vector<Control> waypoint_controls(const DeformableSettings& scenario);
 /// The planners' candidates in the order that decides ties [docs/model.md, Controllers].
 std::vector<Control> planner_candidates(const DeformableSettings& scenario);

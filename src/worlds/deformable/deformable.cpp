@@ -83,8 +83,8 @@ Trajectory DeformableSimulation::replay(const Scenario&, std::size_t arm, std::u
 
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials, const Target& target) {
     const DeformableSimulation simulation(problem, target);
-    return run_block(simulation, trial_columns(problem.scenario()), arms_of(problem.scenario()).size(), root_seed, index,
-                     trials);
+    return run_block(simulation, trial_columns(problem.scenario()), arms_of(problem.scenario()).size(), root_seed,
+                     index, trials);
 }
 
 }  // namespace credence

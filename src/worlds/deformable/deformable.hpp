@@ -13,8 +13,8 @@ namespace credence {
 
 std::unique_ptr<const World> deformable_world();
 
-/// Settings as engine, files and program know them, and back. Both throw InputError where settings contradict each other,
-/// the second also where they are not those of the deformable world.
+/// Settings as engine, files and program know them, and back. Both throw InputError where settings contradict each
+/// other, the second also where they are not those of the deformable world.
 Scenario scenario_of(const DeformableSettings& settings);
 DeformableSettings settings_of(const Scenario& scenario);
 

@@ -34,7 +34,8 @@ void add_feature_keys(Keys& keys) {
                      [](DeformableSettings& s, const std::string& v) {
                          s.features.count.reset();
                          if (v == "default") return;
-                         s.features.count = static_cast<int>(parse_integer("features.count", v, 1, largest_feature_count));
+                         s.features.count =
+                             static_cast<int>(parse_integer("features.count", v, 1, largest_feature_count));
                      },
                      [](const DeformableSettings& s) {
                          return s.features.count ? std::to_string(*s.features.count) : "default";
@@ -92,9 +93,10 @@ void add_noise_keys(Keys& keys) {
                             [](auto& s) -> auto& { return s.noise.initial_heading; }));
     keys.push_back(real_key("noise.initial_position", "sigma of the first position, known to the filter (length)",
                             from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
-    add_later(keys, real_key("noise.odometry_bias",
-                             "sigma of a bias of the odometry, each axis of the body, constant in a trial (length a step)",
-                             from(0), [](auto& s) -> auto& { return s.noise.odometry_bias; }));
+    add_later(keys, real_key(
+                        "noise.odometry_bias",
+                        "sigma of a bias of the odometry, each axis of the body, constant in a trial (length a step)",
+                        from(0), [](auto& s) -> auto& { return s.noise.odometry_bias; }));
     add_later(keys, choice_key<Tails>("noise.measurement_tails", {"normal", "student", "contaminated"},
                                       [](auto& s) -> auto& { return s.noise.measurement_tails; }));
     add_later(keys, real_key("noise.degrees_of_freedom", "of Student's t, which keeps the sensor's sigma", above(2),
@@ -196,13 +198,14 @@ void add_arm_keys(Keys& keys) {
                     [](DeformableSettings& s, const std::string& v) { s.arms.controllers = parse_controllers(v); },
                     [](const DeformableSettings& s) { return names_text(s.arms.controllers, controller_names()); },
                     controller_names()});
-    keys.push_back({"arms.estimators",
-                    "any of " + joined(estimator_names()) + " (kf: translation, the others: heading); default: ekf or kf",
-                    [](DeformableSettings& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
-                    [](const DeformableSettings& s) {
-                        return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";
-                    },
-                    estimators_to_offer()});
+    keys.push_back(
+        {"arms.estimators",
+         "any of " + joined(estimator_names()) + " (kf: translation, the others: heading); default: ekf or kf",
+         [](DeformableSettings& s, const std::string& v) { s.arms.estimators = parse_estimators(v); },
+         [](const DeformableSettings& s) {
+             return s.arms.estimators ? names_text(*s.arms.estimators, estimator_names()) : "default";
+         },
+         estimators_to_offer()});
 }
 
 void add_published_keys(Keys& keys) {

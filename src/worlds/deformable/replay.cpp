@@ -72,9 +72,11 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
     const DeformableSettings& settings = problem.scenario();
     Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(arm), trial_columns(settings));
     trajectory.source = source;
-    const SlamVariables variables = add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
+    const SlamVariables variables =
+        add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
     const std::size_t cost = plans(arm.controller) ? add_candidates(trajectory, settings) : 0;
-    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1));
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
+                                   static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, arm.controller, variables, cost, trajectory);
     const auto run = [&](auto process, auto estimator) {
         using StateLayout = Layout<process(), any_count>;

@@ -29,8 +29,8 @@ struct DeformableTrial {
     }
 };
 
-/// Calls use(std::type_identity<Trial>) with the one that fits: a few features are written out by the compiler, more run
-/// the same source, rolled. Same bits either way.
+/// Calls use(std::type_identity<Trial>) with the one that fits: a few features are written out by the compiler, more
+/// run the same source, rolled. Same bits either way.
 template <Process process, class Use>
 auto with_process(const ProblemView& problem, Estimator estimator, const Use& use) {
     using Real = Pack<CREDENCE_LANES>;

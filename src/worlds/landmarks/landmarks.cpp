@@ -29,7 +29,9 @@ struct Landmarks {
     std::vector<Column> columns(const Settings& settings, const Scenario&) const {
         return trial_columns(state_of(settings));
     }
-    std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return landmark_series(settings); }
+    std::vector<Series> all_series(const Settings& settings, const Scenario&) const {
+        return landmark_series(settings);
+    }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
         return std::make_unique<LandmarkSimulation>(settings);
     }

@@ -19,8 +19,8 @@ SlamState state_of(const LandmarkSettings& scenario);
 /// iterated update had come to rest.
 std::vector<Series> landmark_series(const LandmarkSettings& scenario);
 
-/// Owns the tables of one validated scenario. The truth is the same bits everywhere: its geometry uses the project's own
-/// sincos, and what is in sight is found as a trial finds it.
+/// Owns the tables of one validated scenario. The truth is the same bits everywhere: its geometry uses the project's
+/// own sincos, and what is in sight is found as a trial finds it.
 class LandmarkProblem {
 public:
     explicit LandmarkProblem(const LandmarkSettings& scenario);

@@ -15,9 +15,12 @@ Trajectory LandmarkSimulation::replay(const Scenario& scenario, std::size_t arm,
     const SlamState state = state_of(landmark_settings_of(scenario));
     Trajectory trajectory = empty_trajectory(scenario, scenario.arms[arm], trial_columns(state));
     trajectory.source = source_text(root_seed, trial);
-    SlamRecorder recorder(view, add_slam_variables(trajectory, state, {}, "to this pose, as given to the filter"), trajectory);
-    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1));
-    const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), std::numeric_limits<double>::infinity());
+    SlamRecorder recorder(view, add_slam_variables(trajectory, state, {}, "to this pose, as given to the filter"),
+                          trajectory);
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
+                                   static_cast<std::size_t>(view.poses - 1));
+    const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial),
+                                   std::numeric_limits<double>::infinity());
     with_estimator<Process::heading>(arms_[arm], [&](auto estimator) {
         using StateLayout = Layout<Process::heading, any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;

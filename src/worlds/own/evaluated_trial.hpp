@@ -99,7 +99,8 @@ public:
     int poses() const override { return case_.scenario.poses; }
     // (Left to itself, g++ keeps the generator's rounds out of line, which costs a fifteenth of a tracker's time.)
     CREDENCE_FLAT Eigen::Vector2d normal(int source, int pose, int index) const override {
-        const Vector2<double> draw = draws_->normal(static_cast<Source>(source), pose, key_index(case_.scenario.world, source, pose, index));
+        const Vector2<double> draw =
+            draws_->normal(static_cast<Source>(source), pose, key_index(case_.scenario.world, source, pose, index));
         return {draw.x, draw.y};
     }
     CREDENCE_FLAT double uniform(int source, int pose, int index) const override {

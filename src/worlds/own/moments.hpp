@@ -17,7 +17,9 @@ namespace credence {
 class TrialMomentSums {
 public:
     TrialMomentSums(int state_size, std::size_t groups)
-        : n_(state_size), groups_(groups), sums_(static_cast<std::size_t>(moment_count(state_size, static_cast<int>(groups)))),
+        : n_(state_size),
+          groups_(groups),
+          sums_(static_cast<std::size_t>(moment_count(state_size, static_cast<int>(groups)))),
           counts_(sums_.size()) {}
 
     void start_trial() {
@@ -25,7 +27,8 @@ public:
         std::fill(counts_.begin(), counts_.end(), 0);
     }
 
-    /// Adds a step: NEES of each group [groups], standardised errors [n], and covariance [n, n], empty where there is none.
+    /// Adds a step: NEES of each group [groups], standardised errors [n], and covariance [n, n], empty where there is
+    /// none.
     void add(const double* nees, const double* standardised, const Eigen::MatrixXd& P) {
         if (sums_.empty()) return;
         std::size_t at = 0;

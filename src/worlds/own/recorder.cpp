@@ -9,8 +9,9 @@ namespace {
 /// Whether matrices of this size are recorded; where not, a note says so.
 bool is_recorded(Trajectory& trajectory, const std::string& variable, std::size_t rows) {
     if (rows <= largest_recorded_matrix) return true;
-    trajectory.notes.emplace_back(variable + "_omitted", std::to_string(rows) + " rows, more than the " +
-                                                             std::to_string(largest_recorded_matrix) + " that are kept");
+    trajectory.notes.emplace_back(
+        variable + "_omitted",
+        std::to_string(rows) + " rows, more than the " + std::to_string(largest_recorded_matrix) + " that are kept");
     return false;
 }
 
@@ -30,9 +31,11 @@ RecordingTrial::RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory
       rows_(is_recorded(trajectory, "innovation", static_cast<std::size_t>(rows)) ? rows : 0) {
     const std::string units = "see component_units", products = "products of component_units";
     error_ = trajectory.add({"error", "estimate - truth, after the update", units, {"pose", "component"}});
-    trace_P_ = trajectory.add({"trace_P", "trace of the covariance, after the update", "sum of squares of component_units", {"pose"}});
+    trace_P_ = trajectory.add(
+        {"trace_P", "trace of the covariance, after the update", "sum of squares of component_units", {"pose"}});
     if (small_state_)
-        covariance_ = trajectory.add({"covariance", "covariance, after the update", products, {"pose", "component", "component_2"}});
+        covariance_ = trajectory.add(
+            {"covariance", "covariance, after the update", products, {"pose", "component", "component_2"}});
     if (rows_ == 0) return;
     trajectory.dimensions.push_back({"row", "row of the innovation", static_cast<std::size_t>(rows)});
     trajectory.dimensions.push_back({"row_2", "row of the innovation, along columns", static_cast<std::size_t>(rows)});

@@ -18,7 +18,9 @@ public:
 
     std::size_t arm() const override { return trial_.arm(); }
     int poses() const override { return trial_.poses(); }
-    Eigen::Vector2d normal(int source, int pose, int index) const override { return trial_.normal(source, pose, index); }
+    Eigen::Vector2d normal(int source, int pose, int index) const override {
+        return trial_.normal(source, pose, index);
+    }
     double uniform(int source, int pose, int index) const override { return trial_.uniform(source, pose, index); }
     void set(std::size_t column, double value) override { trial_.set(column, value); }
     void step(const Vector& error, const Matrix& P) override;
@@ -35,8 +37,8 @@ private:
     std::size_t error_ = 0, trace_P_ = 0, covariance_ = 0, innovation_ = 0, innovation_covariance_ = 0;
 };
 
-/// Adds NEES, and NIS with its rows where trials have innovations. `series` gives the values of the steps that the trial
-/// took, by place among all series.
+/// Adds NEES, and NIS with its rows where trials have innovations. `series` gives the values of the steps that the
+/// trial took, by place among all series.
 void add_evaluations(Trajectory& trajectory, const StateSeries& all_series, Innovations innovations,
                      const std::function<std::vector<double>(std::size_t)>& series);
 

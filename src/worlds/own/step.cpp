@@ -27,8 +27,10 @@ Definiteness definiteness(double smallest, Eigen::Index n, double epsilon) {
 }
 
 /// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
-/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such pivots.
-std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor, double& rounding) {
+/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such
+/// pivots.
+std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor,
+                   double& rounding) {
     rounding = 0;
     const bool factored = factor.compute(S);
     if (factored && factor.pivots_exceed(10 * std::sqrt(epsilon), S)) return {};
@@ -59,7 +61,8 @@ bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, doubl
 
 StateSeries record_series(const RecordShape& shape) {
     std::vector<Component> components = shape.components;
-    for (int j = static_cast<int>(components.size()); j < shape.n; ++j) components.push_back({component_name(shape, j), ""});
+    for (int j = static_cast<int>(components.size()); j < shape.n; ++j)
+        components.push_back({component_name(shape, j), ""});
     std::vector<std::string> row_groups;
     for (const RowGroup& rows : shape.row_groups) row_groups.push_back(rows.name);
     const Innovations innovations = shape.has_innovations() ? Innovations::given : Innovations::none;
@@ -193,7 +196,8 @@ void StepEvaluator::standardise(const CheckedStep& step, double* all_series) {
         if (here && step.P.size() > 0) variance = step.P(j, j);
         else if (here && shape_.has_variances) variance = step.variances(j);
         else if (here && !variance_places_.empty() && variance_places_[at].group >= 0)
-            if (const Eigen::MatrixXd& own = step.own[static_cast<std::size_t>(variance_places_[at].group)]; own.size() > 0)
+            if (const Eigen::MatrixXd& own = step.own[static_cast<std::size_t>(variance_places_[at].group)];
+                own.size() > 0)
                 variance = own(variance_places_[at].index, variance_places_[at].index);
         all_series[series] = step.e(j) / std::sqrt(variance);
         if (!here || variance == 0) set_unknown(series, all_series);

@@ -44,7 +44,8 @@ struct RecordShape {
     int version = 1;
     std::vector<Component> components;   ///< [n] names and units; empty: x0, x1 ... without a unit
     std::vector<GroupSource> sources;    ///< [groups]; empty: all `joint`
-    std::vector<double> group_epsilons;  ///< [groups] of the types in the file, where a group has a covariance of its own
+    /// [groups] of the types in the file, where a group has a covariance of its own.
+    std::vector<double> group_epsilons;
     std::vector<RowGroup> row_groups;
     std::vector<std::string> known, known_groups;  ///< left out: components that are known exactly, and groups of these
     bool has_errors = true;              ///< false: NEES alone
@@ -132,7 +133,8 @@ public:
     /// After `evaluate`: replaces the series that have no value at this step by NaN.
     void forget_unknown(double* all_series) const;
 
-    /// After `evaluate`: what rounding may have done to NEES, by group, as a share of it; 0 where that is too little to matter.
+    /// After `evaluate`: what rounding may have done to NEES, by group, as a share of it; 0 where that is too little to
+    /// matter.
     const std::vector<double>& rounding() const { return rounding_; }
     /// The same of its NIS; and that the step counts as one in which no row was observed.
     double innovation_rounding() const { return innovation_rounding_; }

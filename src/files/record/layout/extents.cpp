@@ -69,7 +69,8 @@ void require_same_steps(const PlacedExtents& vectors, const RecordDataset& datas
 DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other) {
     if (source.has(name)) return source.open(name);
     if (source.has(other))
-        throw Error(record_place(name), "is missing, but " + record_place(other) + " is there", "Write both, or neither");
+        throw Error(record_place(name), "is missing, but " + record_place(other) + " is there",
+                    "Write both, or neither");
     return nullptr;
 }
 

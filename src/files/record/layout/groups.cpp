@@ -70,7 +70,8 @@ void add_members(const std::string& word, const std::string& entry, const Listed
     if (*first < 0 || last < *first)
         throw Error(place, quoted(entry) + " has no " + of.one + " " + quoted(word), of.example, of.arrays);
     if (last >= of.size)
-        throw Error(place, quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
+        throw Error(place,
+                    quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
                     of.example, of.arrays);
     for (std::int64_t member = *first; member <= last; ++member) {
         if (std::ranges::find(members, static_cast<int>(member)) != members.end())
@@ -180,7 +181,8 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
 }
 
 std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults) {
-    const std::vector<std::string> names = read_list(source, "component_names", n), units = read_list(source, "component_units", n);
+    const std::vector<std::string> names = read_list(source, "component_names", n),
+                                   units = read_list(source, "component_units", n);
     if (names.empty() && units.empty()) return defaults;
     std::vector<Component> components = names.empty() ? defaults : std::vector<Component>();
     components.resize(static_cast<std::size_t>(n));

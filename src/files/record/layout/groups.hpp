@@ -28,8 +28,8 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);
 std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n);
 
 /// Names and units of the n components by the attributes `component_names` and `component_units`; without both,
-/// `defaults` (n, or empty). Without names they are those of `defaults`, or x0, x1 ...; of names without units, the units
-/// are empty.
+/// `defaults` (n, or empty). Without names they are those of `defaults`, or x0, x1 ...; of names without units, the
+/// units are empty.
 std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults);
 
 /// Throws where a name cannot be that of a group of components (`what`: `group`).

@@ -42,7 +42,8 @@ std::vector<Component> default_components(const RecordLayout& layout) {
     const std::vector<Component> components = layout.data.manifold->components();
     for (const ComponentGroup& group : layout.shape.groups)
         for (int j = 0; j < static_cast<int>(components.size()); ++j)
-            if (components[static_cast<std::size_t>(j)].name == group.name && (group.count > 1 || group.component(0) != j))
+            if (components[static_cast<std::size_t>(j)].name == group.name &&
+                (group.count > 1 || group.component(0) != j))
                 return {};
     return components;
 }

@@ -107,7 +107,8 @@ void Svg::box(ChartPoint corner, ChartPoint opposite, const std::string& classes
 void Svg::mark(ChartPoint at, std::size_t series, const std::string& hover, const std::string& classes) {
     if (!known(at)) return;
     add("path",
-        attribute("class", "mark " + (classes.empty() ? series_class(series) + (hollow(series) ? " hollow" : "") : classes)) +
+        attribute("class",
+                  "mark " + (classes.empty() ? series_class(series) + (hollow(series) ? " hollow" : "") : classes)) +
             attribute("transform", "translate(" + pair(at) + ")") + attribute("d", outline(series)),
         hover);
 }
@@ -134,7 +135,8 @@ Html Svg::html(const std::string& id, const std::string& title, const std::strin
 }
 
 Html Svg::sign(const std::string& classes) const {
-    return Html::trusted("<svg" + attribute("class", classes) + view_box() + " aria-hidden=\"true\">" + body_ + "</svg>");
+    return Html::trusted("<svg" + attribute("class", classes) + view_box() + " aria-hidden=\"true\">" + body_ +
+                         "</svg>");
 }
 
 std::string Svg::view_box() const {

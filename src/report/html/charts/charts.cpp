@@ -185,27 +185,28 @@ Html charts(const Part& part) {
         "together (light).";
     Html differences;
     for (std::size_t i = 0; i < part.pairs.size(); ++i) differences += difference_charts(*part.pairs[i], i);
-    const Html html = chart_group("Over all steps", over_all, equivalence_chart(part) + coverage_chart(part)) +
-                      chart_group("Directions",
-                                  "Combinations of the state, each component in units of its own sigma: where the "
-                                  "squared error is largest and smallest against what P says. A filter that is right has "
-                                  "its marks in the shaded region, and its errors on the circle.",
-                                  direction_charts(part)) +
-                      chart_group("NEES/dim by step", by_step, nees_panels(part)) +
-                      chart_group("NIS/m by step", by_step, nis_panels(part)) +
-                      chart_group("Innovations a lag apart",
-                                  "A consistent filter's innovations are not correlated: dark, the 95 % band of a "
-                                  "lag by itself; light, of all lags together.",
-                                  whiteness_chart(part)) +
-                      chart_group("What trials end with",
-                                  "Bars: share of the trials. The filled mark is the mean, the bar over it the median; "
-                                  "a dashed line marks a published single run.",
-                                  distribution_charts(part)) +
-                      chart_group("Differences of pairs",
-                                  "Trial by trial, with the same draws. Left of 0 the first arm is lower. The mark is "
-                                  "the mean with its 95 % interval.",
-                                  differences) +
-                      no_distributions(part.report.keep);
+    const Html html =
+        chart_group("Over all steps", over_all, equivalence_chart(part) + coverage_chart(part)) +
+        chart_group("Directions",
+                    "Combinations of the state, each component in units of its own sigma: where the "
+                    "squared error is largest and smallest against what P says. A filter that is right has "
+                    "its marks in the shaded region, and its errors on the circle.",
+                    direction_charts(part)) +
+        chart_group("NEES/dim by step", by_step, nees_panels(part)) +
+        chart_group("NIS/m by step", by_step, nis_panels(part)) +
+        chart_group("Innovations a lag apart",
+                    "A consistent filter's innovations are not correlated: dark, the 95 % band of a "
+                    "lag by itself; light, of all lags together.",
+                    whiteness_chart(part)) +
+        chart_group("What trials end with",
+                    "Bars: share of the trials. The filled mark is the mean, the bar over it the median; "
+                    "a dashed line marks a published single run.",
+                    distribution_charts(part)) +
+        chart_group("Differences of pairs",
+                    "Trial by trial, with the same draws. Left of 0 the first arm is lower. The mark is "
+                    "the mean with its 95 % interval.",
+                    differences) +
+        no_distributions(part.report.keep);
     return html.empty() ? html
                         : element("h3", "Charts"_html, "id=\""_html + escaped(part.id("charts")) + "\""_html) +
                               "\n<p>Values show where the pointer rests on a mark.</p>\n"_html + legend(part) + html;

@@ -22,7 +22,8 @@ struct SweptCurves {
     std::string label;                ///< of the quantity
     std::optional<double> reference;  ///< drawn as a line
     double margin = 0;                ///< about the reference; 0: none
-    double logarithmic_from = 0;      ///< the ratio of the largest to the smallest beyond which the scale is logarithmic
+    /// The ratio of the largest to the smallest beyond which the scale is logarithmic.
+    double logarithmic_from = 0;
     /// Mean and interval of a name at a point; nothing where there are none.
     std::function<std::optional<Summary>(const GridPoint&, const std::string&)> at;
 };

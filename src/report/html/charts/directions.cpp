@@ -16,7 +16,9 @@ namespace {
 
 bool has_directions(const ArmReport& arm) { return !arm.consistency.directions.spectrum.empty(); }
 
-const DirectionOfGroup* of_state(const std::vector<DirectionOfGroup>& all) { return all.empty() ? nullptr : &all.front(); }
+const DirectionOfGroup* of_state(const std::vector<DirectionOfGroup>& all) {
+    return all.empty() ? nullptr : &all.front();
+}
 
 /// Ratios of all directions of the whole state, an arm a row, with the interval that contains them.
 Html spectrum_chart(const Part& part) {
@@ -27,7 +29,8 @@ Html spectrum_chart(const Part& part) {
     for (const ArmReport* arm : part.arms) {
         const DirectionsFound& found = arm->consistency.directions;
         for (const double ratio : found.spectrum) range.include(ratio);
-        if (has_directions(*arm) && found.range.low > 0) range.include(found.range.low), range.include(found.range.high);
+        if (has_directions(*arm) && found.range.low > 0)
+            range.include(found.range.low), range.include(found.range.high);
     }
     const Scale x = range.scale(left, right, 4);
     Svg svg(width, bottom + 36);
@@ -46,11 +49,13 @@ Html spectrum_chart(const Part& part) {
                                  short_number(found.spectrum.back()) + ", all within " + short_number(found.range.low) +
                                  " to " + short_number(found.range.high) + " with 95 %";
         svg.line({x(found.range.low), y}, {x(found.range.high), y}, "whisker " + series_class(i), says);
-        for (const double ratio : found.spectrum) svg.mark({x(ratio), y}, i, part.arms[i]->arm + ": " + short_number(ratio));
+        for (const double ratio : found.spectrum)
+            svg.mark({x(ratio), y}, i, part.arms[i]->arm + ": " + short_number(ratio));
         described += says + ". ";
     }
-    return chart("Directions of the whole state",
-                 svg.html(part.id("directions"), part.scenario.name + ": squared error over P's, by direction", described));
+    return chart(
+        "Directions of the whole state",
+        svg.html(part.id("directions"), part.scenario.name + ": squared error over P's, by direction", described));
 }
 
 /// An ellipse with these half-axes about a centre, as a closed path.
@@ -73,7 +78,8 @@ Html ellipse_chart(const Part& part, std::size_t i) {
     constexpr double width = 360, height = 250, room = 88;
     constexpr std::size_t most = 72;
     const ChartPoint centre{width / 2, 112};
-    const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio), unit = room / std::max({1.0, wide, high});
+    const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio),
+                 unit = room / std::max({1.0, wide, high});
     Svg svg(width, height);
     svg.path(ellipse(centre, unit, unit), "line ideal");
     svg.path(ellipse(centre, unit * wide, unit * high), "line " + series_class(i));
@@ -85,8 +91,9 @@ Html ellipse_chart(const Part& part, std::size_t i) {
     svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + shortened(smallest->name, most));
     const std::string says = arm.arm + ": the errors are " + short_number(wide) + " times as large as P says along " +
                              largest->name + ", and " + short_number(high) + " times along " + smallest->name;
-    return chart(arm.arm + ": errors (line) against P (circle)",
-                 svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
+    return chart(
+        arm.arm + ": errors (line) against P (circle)",
+        svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
 }
 
 /// `0.70711 x, -0.70711 y`
@@ -100,7 +107,8 @@ std::string shares_text(const std::vector<Loading>& loadings) {
 
 Html direction_charts(const Part& part) {
     constexpr std::size_t most = 6;
-    if (std::none_of(part.arms.begin(), part.arms.end(), [](const ArmReport* arm) { return has_directions(*arm); })) return {};
+    if (std::none_of(part.arms.begin(), part.arms.end(), [](const ArmReport* arm) { return has_directions(*arm); }))
+        return {};
     Html html = spectrum_chart(part);
     for (std::size_t i = 0; i < std::min(most, part.arms.size()); ++i) html += ellipse_chart(part, i);
     return html;
@@ -120,21 +128,25 @@ Html direction_tables(const Part& part) {
                                                         shares_text(one.loadings)});
         if (found.spectrum.empty()) continue;
         Cell ratios;
-        for (const double ratio : found.spectrum) ratios = ratios + (ratios.pieces().empty() ? "" : ", ") + short_cell(ratio);
+        for (const double ratio : found.spectrum)
+            ratios = ratios + (ratios.pieces().empty() ? "" : ", ") + short_cell(ratio);
         spectrum.row(arm->arm, {ratios, range_cell(found.range), count_cell(found.trials)});
     }
     return folded("Directions, with their intervals", html_of(spectrum) + html_of(table));
 }
 
 Html worst_trials_table(const Part& part) {
-    Table table(part.scenario.name + ": the detailed trials with the largest NEES", {"arm, trial", "NEES/dim", "largest at step"});
+    Table table(part.scenario.name + ": the detailed trials with the largest NEES",
+                {"arm, trial", "NEES/dim", "largest at step"});
     Html shares;
     for (const ArmReport* arm : part.arms) {
         const WorstTrials& worst = arm->evidence.worst;
         for (const WorstTrial& one : worst.trials)
             table.row(arm->arm + ", " + std::to_string(one.trial), {short_cell(one.nees_ratio), count_cell(one.step)});
         if (!worst.trials.empty())
-            shares += element("p", escaped(arm->arm + ": they have a share of " + short_number(worst.share) + " of NEES.")) + "\n"_html;
+            shares +=
+                element("p", escaped(arm->arm + ": they have a share of " + short_number(worst.share) + " of NEES.")) +
+                "\n"_html;
     }
     return folded("Trials with the largest NEES", html_of(table) + shares);
 }

@@ -66,9 +66,17 @@ private:
 class LaneTrials : public OwnTrial {
 public:
     LaneTrials(LanePack& pack, int lanes)
-        : pack_(pack), lanes_(cells(lanes)), n_(pack.state_size), m_(pack.largest_innovation), draws_(pack, lanes),
-          steps_(cells(pack.poses - 1)), errors_(steps_ * cells(n_) * lanes_), P_(steps_ * cells(n_ * n_) * lanes_),
-          innovations_(steps_ * cells(m_) * lanes_, nan), S_(steps_ * cells(m_ * m_) * lanes_), has_innovation_(steps_) {}
+        : pack_(pack),
+          lanes_(cells(lanes)),
+          n_(pack.state_size),
+          m_(pack.largest_innovation),
+          draws_(pack, lanes),
+          steps_(cells(pack.poses - 1)),
+          errors_(steps_ * cells(n_) * lanes_),
+          P_(steps_ * cells(n_ * n_) * lanes_),
+          innovations_(steps_ * cells(m_) * lanes_, nan),
+          S_(steps_ * cells(m_ * m_) * lanes_),
+          has_innovation_(steps_) {}
 
     void run(const std::function<void(OwnTrial&)>& one, std::size_t lane) {
         lane_ = lane;
@@ -80,14 +88,15 @@ public:
             return;
         }
         if (step_ != steps_)
-            throw std::logic_error("world " + *pack_.world + ": a trial took " + std::to_string(step_) + " steps, not " +
-                                   std::to_string(steps_) + ".");
+            throw std::logic_error("world " + *pack_.world + ": a trial took " + std::to_string(step_) +
+                                   " steps, not " + std::to_string(steps_) + ".");
     }
     /// Hands the steps of all lanes on.
     void evaluate() {
         for (std::size_t k = 0; k < steps_; ++k) {
             const int rows = has_innovation_[k] ? m_ : 0;
-            const LaneStep step{at(errors_, k, n_), at(P_, k, n_ * n_), rows, at(innovations_, k, m_), at(S_, k, m_ * m_)};
+            const LaneStep step{at(errors_, k, n_), at(P_, k, n_ * n_), rows, at(innovations_, k, m_),
+                                at(S_, k, m_ * m_)};
             if (!pack_.step(pack_, step)) leave(pack_);
         }
     }

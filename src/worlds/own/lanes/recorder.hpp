@@ -1,6 +1,6 @@
 #pragma once
-// Records the trajectory of a trial that runs again, alone in lane 0 of a pack, so that it has the bits of its batch. The
-// pack ends with that trial.
+// Records the trajectory of a trial that runs again, alone in lane 0 of a pack, so that it has the bits of its batch.
+// The pack ends with that trial.
 
 #include "worlds/own/lanes/view.hpp"
 #include "worlds/own/recorder.hpp"

@@ -40,7 +40,8 @@ int rare_index(const std::string& world, int source, int pose, int index) {
 namespace {
 
 bool positive_definite(const double* matrix, int n) {
-    return is_positive_definite(Eigen::Map<const Eigen::MatrixXd>(matrix, n, n), std::numeric_limits<double>::epsilon());
+    return is_positive_definite(Eigen::Map<const Eigen::MatrixXd>(matrix, n, n),
+                                std::numeric_limits<double>::epsilon());
 }
 
 /// Room for one trial's results, all of which a batch asks for.
@@ -77,8 +78,8 @@ void run_pack(const OwnView& view, LanePack& pack) {
         return;
     }
     if (pack.steps != view.poses - 1)
-        throw std::logic_error("world " + *view.world + ": a trial took " + std::to_string(pack.steps) + " steps, not " +
-                               std::to_string(view.poses - 1) + ".");
+        throw std::logic_error("world " + *view.world + ": a trial took " + std::to_string(pack.steps) +
+                               " steps, not " + std::to_string(view.poses - 1) + ".");
 }
 
 void record_pack(const OwnView& view, LanePack& pack) { view.recorder->run(view, pack, run_pack); }
@@ -146,7 +147,8 @@ public:
         target_.simulate_own(view, one.batch);
         for (std::size_t c = 0; c < columns_.size(); ++c) trajectory.column_values[c] = one.columns[c * octet];
         fill_failed(trajectory.columns, trajectory.column_values.data());
-        add_evaluations(trajectory, all_series_, innovations_, [&](std::size_t place) { return recorder.series(place); });
+        add_evaluations(trajectory, all_series_, innovations_,
+                        [&](std::size_t place) { return recorder.series(place); });
         return trajectory;
     }
 

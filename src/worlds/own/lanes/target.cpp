@@ -19,7 +19,8 @@ std::size_t error_cells(const OwnView& view) {
 std::size_t moment_cells(const OwnView& view) { return static_cast<std::size_t>(moment_count(view.state_size, 0)); }
 
 /// What of a pack's trials is kept of detailed ones.
-void keep_detail(const OwnView& view, const PackOfTrials<Real>& pack, const Real* errors, int trial, const Batch& batch) {
+void keep_detail(const OwnView& view, const PackOfTrials<Real>& pack, const Real* errors, int trial,
+                 const Batch& batch) {
     const int padded = (batch.trials + octet - 1) / octet * octet, cells = static_cast<int>(error_cells(view));
     for (int cell = 0; cell < cells; ++cell) store(errors[cell], batch.errors + cell * padded + trial);
     keep_products(view.poses, pack.products.sum, pack.products.count, pack.counts(), trial, batch);

@@ -42,8 +42,8 @@ public:
     Outcome<Real> outcome;
     LaneProducts<Real> products;
 
-    /// `all_series` [series_count, K - 1], `errors` [n, K - 1] and `moments` [own_moment_count] are filled; the last two
-    /// may be null.
+    /// `all_series` [series_count, K - 1], `errors` [n, K - 1] and `moments` [own_moment_count] are filled; the last
+    /// two may be null.
     PackOfTrials(const PackOfTrials&) = delete;
     PackOfTrials& operator=(const PackOfTrials&) = delete;
     PackOfTrials(const OwnView& view, const KeyedDraws<Real>& draws, Mask<Real> there, Real* room, Real* all_series,
@@ -194,7 +194,8 @@ private:
             rows = rows + observed_[i];
         }
         *series(view_.nis + 1) = rows;
-        *series(view_.nis) = step.rows > 0 ? norm(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows) : Real(0);
+        *series(view_.nis) =
+            step.rows > 0 ? norm(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows) : Real(0);
         if (errors_ == nullptr) return;
         for (int i = 0; i < largest_innovation; ++i) {
             const bool is_row = i < step.rows;
