@@ -67,7 +67,9 @@ std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmRe
                               poses = column_values(results, arm, column + 1);
     std::map<std::int64_t, std::int64_t> at;
     for (std::size_t i = 0; i < statuses.size(); ++i)
-        if (statuses[i] == static_cast<double>(cause.status)) ++at[static_cast<std::int64_t>(poses[i])];
+        if (statuses[i] == static_cast<double>(cause.status) && poses[i] >= 0)
+            ++at[static_cast<std::int64_t>(poses[i])];
+    if (at.empty()) return cause;
     std::tie(cause.pose, cause.at_pose) = *std::ranges::max_element(at, {}, [](const auto& one) { return one.second; });
     return cause;
 }

@@ -207,12 +207,12 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
         Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
                  "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3"));
-    CHECK_THAT(row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %\n"));
+    CHECK_THAT(row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged\n"));
     const Json json = Json::parse(report_json(report));
     CHECK(json[0]["verdict"] == "failed");
     CHECK(json[0]["failed"] == 1);
     CHECK(json[0]["failed_trials"] == 3);
-    CHECK(json[0]["reason"] == "3 of 100 trials failed (2 of them diverged), more than 1 %");
+    CHECK(json[0]["reason"] == "3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged");
     CHECK_THAT(report_csv(report), Contains("heading-straight,fixed.ekf,100,1,trace_P,") && Contains(",failed,3\n"));
     const std::string page = report_html(report, {"r.h5", {}, "test"});
     CHECK_THAT(page, Contains("<span class=\"badge failed\">") &&

@@ -178,9 +178,9 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const std::unique_ptr<RankLeader> ranks = shared ? std::make_unique<RankLeader>(*post) : nullptr;
     RunRequest request = read_request(parsed);
     if (post) request.ranks = post->size();
-    if (!request.quiet) say_notes(request.scenarios, "run");
     const Interrupt interrupt;
     StoredRun stored = starting_run(request);
+    if (!request.quiet) say_notes(request.scenarios, "run");
     if (parsed.has("dry-run")) return dry_run(request, stored.study());
     if (!parsed.has("force")) check_fit(request, stored.study());
 
