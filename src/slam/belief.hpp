@@ -69,6 +69,13 @@ Decorrelation<Real> decorrelation(Real xx, Real xy, Real yy, Mask<Real> used) {
             either(both(xx > Real(0), rest > Real(0)), negated(used))};
 }
 
+/// The same where S = xx I: the bits of decorrelation(xx, 0, xx, used).
+template <class Real>
+Decorrelation<Real> decorrelation_by_axis(Real xx, Mask<Real> used) {
+    const Real x = select(used, Real(1) / xx, Real(0));
+    return {Real(0), {x, x}, either(xx > Real(0), negated(used))};
+}
+
 /// A matrix and a vector that are being eliminated, from the last row up.
 template <class Real, int capacity>
 struct Elimination {
@@ -95,10 +102,9 @@ template <bool by_axis, class Real, int capacity, class First, class Index>
 CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity>& matrix, const Real* vector,
                                                   First first, Index i, Elimination<Real, capacity>& left) {
     const auto& A = matrix.entry;
-    const Real xy = by_axis ? Real(0) : A[i][i + one], yy = by_axis ? A[i][i] : A[i + one][i + one];
-    const Decorrelation<Real> pivot = decorrelation(A[i][i], xy, yy, all_lanes<Real>());
-    const Vector2<Real> e = pivot({vector[i], vector[i + one]});
     if constexpr (by_axis) {
+        const Decorrelation<Real> pivot = decorrelation_by_axis(A[i][i], all_lanes<Real>());
+        const Vector2<Real> e{vector[i], vector[i + one]};
         each(zero, half(i - first), [&](auto point) {
             const auto k = first + two * point;
             const Real scaled = pivot.precision.x * A[k][i];
@@ -109,7 +115,11 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
                 left.A.entry[m][k] = fnma(scaled, A[m][i], A[m][k]);
             });
         });
+        return {pivot.squared(e), pivot.positive_definite};
     } else {
+        const Decorrelation<Real> pivot =
+            decorrelation(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
+        const Vector2<Real> e = pivot({vector[i], vector[i + one]});
         Vector2<Real> W[capacity];
         each(first, i, [&](auto k) {
             W[k] = pivot({A[k][i], A[k][i + one]});
@@ -119,8 +129,8 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
                 left.A.entry[m][k] = fnma(scaled.y, W[m].y, fnma(scaled.x, W[m].x, A[m][k]));
             });
         });
+        return {pivot.squared(e), pivot.positive_definite};
     }
-    return {pivot.squared(e), pivot.positive_definite};
 }
 
 template <bool by_axis, class Real, int capacity, class First, class Index>

@@ -143,7 +143,7 @@ Decorrelation<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout
     };
     each_entry(layout, entries, make_row);
     const Real xx = rows([&](auto s) { return W[s]; }).x + N;
-    const Decorrelation<Real> S = decorrelation(xx, Real(0), xx, used);
+    const Decorrelation<Real> S = decorrelation_by_axis(xx, used);
     each_other(layout, entries, make_row);
     auto& entry = read_anew(P).entry;
     each(zero, points, [&](auto c) CREDENCE_INLINE_LAMBDA {
@@ -189,7 +189,7 @@ void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& row
         }
     };
     const Decorrelation<Real> S = condition(P, layout, rows, N, used, correct);
-    update.nis = update.nis + S.squared(S(fresh));
+    update.nis = update.nis + S.squared(Layout::by_axis ? fresh : S(fresh));
     update.positive_definite = both(update.positive_definite, S.positive_definite);
 }
 
