@@ -56,10 +56,10 @@ def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajec
     across = _across(len(paths), page, trajectory.shape(box))
     rows, keys = -(-len(paths) // across), 2 if page else 4
     titles = [textwrap.wrap(" and ".join(names), int(width / across / 1.7)) for names, _ in paths]
-    heights = [rows * (LABELS + LINE * max(map(len, titles)) + (width / across - LABELS) / trajectory.shape(box))
-               + keys * LINE,
+    heights = [rows * (LABELS + LINE * max(map(len, titles)) + (width / across - LABELS) / trajectory.shape(box)),
+               keys * LINE,
                (1 if page else 2) * (LABELS + DISTRIBUTION + LINE * (len(arms) + len(scenario.published("trace_P"))))]
-    above, below = picture.subfigures(2, 1, squeeze=False, height_ratios=heights)[:, 0]
+    above, between, below = picture.subfigures(3, 1, squeeze=False, height_ratios=heights)[:, 0]
     axes = above.subplots(rows, across, squeeze=False).ravel()
     for axis, (_, one), title in zip(axes, paths, titles, strict=False):
         trajectory.draw_path(axis, one)
@@ -71,7 +71,9 @@ def _draw(scenario: Scenario, arms: Arms, width: float, trials: dict[str, Trajec
     drawn, labels = axes[0].get_legend_handles_labels()
     grey = Line2D([], [], color=style.GREY, linestyle="--", marker="+")  # each path has the colour of its arm
     handles = [grey if label == "estimated path" else one for one, label in zip(drawn, labels, strict=True)]
-    above.legend(handles, labels, loc="outside lower center", ncols=-(-len(labels) // keys), borderaxespad=0)
+    legend = between.subplots()
+    legend.set_axis_off()
+    legend.legend(handles, labels, loc="center", ncols=-(-len(labels) // keys), borderaxespad=0).set_in_layout(False)
     runs = {column: {name: one.columns[column] for name, one in trials.items()} for column in COLUMNS}
     for column, axis in zip(COLUMNS, below.subplots(*((1, 2) if page else (2, 1))), strict=True):
         _, entries = draw_distribution(axis, scenario, arms, column, runs[column])
