@@ -95,8 +95,7 @@ def test_thinned_curves_keep_their_extremes():
     assert style.thinned(np.arange(7)).tolist() == list(range(7))
 
 
-SIZES = [(1, style.PAGE), (2, style.PAGE), (2, style.COLUMN), (3, style.PAGE), (3, style.COLUMN), (5, style.PAGE),
-         (7, style.PAGE), (12, style.PAGE), (12, style.COLUMN)]
+SIZES = [(1, style.PAGE), (2, style.COLUMN), (3, style.PAGE), (5, style.COLUMN), (7, style.PAGE)]
 CASES = [(kind, *size) for kind in OF_SCENARIO for size in SIZES]
 
 

@@ -51,9 +51,11 @@ void KnownSearch::see_error(const double* error) {
     }
 }
 
+void KnownSearch::start() { seen_.assign(seen_.size(), 0); }
+
 void KnownSearch::end_errors() {
     for (std::size_t j = 0; j < open_.size(); ++j) open_[j] = open_[j] && seen_[j];
-    seen_.assign(seen_.size(), 0);
+    start();
 }
 
 void KnownSearch::see_matrix(const double* values, const std::vector<int>& components) {

@@ -11,14 +11,15 @@ namespace credence {
 
 struct RecordValues;
 
-/// Finds such components, in two passes: one over the errors, which are few and mostly end the search at the first
-/// step, and one over the covariances.
+/// Finds such components, in two passes: one over the errors, which are fewer numbers, and one over the covariances. What
+/// is seen before start() can only end the search.
 class KnownSearch {
 public:
     explicit KnownSearch(const RecordShape& shape);
 
     /// Whether a component may still be one.
     bool goes_on() const;
+    void start();
     /// Looks at a step's error [n]; NaN says nothing.
     void see_error(const double* error);
     /// After all errors: those that were never seen are none.

@@ -78,20 +78,24 @@ int RecordReader::longest_trial() const {
 std::vector<char> RecordReader::known_components() const {
     KnownSearch search(layout_.shape);
     RecordValues values;
-    const auto look = [&](auto read_part, auto see) {
+    const auto look = [&](auto read_part, auto see, bool on) {
         each_part([&](const RecordPart& part) {
             if (!search.goes_on()) return false;
             (this->*read_part)(part, values);
             for_each_step(part, values, [&](const RecordStep& step) {
                 if (layout_.shape.covers(step.trial, step.step)) see(step);
             });
-            return true;
+            return on;
         });
+        values = {};
     };
-    look(&RecordReader::read_errors, [&](const RecordStep& step) { search.see_error(step.error); });
+    const auto see_error = [&](const RecordStep& step) { search.see_error(step.error); };
+    const auto see_covariances = [&](const RecordStep& step) { search.see_covariances(step); };
+    look(&RecordReader::read_covariances, see_covariances, false);  // of the first part, which end most searches
+    search.start();
+    look(&RecordReader::read_errors, see_error, true);
     search.end_errors();
-    values = {};
-    look(&RecordReader::read_covariances, [&](const RecordStep& step) { search.see_covariances(step); });
+    look(&RecordReader::read_covariances, see_covariances, true);
     return search.known();
 }
 
