@@ -68,6 +68,12 @@ Turn::~Turn() {
     if (!keeps_turn) turns.unlock();
 }
 
+EndOfWork::~EndOfWork() {
+    if (!must_end()) return;
+    turns.unlock();
+    for (;;) pause();
+}
+
 bool must_end() { return ending && !keeps_turn; }
 
 void bind_turns() {

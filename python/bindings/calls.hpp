@@ -25,11 +25,22 @@ public:
     Turn& operator=(const Turn&) = delete;
 };
 
+/// The end of a call's work. When Python ends, a thread stays there for good: Python would end it on its way back, where
+/// it may hold a lock, such as that of h5py, for which the end would wait in vain.
+class EndOfWork {
+public:
+    EndOfWork() = default;
+    ~EndOfWork();
+    EndOfWork(const EndOfWork&) = delete;
+    EndOfWork& operator=(const EndOfWork&) = delete;
+};
+
 /// The result of `work`, in a turn of its own, without Python's lock.
 template <class Work>
 auto alone(const Work& work) {
     const Turn turn;
     const nb::gil_scoped_release released;
+    const EndOfWork end;
     return work();
 }
 
