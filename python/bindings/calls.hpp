@@ -25,8 +25,8 @@ public:
     Turn& operator=(const Turn&) = delete;
 };
 
-/// The end of a call's work. When Python ends, a thread stays there for good: Python would end it on its way back, where
-/// it may hold a lock, such as that of h5py, for which the end would wait in vain.
+/// The end of a call's work. When Python ends, a thread stays there for good: Python would end it on its way back,
+/// where it may hold a lock, such as that of h5py, for which the end would wait in vain.
 class EndOfWork {
 public:
     EndOfWork() = default;

@@ -207,7 +207,8 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
         Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
                  "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3"));
-    CHECK_THAT(row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged\n"));
+    CHECK_THAT(
+        row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged\n"));
     const Json json = Json::parse(report_json(report));
     CHECK(json[0]["verdict"] == "failed");
     CHECK(json[0]["failed"] == 1);

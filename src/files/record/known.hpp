@@ -11,8 +11,8 @@ namespace credence {
 
 struct RecordValues;
 
-/// Finds such components, in two passes: one over the errors, which are fewer numbers, and one over the covariances. What
-/// is seen before start() can only end the search.
+/// Finds such components, in two passes: one over the errors, which are fewer numbers, and one over the covariances.
+/// What is seen before start() can only end the search.
 class KnownSearch {
 public:
     explicit KnownSearch(const RecordShape& shape);
