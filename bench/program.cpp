@@ -6,7 +6,7 @@
 
 #include <chrono>
 #include "worlds/deformable/deformable.hpp"
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>

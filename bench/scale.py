@@ -6,7 +6,6 @@ usage: scale.py [--credence build/credence] [--repeats 5] PART...
   sizes   bytes of journal and file of a million trials
   merge   time and memory of merging 1,000 shards, and of 100 shards of the same study
   aggregates  time, memory, journal and file of 10^6 trials that are kept, and of 10^6 and 10^7 of which totals are, and a merge
-  ranks   a study on one rank and on two of mpirun, one thread each, beside one process of one and of two threads
 Medians of the repeats; the spread is (largest - smallest) / median.
 """
 
@@ -119,27 +118,7 @@ def merge(credence, repeats, folder):
             os.remove(part)
 
 
-def ranks(credence, repeats, folder):
-    trials, names = 100_000, ["ekf-circle-constant", "ekf-straight-constant"]
-    mpirun = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n"]
-    ways = [("one process, 1 thread", [], 1), ("1 rank of mpirun", mpirun + ["1"], 1),
-            ("one process, 2 threads", [], 2), ("2 ranks of 1 thread", mpirun + ["2"], 1)]
-    times = {way: [] for way, _, _ in ways}
-    for _ in range(repeats):  # in turn, so that what else the machine does meets all of them
-        for way, launcher, threads in ways:
-            command = launcher + run(credence, names, trials, f"{folder}/x.h5", "--threads", str(threads))
-            times[way].append(measured(command))
-    print(f"wall and processor time of {trials} trials of {' and '.join(names)} (median of {repeats}):")
-    first = None
-    for way, _, _ in ways:
-        seconds, spread = summary([wall for wall, _, _ in times[way]])
-        processor, _ = summary([processor for _, processor, _ in times[way]])
-        first = first or seconds
-        print(f"  {way:24s} {seconds:6.2f} s, {first / seconds:.2f} times as fast, spread {100 * spread:.0f} %, "
-              f"processor {processor:.2f} s")
-
-
-PARTS = {"cost": cost, "sizes": sizes, "aggregates": aggregates, "merge": merge, "ranks": ranks}
+PARTS = {"cost": cost, "sizes": sizes, "aggregates": aggregates, "merge": merge}
 
 
 def main():

@@ -1,7 +1,7 @@
 #pragma once
 // Studies and columns for the tests of `compare`.
 
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include "worlds/deformable/keys.hpp"
 #include <numeric>
 

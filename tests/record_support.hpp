@@ -1,5 +1,5 @@
 #pragma once
-// Records of version 2, drawn here, and what is in them computed plainly.
+// Records, drawn here, and what is in them computed plainly.
 
 #include <credence/evidence.hpp>
 
@@ -81,7 +81,7 @@ inline hdf5::Extents extents_of(const DrawnRecord& record, std::initializer_list
 inline void write_file(const std::string& path, const std::function<void(const Handle& root)>& write, int version = 2) {
     const hdf5::QuietErrors quiet;
     const Handle root(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, path, "no file");
-    if (version != 1) hdf5::write_number<std::int32_t>(root, "record_version", version);
+    hdf5::write_number<std::int32_t>(root, "record_version", version);
     write(root);
 }
 
@@ -100,9 +100,9 @@ inline void write_drawn(const Handle& root, const DrawnRecord& record) {
 }
 
 /// The record that `write` writes, read.
-inline Record read_written(const std::function<void(const Handle& root)>& write, int version = 2) {
+inline Record read_written(const std::function<void(const Handle& root)>& write) {
     const TemporaryFolder folder;
-    write_file(folder / "record.h5", write, version);
+    write_file(folder / "record.h5", write);
     return read_record(folder / "record.h5");
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // The poses of a trajectory of EKF-SLAM as Eigen matrices.
 
-#include <credence/deformable_settings.hpp>
-#include <credence/trajectory.hpp>
+#include <credence/detail/deformable_settings.hpp>
+#include <credence/detail/trajectory.hpp>
 
 #include <Eigen/Dense>
 

@@ -4,7 +4,7 @@
 #include "numeric/chi_square.hpp"
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "of_scenarios.hpp"
 

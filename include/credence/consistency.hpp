@@ -47,10 +47,17 @@ enum class Subject {
 /// `size`, `step`, `direction` ...
 const std::string& subject_name(Subject subject);
 
+/// What is wrong: too large or too small for P, a mean error that is not 0; as a caution, innovations that are
+/// correlated or a distribution that is not chi-square.
+enum class Fault { optimistic, pessimistic, biased, correlated, misshapen };
+
+/// `optimistic`, `pessimistic`, `biased`, `correlated`, `misshapen`
+const std::string& fault_name(Fault fault);
+
 /// One finding: what was found, where (a component group, a component, a group of rows), and when.
 struct Finding {
     Subject about = Subject::size;
-    std::string what;       ///< optimistic, pessimistic, biased; as a caution: correlated, distribution_wrong
+    Fault what = Fault::optimistic;
     std::string where;
     std::string when;       ///< such as `over all steps`; of a direction its name, such as `0.71 x - 0.71 y`
     double value = 0;       ///< NEES/dimension, mean error/sigma, correlation, or distance, where it is farthest off
@@ -94,7 +101,7 @@ struct TrialsNeeded {
 /// not.
 struct Suspicion {
     Subject about = Subject::size;
-    std::string what;                  ///< optimistic, pessimistic or biased
+    Fault what = Fault::optimistic;    ///< or pessimistic or biased
     std::string where;                 ///< a component group or a component
     double value = 0;                  ///< its mean
     std::string measure;               ///< of `value`

@@ -2,8 +2,8 @@
 // Module verdict: the evidence that one arm's totals give on its filter: all numbers of docs/statistics.md but the
 // verdict. Lists by step have K - 1 entries, for the steps 1 ... K - 1. NaN where there are too few trials.
 
-#include <credence/credibility.hpp>
-#include <credence/results.hpp>
+#include <credence/detail/credibility.hpp>
+#include <credence/detail/results.hpp>
 #include <credence/statistics.hpp>
 
 #include <limits>

@@ -2,8 +2,8 @@
 // Module worlds: reading scenario files: INI, line by line through Boost.Program_options, so that a message can name
 // the line.
 
-#include <credence/scenario.hpp>
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/scenario.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 #include <string>
 #include <utility>

@@ -40,7 +40,7 @@
 #include <credence/detail/own_simulation.hpp>
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
-#include <credence/own_keys.hpp>
+#include <credence/detail/own_keys.hpp>
 #include <credence/own_trial.hpp>
 
 #include <concepts>

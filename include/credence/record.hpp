@@ -40,11 +40,9 @@ struct RecordGaps {
 ///   `run_square_sum` of real series (but NIS) are of the trial's mean over its own steps times the number of steps in
 ///   the file;
 /// - NIS and its series are only there with innovations, and `products` are of all trials;
-/// - of version 2, a series may lack a value at some steps of a trial: its own `present` and `runs` count
-/// [results.hpp];
+/// - a series may lack a value at some steps of a trial: its own `present` and `runs` count [results.hpp];
 /// - the column `unseen` is unknown (-1), and `pose_error` is of the group `pose`, else of the whole state; it and
-/// trace(P)
-///   are of the components that have the unit of most of them, where units are given;
+///   trace(P) are of the components that have the unit of most of them, where units are given;
 /// - `distribution_distance` is exact up to 2^24 values; beyond, it is empty and `cells` are used, but over 4096 steps
 ///   `cells` are empty, and `distribution_distance` is NaN where the values were too many.
 struct Record {
@@ -61,20 +59,18 @@ struct Record {
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of
 /// the first `detailed_trials`, by the declared steps of each, and up to 2^24 values of NEES.
 ///
-/// docs/judge.md has the format. Version 1, without the root's attribute `record_version`:
+/// docs/judge.md has the format. The root's attribute `record_version` is 2. The datasets and attributes:
 /// - `error` [trial, step, n], n to 1000: estimate - truth, in the chart of the covariance. A step whose error and
 ///   covariance are all NaN does not exist; its other values are ignored.
-/// - `covariance` [trial, step, n, n]: symmetric to 1e-9 of sqrt(P_ii P_jj), or to 16 epsilons of its type where that
-/// is
-///   more; the mean of both halves is used.
+/// - `covariance` [trial, step, n, n]: symmetric to 1e-9 of sqrt(P_ii P_jj), or to 16 epsilons of its type, if that
+///   is more; the mean of both halves is used.
 /// - `steps` [trial], optional: the number of steps of each run; values after them are ignored.
 /// - both or neither: `innovation` [trial, step, m], m to 2000, NaN in rows that were not observed, and
 ///   `innovation_covariance` [trial, step, m, m], of which the observed rows are used.
-/// - the attribute `blocks` of the root, optional, half-open and 0-based: `pose 0:3, feature_1 3:5`.
-/// Version 2 (`record_version` = 2) adds, all of it optional: components that enter and leave the state; `covariance`
-/// [trial, step, n] of variances, /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth`
-/// and `estimate` on a manifold in place of `error`; the attributes `groups`, `row_groups`, `component_names` and
-/// `component_units`; `time`. What such a record cannot show is in `results.not_judged`.
+/// - all optional: components that enter and leave the state; `covariance` [trial, step, n] of variances,
+///   /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth` and `estimate` on a manifold
+///   in place of `error`; the attributes `groups`, `row_groups`, `component_names` and `component_units`; `time`. What
+///   such a record cannot show is in `results.not_judged`.
 /// A record of one trial may leave out the dimension of trials. Anything else in the file is ignored.
 ///
 /// A trial with a covariance (of the errors or the observed innovations) that is not positive definite has failed: the
@@ -102,7 +98,7 @@ struct RecordArray {
     double epsilon = 0;                 ///< distance of 1 from the next number of the type in which it was computed
 };
 
-/// A record of version 2 in memory.
+/// A record in memory.
 struct RecordArrays {
     std::vector<RecordArray> arrays;
     std::map<std::string, std::string> texts;       ///< the root's attributes, lists as texts with commas

@@ -1,11 +1,11 @@
 #pragma once
 // Module report: the report. It is computed once from a study and then rendered as text, JSON, CSV or HTML.
 
-#include <credence/comparison.hpp>
+#include <credence/detail/comparison.hpp>
 #include <credence/consistency.hpp>
-#include <credence/histogram.hpp>
+#include <credence/detail/histogram.hpp>
 #include <credence/record.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 // groups.
 
 #include <credence/columns.hpp>
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 namespace credence {
 

@@ -1,8 +1,7 @@
 #pragma once
 // Module study: the study: scenarios with their arms, which blocks to run, and how.
 
-#include <credence/detail/provenance.hpp>
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -11,8 +10,7 @@
 
 namespace credence {
 
-/// Version of the layout of results files; files of version 2 are read too. Results of different versions are never
-/// mixed.
+/// Version of the layout of results files. A file of another version is refused.
 inline constexpr int schema_version = 3;
 /// Version of draws, columns and series.
 inline constexpr int draws_version = 2;
@@ -26,13 +24,9 @@ struct Study {
     std::vector<ScenarioResults> scenarios;
     std::int64_t trials = 0;            ///< of each scenario that were asked for
     bool complete = true;               ///< every scenario has all of them
-    Provenance computed_by{};           ///< which release computed which blocks; empty where it is not known
-    int schema = schema_version;        ///< of the file that it was read from
+    /// The releases that computed trials of it, such as `credence 0.3.0, git revision 1a2b3c4`.
+    std::vector<std::string> computed_by{};
 };
-
-/// Throws InputError where a study was read from a file of an earlier schema version, which cannot be added to.
-/// `doing` is such as `resume`.
-void check_schema(const Study& study, const std::string& path, const std::string& doing);
 
 /// The definition of a study, which does not include its trials, threads, shards or stopping.
 struct StudyDefinition {
@@ -74,9 +68,6 @@ public:
     virtual void take_back(std::size_t scenario, std::int64_t block) = 0;
     /// Takes a finished block; the study includes its totals already.
     virtual void take(std::size_t scenario, const Block& block) = 0;
-    /// The same for blocks that another process computed; `values` are their columns and details in order, in the
-    /// keeper's own format.
-    virtual void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) = 0;
     /// Whether the blocks taken so far should be committed. This would free `held` bytes of memory beside the keeper's
     /// own.
     virtual bool due(std::int64_t held) const = 0;
@@ -91,8 +82,6 @@ public:
     virtual void finished(const Study& study) = 0;
 };
 
-class Workers;
-
 struct RunOptions {
     std::int64_t trials = 10000;
     int threads = 0;                    ///< 0: as many as the machine has
@@ -100,7 +89,6 @@ struct RunOptions {
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
     BlockKeeper* keeper = nullptr;      ///< none: kept columns and all totals stay in memory
-    Workers* workers = nullptr;              ///< other processes that compute blocks too; needs a keeper
     /// Beyond this many bytes, totals of finished scenarios are dropped where the keeper can provide them again.
     std::int64_t most_totals = most_totals_in_memory;
 };

@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
 Source = str | os.PathLike[str] | BinaryIO
 
-SCHEMA_VERSIONS = 2, 3
+SCHEMA_VERSION = 3
 RESULTS, TRAJECTORIES = "credence results", "credence trajectories"
 
 
@@ -31,14 +31,14 @@ def open_hdf5(source: Source) -> tuple[h5py.File, str]:
                          "Give one that credence wrote.") from None
     kind = text(file, "format") if "format" in file.attrs else "none"
     version = file.attrs.get("schema_version")
-    if kind in (RESULTS, TRAJECTORIES) and version in SCHEMA_VERSIONS:
+    if kind in (RESULTS, TRAJECTORIES) and version == SCHEMA_VERSION:
         return file, kind
     file.close()
     if version is None or kind not in (RESULTS, TRAJECTORIES):
         raise ValueError(f"{source}: format: invalid format={kind} (must be {RESULTS} or {TRAJECTORIES}). "
                          "Give a file that `credence run` or `credence replay` wrote.")
     raise ValueError(f"{source}: schema_version: invalid schema_version={version} (this package reads "
-                     f"{', '.join(map(str, SCHEMA_VERSIONS))}). Take the package of the release that wrote it.")
+                     f"{SCHEMA_VERSION}). Take the package of the release that wrote it.")
 
 
 def still_open(thing: Any) -> Any:

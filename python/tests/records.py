@@ -157,7 +157,7 @@ def corpus():
 
 
 def write(path, record):
-    """Write the arguments of `judge` as a record of version 2 [docs/judge.md]."""
+    """Write the arguments of `judge` as a record [docs/judge.md]."""
     groups = record.get("groups")
     with h5py.File(path, "w") as file:
         file.attrs["record_version"] = 2

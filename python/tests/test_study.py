@@ -158,20 +158,6 @@ def test_an_arm_without_trials_is_said_to_be_not_run(tmp_path):
         assert "not run yet" in study._repr_html_()
 
 
-def test_files_of_schema_2_are_read(tmp_path):
-    def older(file):
-        file.attrs.modify("schema_version", np.int32(2))
-        for arm in file["ekf-circle-ranged"].values():
-            del arm["detailed_moments"], arm["moment"]
-
-    path = studies.edited(studies.one_scenario(), tmp_path / "old.h5", older)
-    with credence.open(path) as old, credence.open(studies.one_scenario()) as new:
-        np.testing.assert_array_equal(old["greedy.ekf"].trace_P, new["greedy.ekf"].trace_P)
-        assert old["greedy.ekf"].series == new["greedy.ekf"].series
-        with pytest.raises(AttributeError, match="has no detailed_moments"):
-            _ = old["greedy.ekf"].detailed_moments
-
-
 def test_what_cannot_be_read_is_refused(tmp_path):
     text = tmp_path / "text.h5"
     text.write_text("no HDF5 at all")
@@ -189,7 +175,7 @@ def test_what_cannot_be_read_is_refused(tmp_path):
         credence.open(tmp_path / "other.h5")
     newer = studies.edited(studies.one_scenario(), tmp_path / "new.h5",
                            lambda file: file.attrs.modify("schema_version", np.int32(4)))
-    with pytest.raises(ValueError, match="schema_version=4 \\(this package reads 2, 3\\)"):
+    with pytest.raises(ValueError, match="schema_version=4 \\(this package reads 3\\)"):
         credence.open(newer)
 
 

@@ -6,7 +6,7 @@
 #include "worlds/notes.hpp"
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
 #include <boost/program_options.hpp>

@@ -1,9 +1,9 @@
 #pragma once
-// Declarations shared by the subcommands. Each subcommand has one file; main.cpp lists them.
+// Declarations shared by the subcommands. Each subcommand has one file; program.cpp lists them.
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <functional>
 #include <map>

@@ -1,7 +1,7 @@
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <credence/error.hpp>
 #include <credence/record.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include <set>
 
 #include "base/program_name.hpp"

@@ -23,8 +23,7 @@ const Command& judge_command() {
         "and, on the file, the attribute `groups`, such as \"position 0 2, feature_1 3:5\" (from 0, the end of a "
         "range\n"
         "not included): parts of the state that are judged by themselves. A component is NaN where it is not in the\n"
-        "state. docs/judge.md has the rest: covariances or NEES of groups alone, poses on manifolds, and version 1,\n"
-        "without record_version, whose groups are the attribute `blocks`.\n"
+        "state. docs/judge.md has the rest, such as covariances or NEES of groups alone, and poses on manifolds.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
         {margin_option(),
          margin_direction_option(),

@@ -5,7 +5,7 @@
 #include "cli/version.hpp"
 
 #include <credence/error.hpp>
-#include <credence/merge.hpp>
+#include "files/merge/merge.hpp"
 
 namespace credence::cli {
 

@@ -4,7 +4,6 @@
 #include "cli/process/exit_guard.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/run/ranks.hpp"
 #include "cli/process/streams.hpp"
 #include "cli/version.hpp"
 
@@ -144,7 +143,7 @@ int obey_or_complain(const std::vector<std::string>& words) {
         if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
         return code;
     } catch (const InputError& error) {
-        return cli::rank_0_says_it(name, without_first(words)) ? 0 : complain(prefix + error.what(), 2);
+        return complain(prefix + error.what(), 2);
     } catch (const std::bad_alloc&) {
         return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
                                                 : "out of memory. The file holds more than fits."),

@@ -4,13 +4,15 @@
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
+#include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include "base/nan.hpp"
 #include "base/program_name.hpp"
+#include "study/releases.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,12 +95,9 @@ std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 /// What to add about a trial that differs where another release computed it, whose draws or columns may differ.
-std::string other_release(const Study& study, const ScenarioResults& results, std::int64_t trial) {
-    const auto scenario = static_cast<std::size_t>(&results - study.scenarios.data());
-    for (const ComputedBy& one : study.computed_by)
-        if (one.of(scenario).contains(trial / block_size) && !may_mix(one.release, made_by()))
-            return " " + why_unmixable(one.release, made_by()) + ". Replay it with that release.";
-    return {};
+std::string other_release(const Study& study) {
+    const std::string other = unmixable(study.computed_by, made_by());
+    return other.empty() ? "" : " " + why_unmixable(other, made_by()) + ". Replay it with that release.";
 }
 
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
@@ -117,7 +116,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
         if (!same(stored, trajectory.column_values[c]))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
                           results.columns[c].name + " is " + to_text(trajectory.column_values[c]) + ", stored is " +
-                          to_text(stored) + "." + other_release(study, results, trial));
+                          to_text(stored) + "." + other_release(study));
     }
     return {std::move(trajectory)};
 }

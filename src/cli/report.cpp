@@ -4,7 +4,7 @@
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <filesystem>
 

@@ -3,7 +3,7 @@
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <algorithm>
 

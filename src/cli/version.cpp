@@ -1,8 +1,8 @@
 #include "cli/version.hpp"
 
-#include "cluster/mpi/mpi_transport.hpp"
 #include "build_info.hpp"  // made by CMake
 
+#include "study/releases.hpp"
 #include "worlds/simulate.hpp"
 
 #include <Eigen/Core>
@@ -28,7 +28,7 @@ std::string libraries() {
     return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release) + ", Eigen " +
            std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
            std::to_string(EIGEN_MINOR_VERSION) + ", Boost " + std::to_string(BOOST_VERSION / 100000) + "." +
-           std::to_string(BOOST_VERSION / 100 % 1000) + ", MPI " + mpi_library();
+           std::to_string(BOOST_VERSION / 100 % 1000);
 }
 
 }  // namespace

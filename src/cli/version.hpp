@@ -1,7 +1,7 @@
 #pragma once
 // Facts of the build, for --version and for /run of every file.
 
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <string>
 

@@ -242,10 +242,8 @@ Block run_block(const Simulation& simulation, const std::vector<Column>& columns
 
 void free_workspaces() { workspaces().clear(); }
 
-BlockRunner::BlockRunner(const Scenario& scenario)
-    : columns_(world_of(scenario).columns(scenario)),
-      arms_(scenario.arms.size()),
-      simulation_(simulation_of(scenario)) {}
+BlockRunner::BlockRunner(const World& world, const Scenario& scenario)
+    : columns_(world.columns(scenario)), arms_(scenario.arms.size()), simulation_(world.simulation(scenario)) {}
 
 Block BlockRunner::run(std::uint64_t root_seed, std::int64_t index, int trials) const {
     return run_block(*simulation_, columns_, arms_, root_seed, index, trials);

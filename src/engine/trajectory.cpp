@@ -1,4 +1,4 @@
-#include <credence/trajectory.hpp>
+#include <credence/detail/trajectory.hpp>
 
 #include "base/nan.hpp"
 

@@ -135,7 +135,6 @@ void StoredRun::choose(const StudyDefinition& asked) {
 
 Study StoredRun::stored(const StudyDefinition& asked) const {
     Study study = read_results(output_.target, most_totals_in_memory).study;
-    check_schema(study, output_.path, "resume");
     check_same_study(
         definition_of(study), asked, output_.path,
         journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");

@@ -2,7 +2,9 @@
 // A run and its files: the results file FILE.h5 and, until that is written, FILE.h5.journal beside it.
 // docs/durability.md describes their guarantees.
 
-#include <credence/store.hpp>
+#include "study/releases.hpp"
+
+#include <credence/detail/store.hpp>
 
 #include <memory>
 #include <optional>

@@ -16,12 +16,11 @@ namespace {
 /// A covariance that is singular at the start makes every trial fail there.
 void hint_at_known_start(const Record& record, Consistency& verdict) {
     const auto at_start = [](const RecordTrouble& trouble) {
-        return trouble.step == 0 && trouble.status == Status::covariance_not_positive_definite &&
-               trouble.what == "covariance is singular";
+        return trouble.step == 0 && trouble.status == Status::covariance_not_positive_definite;
     };
     if (verdict.verdict == Verdict::failed && std::ranges::all_of(record.troubles, at_start))
         verdict.hints.push_back(
-            "the covariance is singular at the first step: where the start is known exactly (P0 = 0), begin the "
+            "the covariance cannot be inverted at the first step: if the start is known exactly (P0 = 0), begin the "
             "record one step later, or make the known components NaN at that step; components that are known at every "
             "step are left out where their errors are 0 too");
 }
@@ -49,7 +48,7 @@ void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vec
 std::string nees_text(const GroupEvidence& state) { return with_interval(state.run.mean, over_steps95(state)); }
 
 bool is_too_large(const Finding& finding) {
-    return finding.what == "optimistic" && (finding.about == Subject::size || finding.about == Subject::direction);
+    return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
 }
 
 /// NEES with the error in the other chart, where the given one is doubted: beside the record's own, without a verdict.

@@ -15,7 +15,7 @@ namespace credence {
 
 namespace {
 
-/// `values` may be null: then the place is unknown.
+/// The place of the arm's published value among these; NaN without values.
 std::optional<PublishedPlace> place_of(const std::optional<std::vector<PublishedNumber>>& published,
                                        const std::string& arm, const std::vector<double>& values) {
     if (!published) return std::nullopt;

@@ -1,7 +1,7 @@
 #pragma once
 // The grids of a study: the scenarios that are points of one, and their places in it.
 
-#include <credence/sweep.hpp>
+#include <credence/detail/sweep.hpp>
 
 #include <cstddef>
 #include <string>

@@ -22,8 +22,7 @@ double distance_off(const Finding& finding) {
 }
 
 /// The findings of one kind: each group or component at its worst, the farthest off first.
-std::vector<std::string> findings_parts(const std::vector<Finding>& findings, const std::string& what,
-                                        bool directions) {
+std::vector<std::string> findings_parts(const std::vector<Finding>& findings, Fault what, bool directions) {
     constexpr std::size_t most = 3;
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
@@ -74,7 +73,7 @@ std::string needed_text(const TrialsNeeded& needed) {
 /// `NEES/dim of all is 0.91 and not shown to be too small: 2500 trials would show it if it stays (1500 to 6200)`
 std::string suspicion_text(const Suspicion& suspicion) {
     const std::string too = suspicion.about == Subject::bias ? "beyond the margin"
-                            : suspicion.what == "optimistic" ? "too large"
+                            : suspicion.what == Fault::optimistic ? "too large"
                                                              : "too small";
     return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) +
            " and not shown to be " + too + ": " + number(suspicion.trials.value, 0) +
@@ -163,16 +162,16 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
     std::vector<Reason> reasons;
     if (const std::string text = failed_text(arm); !text.empty()) reasons.push_back({text, {}, true});
-    const auto list = [&](const std::string& what, const std::string& measure, bool directions = false) {
+    const auto list = [&](Fault what, const std::string& measure, bool directions = false) {
         if (auto parts = findings_parts(verdict.findings, what, directions); !parts.empty())
-            reasons.push_back({what + " (" + measure + "):", std::move(parts), true});
+            reasons.push_back({fault_name(what) + " (" + measure + "):", std::move(parts), true});
     };
-    list("optimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
-    list("pessimistic", arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
-    list("optimistic", "directions", true);
-    list("pessimistic", "directions", true);
-    list("biased", "mean error/sigma");
-    list("correlated", "whitened innovations");
+    list(Fault::optimistic, arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list(Fault::pessimistic, arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list(Fault::optimistic, "directions", true);
+    list(Fault::pessimistic, "directions", true);
+    list(Fault::biased, "mean error/sigma");
+    list(Fault::correlated, "whitened innovations");
     if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
                     [](const Whiteness& lag) { return !lag.known(); }))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});

@@ -1,6 +1,6 @@
 // Keys that have the same meaning in every world.
 
-#include <credence/scenario.hpp>
+#include <credence/detail/scenario.hpp>
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>

@@ -1,4 +1,4 @@
-#include <credence/scenario.hpp>
+#include <credence/detail/scenario.hpp>
 
 #include <credence/text.hpp>
 

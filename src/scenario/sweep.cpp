@@ -1,7 +1,7 @@
-#include <credence/sweep.hpp>
+#include <credence/detail/sweep.hpp>
 
 #include <credence/error.hpp>
-#include <credence/scenario.hpp>
+#include <credence/detail/scenario.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>

@@ -100,7 +100,7 @@ struct Update {
     Elimination<Real, capacity> alone;  ///< workspace for nis_edges
 };
 
-/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(S, i, K_i)`
+/// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(S, i, gain)`
 /// receives the gain of each component for the decorrelated rows. Returns S.
 template <class Layout, class Rows, class Real, int capacity, class Gained>
 Decorrelation<Real> condition_both_axes(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N,

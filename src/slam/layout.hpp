@@ -3,7 +3,7 @@
 // theta (translation model) [docs/model.md, Two process models].
 
 #include <credence/detail/each.hpp>
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 namespace credence {
 

@@ -1,4 +1,4 @@
-#include <credence/recorded_noise.hpp>
+#include <credence/detail/recorded_noise.hpp>
 
 namespace credence {
 

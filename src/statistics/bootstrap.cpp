@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <credence/detail/block.hpp>
 #include "statistics/bootstrap.hpp"
 #include <credence/detail/draws.hpp>
 #include <credence/detail/each.hpp>
@@ -12,7 +11,7 @@ namespace credence {
 
 namespace {
 
-constexpr std::size_t fewest_blocks = 100;
+constexpr std::size_t resampled_trials = 256, fewest_blocks = 100;
 
 /// 64-bit FNV-1a [Fowler, Noll, Vo].
 std::uint64_t fnv1a(const std::string& text) {
@@ -103,9 +102,9 @@ std::vector<double> resampled_means(const std::vector<Part>& parts, std::uint64_
 /// Sum of value - `centre` and count of every block that holds a value.
 std::vector<BlockPart> blocks_of(const std::vector<double>& by_trial, double centre) {
     std::vector<BlockPart> blocks;
-    for (std::size_t first = 0; first < by_trial.size(); first += block_size) {
+    for (std::size_t first = 0; first < by_trial.size(); first += resampled_trials) {
         BlockPart block;
-        for (std::size_t i = first; i < std::min(by_trial.size(), first + block_size); ++i)
+        for (std::size_t i = first; i < std::min(by_trial.size(), first + resampled_trials); ++i)
             if (!std::isnan(by_trial[i])) block += {by_trial[i] - centre, 1};
         if (block.count > 0) blocks.push_back(block);
     }
@@ -137,7 +136,7 @@ Interval bootstrap_mean_interval(const std::vector<double>& by_trial, std::uint6
     const double centre = centre_of(by_trial);
     if (std::isnan(centre)) return {nan, nan};
     std::vector<BlockPart> blocks;
-    if (by_trial.size() >= fewest_blocks * block_size) blocks = blocks_of(by_trial, centre);
+    if (by_trial.size() >= fewest_blocks * resampled_trials) blocks = blocks_of(by_trial, centre);
     std::vector<double> means = blocks.size() >= fewest_blocks
                                     ? resampled_means(blocks, root_seed, column)
                                     : resampled_means(trials_of(by_trial, centre), root_seed, column);

@@ -1,5 +1,5 @@
 #include <cmath>
-#include <credence/credibility.hpp>
+#include <credence/detail/credibility.hpp>
 
 #include "base/nan.hpp"
 #include "numeric/decompositions.hpp"

@@ -57,12 +57,6 @@ double distance_of_sorted(const std::vector<double>& probabilities) {
 
 }  // namespace
 
-double chi_square_distance(std::vector<double> values, double degrees) {
-    put_in_order(values);
-    for (double& value : values) value = 1 - chi_square_p(value, degrees);
-    return distance_of_sorted(values);
-}
-
 double uniform_distance(std::vector<double> probabilities) {
     put_in_order(probabilities);
     return distance_of_sorted(probabilities);

@@ -21,11 +21,8 @@ Interval chi_square_band(double degrees, double alpha);
 /// P(X >= statistic), X ~ chi-square(degrees). NaN for a NaN or degrees <= 0.
 double chi_square_p(double statistic, double degrees);
 
-/// Greatest distance between the distribution of the values and chi-square(degrees), sup |F_N(x) - F(x)| [Kolmogorov,
-/// Smirnov]. NaN values are left out; NaN where none is left.
-double chi_square_distance(std::vector<double> values, double degrees);
-
-/// The same of probabilities F(x), whose distribution is uniform, so that F may be another one for each value.
+/// Greatest distance of the distribution of probabilities F(x) from the uniform one, sup |F_N(x) - F(x)| [Kolmogorov,
+/// Smirnov]; F may be another distribution function for each value x. NaN values are left out; NaN if none is left.
 double uniform_distance(std::vector<double> probabilities);
 
 /// The same from counts in `cells` cells of equal probability, from the lowest values to the highest: max over i |share

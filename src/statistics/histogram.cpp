@@ -1,4 +1,4 @@
-#include <credence/histogram.hpp>
+#include <credence/detail/histogram.hpp>
 
 #include <credence/statistics.hpp>
 

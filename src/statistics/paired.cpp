@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include "statistics/bootstrap.hpp"
-#include <credence/paired.hpp>
+#include <credence/detail/paired.hpp>
 
 #include "base/nan.hpp"
 #include <utility>

@@ -1,7 +1,6 @@
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "base/nan.hpp"
-#include "numeric/superaccumulator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,24 +11,6 @@ namespace credence {
 
 namespace {
 
-/// a b exactly: the rounded product, and its rounding error.
-template <class Sum>
-void add_product(Sum& sum, double a, double b) {
-    const double product = a * b;
-    sum.add(product);
-    if (const double error = std::fma(a, b, -product); error != 0) sum.add(error);
-}
-
-/// n Q - S^2
-double spread_of(const ExactMoments& values) {
-    ExactSum spread;
-    for (const double part : values.square_sum.parts()) add_product(spread, static_cast<double>(values.count), part);
-    const std::vector<double> sum = values.sum.parts();
-    for (const double a : sum)
-        for (const double b : sum) add_product(spread, -a, b);
-    return spread.rounded();
-}
-
 /// A column of an arm's block, NaN where a trial failed.
 std::vector<double> values_of(const ArmBlock& arm, std::size_t column, std::size_t status, std::size_t trials) {
     const auto begin = arm.columns.begin() + static_cast<std::ptrdiff_t>(column * trials);
@@ -37,34 +18,6 @@ std::vector<double> values_of(const ArmBlock& arm, std::size_t column, std::size
     for (std::size_t i = 0; i < trials; ++i)
         if (failed(static_cast<Status>(static_cast<int>(arm.columns[status * trials + i])))) values[i] = nan;
     return values;
-}
-
-/// Of a block's values.
-ExactMoments exact_moments(const std::vector<double>& values) {
-    static_assert(2 * block_size <= 1024, "a superaccumulator takes no more");
-    ExactMoments moments;
-    Superaccumulator sum, square_sum;
-    for (const double value : values) {
-        if (std::isnan(value)) continue;
-        ++moments.count;
-        sum.add(value);
-        add_product(square_sum, value, value);
-    }
-    moments.sum = sum.sum();
-    moments.square_sum = square_sum.sum();
-    return moments;
-}
-
-DifferenceTotals differences_of(const std::vector<double>& a, const std::vector<double>& b) {
-    DifferenceTotals totals;
-    std::vector<double> differences(a.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        differences[i] = a[i] - b[i];
-        totals.below += a[i] < b[i];
-        totals.above += a[i] > b[i];
-    }
-    totals.difference = exact_moments(differences);
-    return totals;
 }
 
 template <class T>
@@ -78,46 +31,6 @@ void subtract_each(std::vector<T>& to, const std::vector<T>& from) {
 }
 
 }  // namespace
-
-void ExactMoments::add(const ExactMoments& other) {
-    count += other.count;
-    sum.add(other.sum);
-    square_sum.add(other.square_sum);
-}
-
-void ExactMoments::subtract(const ExactMoments& other) {
-    count -= other.count;
-    sum.subtract(other.sum);
-    square_sum.subtract(other.square_sum);
-}
-
-Moments moments_of(const ExactMoments& values) {
-    const auto n = static_cast<double>(values.count);
-    if (values.count < 1) return {n, nan, nan, nan};
-    const double mean = values.sum.rounded() / n;
-    if (values.count < 2) return {n, mean, nan, nan};
-    // No values have a spread below 0: where a damaged file gives one, it must not appear as certainty.
-    const double variance = spread_of(values) / n / (n - 1);
-    return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
-}
-
-void DifferenceTotals::add(const DifferenceTotals& other) {
-    difference.add(other.difference);
-    below += other.below;
-    above += other.above;
-}
-
-void DifferenceTotals::subtract(const DifferenceTotals& other) {
-    difference.subtract(other.difference);
-    below -= other.below;
-    above -= other.above;
-}
-
-DifferenceTotals DifferenceTotals::reversed() const {
-    DifferenceTotals other{{difference.count, {}, difference.square_sum}, above, below};
-    other.difference.sum.subtract(difference.sum);
-    return other;
-}
 
 void ArmAggregates::add(const ArmAggregates& other) {
     std::transform(statuses.begin(), statuses.end(), other.statuses.begin(), statuses.begin(), std::plus<>());

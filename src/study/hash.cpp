@@ -1,7 +1,5 @@
 #include <credence/study.hpp>
 
-#include <credence/error.hpp>
-
 #include <boost/uuid/name_generator.hpp>
 #include <boost/uuid/uuid_io.hpp>
 
@@ -25,13 +23,6 @@ std::string study_hash(const StudyDefinition& definition) {
 }
 
 std::string study_hash(const Study& study) { return study_hash(definition_of(study)); }
-
-void check_schema(const Study& study, const std::string& path, const std::string& doing) {
-    if (study.schema == schema_version) return;
-    throw InputError("cannot " + doing + " " + path + " (it has schema version " + std::to_string(study.schema) +
-                     ", this program writes " + std::to_string(schema_version) +
-                     "). Use the release that wrote it, or run the study again.");
-}
 
 std::string difference_of(const StudyDefinition& there, const StudyDefinition& here) {
     if (study_hash(there) == study_hash(here)) return "";

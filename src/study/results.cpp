@@ -1,4 +1,4 @@
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "numeric/chi_square.hpp"
 #include "study/visit_totals.hpp"

@@ -1,7 +1,8 @@
 // Totals and details that are loaded into memory only while they are needed.
 
 #include "numeric/chi_square.hpp"
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
+#include <credence/detail/worlds.hpp>
 #include "study/visit_totals.hpp"
 
 #include <type_traits>

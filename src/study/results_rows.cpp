@@ -1,6 +1,6 @@
 // The rows of columns and details: which trials they are of.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "study/visit_totals.hpp"
 

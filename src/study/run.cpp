@@ -1,9 +1,10 @@
-// Running a study's blocks on threads, and on workers in other processes.
+// Running a study's blocks on threads.
 
 #include "base/idle_threads.hpp"
-#include "study/workers.hpp"
 
 #include <credence/error.hpp>
+#include <credence/study.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <omp.h>
 
@@ -13,15 +14,20 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 namespace credence {
 
 namespace {
 
+/// One block to run: which scenario, which block.
+struct Task {
+    std::size_t scenario = 0;
+    std::int64_t block = 0;
+};
+
 /// Runs tasks on threads and adds their results to the study. Totals are exact, so the order does not matter.
-class Runner : private BlockQueue {
+class Runner {
 public:
     Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
         for (const ScenarioResults& results : study.scenarios) work_.emplace_back(results.scenario);
@@ -41,7 +47,7 @@ public:
 private:
     /// The tasks of a run for one scenario.
     struct Work {
-        explicit Work(const Scenario& scenario) : runner(scenario) {}
+        explicit Work(const Scenario& scenario) : runner(world_of(scenario), scenario) {}
 
         BlockRunner runner;
         BlockRanges done;      ///< blocks that are present
@@ -104,15 +110,9 @@ private:
 
     void run_tasks() {
         const int threads = options_.threads > 0 ? options_.threads : omp_get_max_threads();
-        const int servers = options_.workers != nullptr ? 1 : 0;
         report();
-        // Thread 0 is the one that called run_study. It computes no blocks where there are workers, so that none of
-        // them has to wait for it.
-#pragma omp parallel num_threads(threads + servers)
-        if (omp_get_thread_num() < servers)
-            guarded([&] { options_.workers->serve(*this); });
-        else
-            while (const std::optional<Task> task = next_task()) guarded([&] { run_task(*task); });
+#pragma omp parallel num_threads(threads)
+        while (const std::optional<Task> task = next_task()) guarded(*task);
         end_idle_threads();
         if (trouble_) std::rethrow_exception(trouble_);
         for (const Work& work : work_)  // blocks that were present are kept when a run is stopped
@@ -125,10 +125,9 @@ private:
 
     /// An exception must not leave the parallel region (nor an omp critical one): it is stored, and thrown after the
     /// region.
-    template <class Work>
-    void guarded(Work work) {
+    void guarded(const Task& task) {
         try {
-            work();
+            run_task(task);
         } catch (...) {
             const std::lock_guard lock(mutex_);
             trouble_ = std::current_exception();
@@ -153,24 +152,16 @@ private:
         if (finish_task(task, block, block_aggregates(results, block))) commit();
     }
 
-    /// Adds the block's totals; returns whether a commit was prepared.
+    /// Adds the block's totals; returns whether a commit was prepared. Where that throws, such as for want of memory,
+    /// the totals and what the keeper has of them are at odds: what other threads still finish is left out, or they
+    /// would commit it.
     bool finish_task(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates) {
-        return change([&] {
-            add_totals(study_.scenarios[task.scenario], block, aggregates);
-            if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
-            finished(task);
-        });
-    }
-
-    /// Makes a change of the totals and of what the keeper has of them; returns whether a commit was prepared. Where
-    /// that throws, such as for want of memory, the two are at odds: what other threads still finish is left out, or
-    /// they would commit it.
-    template <class Change>
-    bool change(const Change& make) {
         const std::lock_guard lock(mutex_);
         if (at_odds_) return false;
         at_odds_ = true;
-        make();
+        add_totals(study_.scenarios[task.scenario], block, aggregates);
+        if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
+        finished(task);
         report();
         const bool prepared = prepare_commit();
         at_odds_ = false;
@@ -210,37 +201,10 @@ private:
         options_.keeper->commit();
     }
 
-    // The interface for the workers [BlockQueue].
-    std::int64_t trials() const override { return options_.trials; }
-    std::int64_t left() const override {
-        return static_cast<std::int64_t>(task_count_ - std::min(task_count_, next_.load()));
-    }
-    std::vector<Task> hand_out(std::int64_t most) override {
-        std::vector<Task> tasks;
-        while (static_cast<std::int64_t>(tasks.size()) < most) {
-            const std::optional<Task> task = next_task();
-            if (!task) break;
-            tasks.push_back(*task);
-        }
-        return tasks;
-    }
-    bool stopped() override {
+    /// Whether the run has to stop, because that was requested or because of an error.
+    bool stopped() {
         if (!stopped_ && options_.stop && options_.stop()) stopped_ = true;
         return stopped_;
-    }
-    void take(const ComputedBlocks& computed) override {
-        begin(computed.scenario);
-        ScenarioResults& results = study_.scenarios[computed.scenario];
-        for (const std::int64_t block : computed.blocks) copy_details(results, computed.results, block);
-        if (add(results, computed)) commit();
-    }
-
-    bool add(ScenarioResults& results, const ComputedBlocks& computed) {
-        return change([&] {
-            for (std::size_t a = 0; a < results.arms.size(); ++a) add_totals(results.arms[a], computed.results.arms[a]);
-            options_.keeper->take(computed.scenario, computed.blocks, computed.values);
-            for (const std::int64_t block : computed.blocks) finished({computed.scenario, block});
-        });
     }
 
     /// After an early stop: keeps only the rows of blocks that are done.
@@ -288,7 +252,6 @@ void run_study(Study& study, const RunOptions& options) {
         throw invalid_value("--trials", std::to_string(options.trials),
                             "the study has been asked for " + std::to_string(least) + " already",
                             "Ask for at least as many");
-    if (options.workers != nullptr && options.keeper == nullptr) throw std::logic_error("workers need a keeper");
     if (options.keeper == nullptr)
         for (ScenarioResults& results : study.scenarios) bring_into_memory(results);
     Runner(study, options).run();

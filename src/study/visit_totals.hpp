@@ -1,7 +1,7 @@
 #pragma once
 // The parts of an arm's totals and details, each named once: journal, messages, merge and memory go through them here.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -30,7 +30,7 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
         const Side side = side_of(corrected, margin);
         if (side == Side::inside) continue;
         (side == Side::above ? above : below) = true;
-        verdict.findings.push_back({Subject::innovations, name_of(side), "innovations (" + nis.part + ")",
+        verdict.findings.push_back({Subject::innovations, fault_of(side), "innovations (" + nis.part + ")",
                                     "over all steps", nis.ratio, corrected, "NIS/m"});
     }
     const double lags = static_cast<double>(evidence.whiteness.size()),
@@ -38,7 +38,7 @@ Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
     for (const Whiteness& lag : evidence.whiteness) {
         all_inside = all_inside && lag.known();
         if (lag.known() && std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
-            verdict.findings.push_back({Subject::whiteness, "correlated", "innovations",
+            verdict.findings.push_back({Subject::whiteness, Fault::correlated, "innovations",
                                         "lag " + std::to_string(lag.lag), lag.scaled, interval_of(lag),
                                         "relative correlation"});
     }
@@ -62,8 +62,8 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
         lags.push_back(lag.lag);
     }
     if (worst == nullptr) return;
-    verdict.cautions.push_back({Subject::whiteness, "correlated", "innovations", listed("lag", lags), worst->scaled,
-                                interval_of(*worst), "relative correlation"});
+    verdict.cautions.push_back({Subject::whiteness, Fault::correlated, "innovations", listed("lag", lags),
+                                worst->scaled, interval_of(*worst), "relative correlation"});
 }
 
 /// Innovations of the wrong size beside a consistent state: NEES does not show them.
@@ -71,7 +71,7 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
     for (const NisEvidence& nis : evidence.nis)
         if (const Side side = side_of(nis.ratio95, verdict.limits.margin); side != Side::inside)
-            verdict.cautions.push_back({Subject::innovations, name_of(side), "innovations (" + nis.part + ")",
+            verdict.cautions.push_back({Subject::innovations, fault_of(side), "innovations (" + nis.part + ")",
                                         "over all steps", nis.ratio, nis.ratio95, "NIS/m"});
 }
 
@@ -92,7 +92,7 @@ void caution_about_distribution(const Evidence& evidence, Consistency& verdict) 
         if (distance.value > worst.value) worst = distance;
     }
     if (!steps.empty())
-        verdict.cautions.push_back({Subject::distribution, "misshapen", evidence.groups.front().name,
+        verdict.cautions.push_back({Subject::distribution, Fault::misshapen, evidence.groups.front().name,
                                     steps_text(steps), worst.value, worst.interval(), "distance from chi-square"});
 }
 

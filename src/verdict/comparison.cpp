@@ -1,4 +1,4 @@
-#include <credence/comparison.hpp>
+#include <credence/detail/comparison.hpp>
 
 #include <algorithm>
 #include <stdexcept>

@@ -47,8 +47,9 @@ private:
         const MeanClaim claim =
             claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps), level, margin());
         if (claim.above || claim.below)
-            judgement_.add(claim.above ? Side::above : Side::below,
-                           {Subject::size, "", group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
+            judgement_.add(
+                claim.above ? Side::above : Side::below,
+                {Subject::size, Fault{}, group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
         else if (std::optional<Suspicion> looks = suspicion_of(sample, level, margin()))
             judgement_.suspect({Subject::size, looks->what, group_.name, looks->value, "NEES/dim", looks->trials});
         const std::string what = "NEES/dim of " + group_.name;
@@ -91,7 +92,7 @@ private:
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                judgement_.add(side, {Subject::step, "", group_.name, steps_text(steps.steps), steps.value,
+                judgement_.add(side, {Subject::step, Fault{}, group_.name, steps_text(steps.steps), steps.value,
                                       steps.interval, "NEES/dim"});
     }
 
@@ -127,13 +128,13 @@ Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
 
 void Judgement::add(Side side, Finding finding) {
     (side == Side::above ? above_ : below_) = true;
-    finding.what = name_of(side);
+    finding.what = fault_of(side);
     findings_.push_back(std::move(finding));
 }
 
 void Judgement::add_bias(Finding finding) {
     above_ = true;
-    finding.what = "biased";
+    finding.what = Fault::biased;
     findings_.push_back(std::move(finding));
 }
 
@@ -195,6 +196,11 @@ const std::string& verdict_name(Verdict verdict) {
     return names[static_cast<int>(verdict)];
 }
 
+const std::string& fault_name(Fault fault) {
+    static const std::string names[] = {"optimistic", "pessimistic", "biased", "correlated", "misshapen"};
+    return names[static_cast<std::size_t>(fault)];
+}
+
 const std::string& subject_name(Subject subject) {
     static const std::string names[] = {"size",        "step",      "direction",   "bias",
                                         "innovations", "whiteness", "distribution"};
@@ -228,7 +234,7 @@ std::string sentence(const Finding& finding) {
     std::snprintf(numbers, sizeof numbers, "%s %.3g (%.3g to %.3g)", finding.measure.c_str(), finding.value,
                   finding.interval.low, finding.interval.high);
     const std::string where = (finding.about == Subject::bias ? "component " : "") + finding.where;
-    return finding.what + ": " + where + ", " + when_text(finding) + ", " + numbers;
+    return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + numbers;
 }
 
 }  // namespace credence

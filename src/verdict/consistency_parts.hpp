@@ -25,9 +25,7 @@ inline bool within(const Interval& interval, double margin) {
     return interval.low >= 1 - margin && interval.high <= 1 + margin;
 }
 
-inline const std::string& name_of(Side side) {
-    return verdict_name(side == Side::above ? Verdict::optimistic : Verdict::pessimistic);
-}
+inline Fault fault_of(Side side) { return side == Side::above ? Fault::optimistic : Fault::pessimistic; }
 
 /// `steps 3 to 7, 9`, from numbers in order.
 std::string listed(const std::string& what, const std::vector<int>& numbers);

@@ -55,8 +55,7 @@ void hint_at_angles(const Evidence& evidence, std::vector<std::string>& hints) {
 void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
         verdict.hints.push_back(
-            "the correlation of innovations was not tested: none are so few steps apart (a record of version 2 "
-            "counts the measurements between them)");
+            "the correlation of innovations was not tested: no row was measured often enough");
     hint_at_angles(evidence, verdict.hints);
     if (verdict.findings.empty()) return;
     hint_at_scale(verdict, verdict.hints);

@@ -21,7 +21,8 @@ std::string worst_step(const BiasEvidence& bias) {
 void judge_suspicion(const BiasEvidence& bias, int components, Judgement& judgement) {
     const double level = levels::bias / components / 2;
     if (std::optional<Suspicion> looks = suspicion_of_bias(bias.run, level, judgement.limits().bias))
-        judgement.suspect({Subject::bias, "biased", bias.component, looks->value, "mean error/sigma", looks->trials});
+        judgement.suspect(
+            {Subject::bias, Fault::biased, bias.component, looks->value, "mean error/sigma", looks->trials});
 }
 
 }  // namespace
@@ -33,8 +34,8 @@ void judge_bias(const Evidence& evidence, Judgement& judgement) {
         const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
                                               judgement.limits().bias);
         if (claim.finding)
-            judgement.add_bias(
-                {Subject::bias, "", bias.component, worst_step(bias), claim.value, claim.interval, "mean error/sigma"});
+            judgement.add_bias({Subject::bias, Fault::biased, bias.component, worst_step(bias), claim.value,
+                                claim.interval, "mean error/sigma"});
         else if (!claim.known_exactly)
             judge_suspicion(bias, static_cast<int>(evidence.bias.size()), judgement);
         judgement.accept(claim.accepted ? Acceptance::shown : Acceptance::more_trials, "bias of " + bias.component);

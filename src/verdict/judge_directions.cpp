@@ -71,10 +71,10 @@ void judge_group(const Evidence& evidence, const GroupEvidence& group, const Gro
                        loadings_of(direction, evidence.bias)});
         const std::string &name = all.back().name, measure = "squared error over P's";
         if (direction.finding)
-            return judgement.add(
-                side, {Subject::direction, "", group.name, name, direction.ratio.mean, direction.bounds, measure});
+            return judgement.add(side, {Subject::direction, fault_of(side), group.name, name, direction.ratio.mean,
+                                        direction.bounds, measure});
         const std::optional<Suspicion> looks = suspicion_of(direction.ratio, level, judgement.limits().margin);
-        if (looks && looks->what == credence::name_of(side))
+        if (looks && looks->what == fault_of(side))
             judgement.suspect(
                 {Subject::direction, looks->what, group.name + ", " + name, looks->value, measure, looks->trials});
     };

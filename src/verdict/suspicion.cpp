@@ -41,7 +41,7 @@ std::optional<Suspicion> suspicion_of(const PositiveSample& sample, double level
     };
     const auto number = needed(trials, sample.mean - lower_bound(sample, suspected), sample.trials);
     if (!number) return std::nullopt;
-    return Suspicion{Subject::size, name_of(above ? Side::above : Side::below), "", sample.mean, "", *number};
+    return Suspicion{Subject::size, fault_of(above ? Side::above : Side::below), "", sample.mean, "", *number};
 }
 
 std::optional<Suspicion> suspicion_of_bias(const Moments& z, double level, double margin) {
@@ -54,7 +54,7 @@ std::optional<Suspicion> suspicion_of_bias(const Moments& z, double level, doubl
     };
     const auto number = needed(trials, (seen.high - seen.low) / 2, z.count);
     if (!number) return std::nullopt;
-    return Suspicion{Subject::bias, "biased", "", z.mean, "", *number};
+    return Suspicion{Subject::bias, Fault::biased, "", z.mean, "", *number};
 }
 
 }  // namespace credence

@@ -2,6 +2,7 @@
 
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
+#include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
 #include "base/readable_file.hpp"

@@ -1,7 +1,7 @@
 #include "worlds/notes.hpp"
 
 #include <credence/text.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <numbers>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Values of a scenario that are accepted, and that may be a mistake.
 
-#include <credence/scenario.hpp>
+#include <credence/detail/scenario.hpp>
 
 #include <string>
 #include <vector>

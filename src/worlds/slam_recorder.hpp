@@ -4,7 +4,7 @@
 #include "slam/trial/problem.hpp"
 #include "slam/trial/workspace.hpp"
 
-#include <credence/trajectory.hpp>
+#include <credence/detail/trajectory.hpp>
 
 #include "base/nan.hpp"
 

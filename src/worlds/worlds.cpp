@@ -1,4 +1,4 @@
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include "base/choice.hpp"
 #include "worlds/deformable/deformable.hpp"

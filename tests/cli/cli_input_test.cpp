@@ -55,21 +55,6 @@ std::size_t longest_line(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("cli: an inherited environment is no launcher, and a rank without others says so") {
-    const Workplace here;
-    here.write("small.ini", small_world);
-    const std::string pmi = "PMI_SIZE=4 PMI_RANK=1 " CREDENCE_PROGRAM " ",
-                      open_mpi = "OMPI_COMM_WORLD_SIZE=4 OMPI_COMM_WORLD_RANK=1 " CREDENCE_PROGRAM " ",
-                      first = "PMI_SIZE=4 PMI_RANK=0 " CREDENCE_PROGRAM " ";
-    for (const std::string& credence : {pmi, open_mpi, first})
-        check_refused(here.shell(credence + "run small.ini --trials 5 -o x.h5"), "cannot share the run among ranks");
-    CHECK(here.shell(pmi + "run nosuch.ini").exit_code == 2);
-    check_refused(here.shell(pmi + "run small.ini --bogus"), "unknown option --bogus");
-    check_refused(here.shell(pmi + "run nosuch.ini --mpi off"), "there is no such file");
-    CHECK(here.names() == std::vector<std::string>{"small.ini"});
-    CHECK(here.shell(pmi + "run small.ini --mpi off --trials 5 --quiet -o x.h5").exit_code == 0);
-}
-
 TEST_CASE("cli: what is not a regular file is refused by every command, without waiting for it") {
     const Workplace here;
     here.write("small.ini", small_world);
@@ -146,10 +131,10 @@ TEST_CASE("cli: titles, names and units reach a terminal without what it obeys")
 TEST_CASE("cli: the names of a record's groups are escaped") {
     const Workplace here;
     write_plain_record(here.path("record.h5"), [](const hdf5::Handle& root) {
-        hdf5::write_text(root, "blocks", "a\x1b[31m\xc2\x9b\xe2\x80\xae 0:1");
+        hdf5::write_text(root, "groups", "a\x1b[31m\xc2\x9b\xe2\x80\xae 0:1");
     });
     const Outcome refused = here.credence("judge record.h5");
-    check_refused(refused, "`a\\u001b[31m\\u009b\\u202e` is no name for a block");
+    check_refused(refused, "`a\\u001b[31m\\u009b\\u202e` is no name for a group");
     check_harmless(refused.err);
 }
 

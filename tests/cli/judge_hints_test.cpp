@@ -134,7 +134,8 @@ TEST_CASE("judge: a start that is known exactly fails every trial, and the hint 
     const Json known = write(true);
     CHECK(known["verdict"] == "failed");
     REQUIRE(known["hints"].size() == 1);
-    CHECK_THAT(known["hints"][0].get<std::string>(), Contains("singular at the first step") && Contains("P0 = 0"));
+    CHECK_THAT(known["hints"][0].get<std::string>(),
+               Contains("cannot be inverted at the first step") && Contains("P0 = 0"));
     CHECK(write(false)["hints"].empty());
 }
 

@@ -1,6 +1,6 @@
 // Signals stop a run with everything kept.
 
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "catch.hpp"
 #include "program.hpp"

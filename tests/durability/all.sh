@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs everything here, and that each harness notices the bugs that are planted for it. Prints a line for each.
 # usage: all.sh CREDENCE [DEPTH]
-#   sample   some of each, in minutes: the label durability
+#   sample   some of each but of what is in shelf/, in minutes: the label durability
 #   evening  more of each, in about an hour
 #   full     every chain of 8 callers of an allocation, every byte of two small results files, every change of a file:
 #            hours
@@ -14,30 +14,26 @@ depth=${2:-full}
 case $depth in
   sample)
     sweep=300 kills=50 folders="--some 1 --every 16" calls="--most 1 --many 1 --every 4"
-    streams="--every 7" bytes="--every 20011" turns=62
+    bytes="--every 20011"
     ;;
   evening)
     sweep=20 kills=100 folders="--some 10" calls="--most 20 --many 20 --callers 3"
-    streams= bytes="--every 401" turns=1000
+    bytes="--every 401" turns=1000
     ;;
   full)
     sweep=1 kills=200 folders="--some 30" calls="--many 50 --callers 8"
-    streams= bytes="--every 101" turns=4000
+    bytes="--every 101" turns=4000
     ;;
   *) echo "unknown depth $depth (sample, evening and full are those there are)" >&2; exit 2 ;;
 esac
 
 parts=(  # that with the most calls first, so that no processor waits for it at the end
   "harness fail_once $calls"
-  "harness interleave --mutants 1 --seed 2"
   "harness corruption --every 997 --mutants 1"
   "harness fail_once --mutants 1"
-  "harness descriptors --mutants 1"
   "harness versions --mutants 1"
   "harness power_loss $folders"
-  "harness descriptors $streams"
   "harness corruption $bytes"
-  "harness interleave --schedules $turns"
   "harness versions"
   "script sweep $sweep"  # kills and refusals at chosen writes, and at random times
   "script random_kills $kills"
@@ -46,7 +42,8 @@ parts=(  # that with the most calls first, so that no processor waits for it at 
 long_tests=$(dirname "$credence")/tests/credence_long_tests
 if [ "$depth" != sample ]; then
   command -v valgrind >/dev/null || { echo "valgrind is not installed" >&2; exit 2; }
-  parts+=("harness power_loss --mutants 1" "harness memcheck")
+  parts+=("harness power_loss --mutants 1" "shelf interleave --mutants 1 --seed 2" "shelf interleave --schedules $turns"
+    "shelf descriptors --mutants 1" "shelf descriptors" "shelf memcheck")
 fi
 if [ "$depth" = full ]; then
   [ -x "$long_tests" ] || { echo "$long_tests is not built" >&2; exit 2; }
@@ -54,6 +51,7 @@ if [ "$depth" = full ]; then
 fi
 
 harness() { python3 "$here/$1.py" "$credence" "${@:2}"; }
+shelf() { PYTHONPATH=$here python3 "$here/shelf/$1.py" "$credence" "${@:2}"; }
 script() { bash "$here/$1.sh" "$credence" "${@:2}"; }
 
 # The reader of results files alone, in its test's own processes.

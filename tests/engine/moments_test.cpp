@@ -6,7 +6,7 @@
 #include "support.hpp"
 
 #include <credence/ini.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 using namespace credence;
 
@@ -45,7 +45,7 @@ std::vector<double> plain_moments(const Scenario& scenario, std::size_t arm, std
 
 void check_moments(const std::string& text) {
     const Scenario scenario = read_scenario_text(text, "test", "s");
-    const Block block = BlockRunner(scenario).run(3, 0, 20);
+    const Block block = BlockRunner(world_of(scenario), scenario).run(3, 0, 20);
     const int size =
         moment_count(static_cast<int>(scenario.components.size()), static_cast<int>(scenario.groups.size()));
     for (std::size_t a = 0; a < block.arms.size(); ++a) {
@@ -71,7 +71,7 @@ TEST_CASE("moments: those of the lanes are those of the recorded trajectories") 
 
 TEST_CASE("moments: later blocks, and states of more than 64 components, keep none") {
     const Scenario scenario = read_scenario_text("", "test", "s");
-    CHECK(BlockRunner(scenario).run(3, 16, 3).arms.front().moments.empty());
+    CHECK(BlockRunner(world_of(scenario), scenario).run(3, 16, 3).arms.front().moments.empty());
     CHECK(moment_count(64, 3) == 3 + 64 + 64 * 65);
     CHECK(moment_count(65, 3) == 0);
 }

@@ -1,8 +1,8 @@
 // Studies that keep totals of their columns and no trial: the same totals however they are run, and what is
 // said of them agrees with what is said of the trials.
 
-#include <credence/compare.hpp>
-#include <credence/merge.hpp>
+#include "report/compare/compare.hpp"
+#include "files/merge/merge.hpp"
 #include <credence/report.hpp>
 #include "study/stopping.hpp"
 #include "report/watch/watch.hpp"
@@ -41,7 +41,7 @@ TEST_CASE(
     Study by_hand = small(700).study();
     for (ScenarioResults& results : by_hand.scenarios) {
         extend(results, 700);
-        const BlockRunner runner(results.scenario);
+        const BlockRunner runner(world_of(results.scenario), results.scenario);
         for (const std::int64_t block : {2, 0, 1}) {
             const Block computed = runner.run(1, block, trials_in_block(700, block));
             store_columns(results, computed);

@@ -20,8 +20,8 @@ std::function<void(const Handle&)> value(const std::string& name, std::size_t at
     return [=](const Handle& root) { set_value(root, name, at, value); };
 }
 
-std::function<void(const Handle&)> blocks(const std::string& text) {
-    return [=](const Handle& root) { hdf5::write_text(root, "blocks", text); };
+std::function<void(const Handle&)> groups(const std::string& text) {
+    return [=](const Handle& root) { hdf5::write_text(root, "groups", text); };
 }
 
 template <class T = double>
@@ -148,32 +148,34 @@ const std::vector<Damage> step_damages{
      }},
 };
 
-const std::vector<Damage> block_damages{
-    {"/@blocks: broken entry `pose`. Write the blocks as NAME FIRST:END, counted from 0", blocks("pose")},
-    {"/@blocks: broken entry `pose 0-1`", blocks("pose 0-1")},
-    {"/@blocks: broken entry `0:1`", blocks("0:1")},
-    {"/@blocks: broken entry `a:b 0:1`", blocks("a:b 0:1")},
-    {"/@blocks: broken entry `a 0:1 b 1:2`", blocks("a 0:1 b 1:2")},
-    {"/@blocks: broken entry ``", blocks("a 0:1,")},
-    {"/@blocks: broken entry `a x:1`", blocks("a x:1")},
-    {"/@blocks: broken entry `a\\u001b[31m 0;1`", blocks("a\x1b[31m 0;1")},
-    {"/@blocks: `f(1)` is no name for a block. Use letters, digits, _ and -", blocks("f(1) 0:1")},
-    {"/@blocks: `all` cannot name a block", blocks("all 0:2")},
-    {"/@blocks: names two blocks `a`", blocks("a 0:1, a 1:2")},
-    {"/@blocks: `a 1:1` has no components", blocks("a 1:1")},
-    {"/@blocks: `a 2:1` has no components", blocks("a 2:1")},
-    {"/@blocks: `a -1:1` has no components", blocks("a -1:1")},
-    {"/@blocks: `a 1:3` ends beyond the 2 components of the state. Write the blocks", blocks("a 0:1, a 1:3")},
-    {"/@blocks: has more than 1000 blocks", [](auto& r) {
+const std::vector<Damage> group_damages{
+    {"/@groups: broken entry `pose`. Write the groups as NAME and its components, counted from 0", groups("pose")},
+    {"/@groups: broken entry `pose 0-1`", groups("pose 0-1")},
+    {"/@groups: `0:1` is no name for a group", groups("0:1 1")},
+    {"/@groups: `a:b` is no name for a group", groups("a:b 0:1")},
+    {"/@groups: broken entry `a 0:1 b 1:2`", groups("a 0:1 b 1:2")},
+    {"/@groups: broken entry ``", groups("a 0:1,")},
+    {"/@groups: broken entry `a x:1`", groups("a x:1")},
+    {"/@groups: broken entry `a\\u001b[31m 0;1`", groups("a\x1b[31m 0;1")},
+    {"/@groups: `f(1)` is no name for a group. Use letters, digits, _ and -", groups("f(1) 0:1")},
+    {"/@groups: `all` cannot name a group", groups("all 0:2")},
+    {"/@groups: names two groups `a`", groups("a 0:1, a 1:2")},
+    {"/@groups: `a 1:1` has no component `1:1`", groups("a 1:1")},
+    {"/@groups: `a 2:1` has no component", groups("a 2:1")},
+    {"/@groups: `a -1:1` has no component", groups("a -1:1")},
+    {"/@groups: `a 1:3` goes beyond the 2 components of the state. Write the groups", groups("a 0:1, a 1:3")},
+    {"/@groups: has more than 1000 groups", [](auto& r) {
          std::string text;
          for (int i = 0; i <= 1000; ++i) text += (i ? "," : "") + std::string("b") + std::to_string(i) + " 0:1";
-         hdf5::write_text(r, "blocks", text);
+         hdf5::write_text(r, "groups", text);
      }},
-    {"/@blocks: is not text", [](auto& r) { hdf5::write_number<double>(r, "blocks", 3); }},
-    {"/@blocks: is missing, but there is a `blocks` elsewhere. Make it an attribute of the root",
-     [](auto& r) { hdf5::new_group(r, "blocks"); }},
-    {"/@blocks: is missing, but there is a `blocks` elsewhere",
-     [](auto& r) { hdf5::write_text(open(r, "error"), "blocks", "a 0:1"); }},
+    {"/@groups: is not text", [](auto& r) { hdf5::write_number<double>(r, "groups", 3); }},
+    {"/@groups: is missing, but there is a `groups` elsewhere. Make it an attribute of the root",
+     [](auto& r) { hdf5::new_group(r, "groups"); }},
+    {"/@blocks: is of a record of release 0.2 or earlier. Write it as the attribute `groups`",
+     [](auto& r) { hdf5::write_text(r, "blocks", "a 0:1"); }},
+    {"/@record_version: is 1. Write 2, or use a newer credence",
+     [](auto& r) { hdf5::write_number<std::int32_t>(r, "record_version", 1); }},
 };
 
 void require_refused(const std::vector<Damage>& damages) {
@@ -197,10 +199,10 @@ TEST_CASE("record: the plain record itself is judged, and what else a file holds
     const TemporaryFolder folder;
     const double one = 1;
     write_plain_record(folder / "record.h5", [&](const Handle& root) {
-        hdf5::write_text(root, "blocks", " pose 0:1 ,rest 1 : 2");
+        hdf5::write_text(root, "groups", " pose 0:1 ,rest  1:2");
         hdf5::write_text(root, "author", "somebody");
         hdf5::new_group(root, "notes");
-        hdf5::write_dataset(root, "time", hdf5::type_of<double>(), &one, {1}, {"", "s"});
+        hdf5::write_dataset(root, "times", hdf5::type_of<double>(), &one, {1}, {"", "s"});
     });
     const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == 0);
@@ -218,7 +220,7 @@ TEST_CASE("record: datasets that do not fit together, reversed dimensions among 
     require_refused(shape_damages);
 }
 
-TEST_CASE("record: invalid groups are refused") { require_refused(block_damages); }
+TEST_CASE("record: invalid groups are refused") { require_refused(group_damages); }
 
 TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its name") {
     const TemporaryFolder folder;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t seed = 3;
 
 /// The component groups without the whole state, as a record names them.
-std::string blocks_text(const DeformableSettings& scenario) {
+std::string groups_text(const DeformableSettings& scenario) {
     std::string text;
     for (const ComponentGroup& block : state_groups(scenario))
         if (block.name != "all")
@@ -63,7 +63,7 @@ void write_record(const std::string& path, const DeformableSettings& scenario, s
     H5LTmake_dataset_double(file, "covariance", 4, of_state, values.covariance.data());
     H5LTmake_dataset_double(file, "innovation", 3, of_rows, values.innovation.data());
     H5LTmake_dataset_double(file, "innovation_covariance", 4, of_rows, values.innovation_covariance.data());
-    H5LTset_attribute_string(file, "/", "blocks", blocks_text(scenario).c_str());
+    H5LTset_attribute_string(file, "/", "groups", groups_text(scenario).c_str());
     H5Fclose(file);
 }
 

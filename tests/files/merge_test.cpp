@@ -1,6 +1,6 @@
 // Shards merge to what one run gives, and to nothing else.
 
-#include <credence/merge.hpp>
+#include "files/merge/merge.hpp"
 
 #include "journal_support.hpp"
 #include "store_damage.hpp"

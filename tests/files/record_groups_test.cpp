@@ -1,4 +1,4 @@
-// Records of version 2: groups as lists of components, names and units of components, groups of innovation rows, times,
+// Records: groups as lists of components, names and units of components, groups of innovation rows, times,
 // and singles.
 
 #include "record_support.hpp"
@@ -37,33 +37,7 @@ void check_sums(const DrawnRecord& drawn, const SeriesTotals& totals, const std:
 
 }  // namespace
 
-TEST_CASE("record 2: without anything new it says the numbers of version 1 to the last bit") {
-    const DrawnRecord drawn(40, 6, 5, 3);
-    const auto write = [&](const Handle& root) {
-        write_drawn(root, drawn);
-        text(root, "blocks", "pose 0:3, feature_1 3:5");
-    };
-    const Record old = read_written(write, 1), record = read_written(write);
-    const ArmResults &a = old.results.arms.front(), &b = record.results.arms.front();
-    REQUIRE(a.totals.size() == b.totals.size());
-    for (std::size_t f = 0; f < a.totals.size(); ++f) check_same(a.totals[f], b.totals[f]);
-    for (std::size_t c = 0; c < a.columns.size(); ++c) check_same(a.columns[c], b.columns[c]);
-    check_same(a.nees, b.nees);
-    check_same(a.errors, b.errors);
-    check_same(a.distribution_distance, b.distribution_distance);
-    CHECK(a.products.count == b.products.count);
-    const Evidence of_a = evidence_of(old.results, a), of_b = evidence_of(record.results, b);
-    for (std::size_t g = 0; g < of_a.groups.size(); ++g) {
-        CHECK(of_a.groups[g].run.mean == of_b.groups[g].run.mean);
-        CHECK(of_a.groups[g].run.standard_error == of_b.groups[g].run.standard_error);
-        check_same(of_a.groups[g].anees.ratio, of_b.groups[g].anees.ratio);
-        check_same(of_a.groups[g].variance_ratio, of_b.groups[g].variance_ratio);
-    }
-    CHECK(record.results.not_judged.empty());
-    CHECK(record.results.has_joint_covariance);
-}
-
-TEST_CASE("record 2: groups are lists of components in any order, and ranges") {
+TEST_CASE("record: groups are lists of components in any order, and ranges") {
     const DrawnRecord drawn(30, 4, 5);
     const Record record = read_written([&](const Handle& root) {
         write_drawn(root, drawn);
@@ -92,7 +66,7 @@ TEST_CASE("record 2: groups are lists of components in any order, and ranges") {
     }
 }
 
-TEST_CASE("record 2: a list of successive components has the bits of a range") {
+TEST_CASE("record: a list of successive components has the bits of a range") {
     const DrawnRecord drawn(20, 3, 5);
     const auto with = [&](const std::string& groups) {
         return read_written([&](const Handle& root) {
@@ -105,7 +79,7 @@ TEST_CASE("record 2: a list of successive components has the bits of a range") {
         check_same(totals_named(list, name), totals_named(range, name));
 }
 
-TEST_CASE("record 2: components have names and units") {
+TEST_CASE("record: components have names and units") {
     const DrawnRecord drawn(5, 2, 3);
     const Record record = read_written([&](const Handle& root) {
         write_drawn(root, drawn);
@@ -118,7 +92,7 @@ TEST_CASE("record 2: components have names and units") {
     CHECK(record.results.all_series[series_named(record, "trace_P_step")].unit == "m^2 + rad^2");
 }
 
-TEST_CASE("record 2: groups of innovation rows are judged by their observed rows") {
+TEST_CASE("record: groups of innovation rows are judged by their observed rows") {
     DrawnRecord drawn(30, 4, 2, 4);
     for (int trial = 0; trial < 30; ++trial) {
         drawn.innovation[drawn.at(trial, 1)](2) = std::nan("");
@@ -161,7 +135,7 @@ TEST_CASE("record 2: groups of innovation rows are judged by their observed rows
     CHECK(evidence.nis[2].degrees == 30 * 4);
 }
 
-TEST_CASE("record 2: the asymmetry that singles leave is no mistake, and a larger one is") {
+TEST_CASE("record: the asymmetry that singles leave is no mistake, and a larger one is") {
     const DrawnRecord drawn(6, 2, 2);
     const auto asymmetric = [&](double relative, bool singles) {
         return [&, relative, singles](const Handle& root) {
@@ -177,7 +151,7 @@ TEST_CASE("record 2: the asymmetry that singles leave is no mistake, and a large
     check_refused(asymmetric(1e-6, false), "/covariance: trial 1, step 1 (both counted from 0) is not symmetric");
 }
 
-TEST_CASE("record 2: what its attributes and times cannot mean is refused by name") {
+TEST_CASE("record: what its attributes and times cannot mean is refused by name") {
     const DrawnRecord drawn(3, 4, 4, 2);
     const auto with = [&](const std::string& name, const std::string& value) {
         return [&, name, value](const Handle& root) {
@@ -198,10 +172,6 @@ TEST_CASE("record 2: what its attributes and times cannot mean is refused by nam
     check_refused(with("component_names", "a, b"), "/@component_names: has 2 entries, and the state has 4 components");
     check_refused(with("component_names", "a, b, c, a"), "/@component_names: names two components `a`");
     check_refused(with("component_units", "m, m, m, "), "/@component_units: `` is no unit");
-    check_refused([&](const Handle& root) {
-        with("groups", "a 0")(root);
-        text(root, "blocks", "a 0:1");
-    }, "/@groups: is there, and `blocks` too");
     const auto time = [&](const hdf5::Extents& extents, std::vector<double> values) {
         return [&, extents, values](const Handle& root) {
             write_drawn(root, drawn);

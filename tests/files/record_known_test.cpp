@@ -144,28 +144,6 @@ TEST_CASE("record: what is known at some steps only, has an error, or is the who
           }) == 40);
 }
 
-TEST_CASE("record 1: components that are known exactly are left out") {
-    const DrawnRecord plane = planar(), space = in_space(plane);
-    const auto read = [](const DrawnRecord& drawn, const std::string& blocks) {
-        return read_written(
-            [&](const Handle& root) {
-                write_drawn(root, drawn);
-                hdf5::write_text(root, "blocks", blocks);
-            },
-            1);
-    };
-    const Record left = read(space, "pose 0:3, tilt 3:5, turn 3:6"), flat = read(plane, "pose 0:2, turn 2:3");
-    CHECK(left.trouble_count == 0);
-    CHECK(left.results.not_judged.front() ==
-          "Not in the state, because their errors and variances are 0 at every step: x2, x3, x4.");
-    CHECK(left.results.scenario.components.back().name == "x5");
-    for (const std::size_t c : {0, 2, 3, 4, 5})
-        CHECK(left.results.arms[0].columns[c] == flat.results.arms[0].columns[c]);
-    for (std::size_t f = 0; f < 3; ++f)
-        for (std::size_t k = 0; k < 3; ++k)
-            CHECK(left.results.arms[0].totals[f].sum[k].rounded() == flat.results.arms[0].totals[f].sum[k].rounded());
-}
-
 TEST_CASE("record: planar poses of SE(3) are judged as poses in the plane, in either chart and from memory") {
     const DrawnRecord plane = planar();
     std::mt19937 random(3);

@@ -1,4 +1,4 @@
-// Records of version 2 with a truth and an estimate on a manifold: the error that is formed is the one from which the
+// Records with a truth and an estimate on a manifold: the error that is formed is the one from which the
 // estimate was made, with the exponential of matrices.
 
 #include "record_support.hpp"
@@ -92,7 +92,7 @@ void check_errors(const Record& record, const DrawnRecord& drawn) {
 
 }  // namespace
 
-TEST_CASE("record 2: the error of a pose in the plane or in space, in either chart, is the Log of what lies between") {
+TEST_CASE("record: the error of a pose in the plane or in space, in either chart, is the Log of what lies between") {
     for (const double scale : {1e-7, 0.3, 2.0})
         for (const bool local : {true, false}) {
             CAPTURE(scale, local);
@@ -107,14 +107,14 @@ TEST_CASE("record 2: the error of a pose in the plane or in space, in either cha
         }
 }
 
-TEST_CASE("record 2: a quaternion and its negative are the same rotation") {
+TEST_CASE("record: a quaternion and its negative are the same rotation") {
     Poses poses(6, 0.3, true, true);
     for (std::size_t i = 0; i < poses.estimate.size(); ++i)
         if (i % 7 >= 3 && i / 7 % 2 == 0) poses.estimate[i] *= -1;
     check_errors(read_written([&](const Handle& root) { poses.write(root, "SE3", true, "wxyz"); }), poses.drawn);
 }
 
-TEST_CASE("record 2: angles are wrapped, and products put their errors one after the other") {
+TEST_CASE("record: angles are wrapped, and products put their errors one after the other") {
     const Record record = read_written([&](const Handle& root) {
         // Two steps of SO2 x R2 x SO3, the second with a rotation by pi/2 about z; its last factor is missing at the
         // first.
@@ -141,7 +141,7 @@ TEST_CASE("record 2: angles are wrapped, and products put their errors one after
     }
 }
 
-TEST_CASE("record 2: components have the names of their manifold where the record has none for them") {
+TEST_CASE("record: components have the names of their manifold where the record has none for them") {
     using Names = std::vector<std::string>;
     // Names of a record of two steps with truth = estimate = `state` and P = I, and what `more` adds.
     const auto names = [](const std::string& manifold, const std::vector<double>& state, int n,
@@ -178,7 +178,7 @@ TEST_CASE("record 2: components have the names of their manifold where the recor
     CHECK(names("SE2", {1, 2, 3}, 3, {"groups", "x 0 1"}) == Names{unknown, "x0", "x1", "x2"});
 }
 
-TEST_CASE("record 2: a manifold, chart or quaternion that cannot be is refused by name") {
+TEST_CASE("record: a manifold, chart or quaternion that cannot be is refused by name") {
     const Poses poses(6, 0.3, true, true);
     const auto with = [&](const std::string& manifold, const std::string& quaternion) {
         return [&, manifold, quaternion](const Handle& root) { poses.write(root, manifold, true, quaternion); };

@@ -1,4 +1,4 @@
-// Records of version 2 without a covariance of the whole state: variances only, covariances of groups, NEES alone.
+// Records without a covariance of the whole state: variances only, covariances of groups, NEES alone.
 
 #include <credence/consistency.hpp>
 #include <credence/report.hpp>
@@ -78,7 +78,7 @@ Consistency verdict_of(const Record& record) {
 
 }  // namespace
 
-TEST_CASE("record 2: of variances each component is judged by itself") {
+TEST_CASE("record: of variances each component is judged by itself") {
     const DrawnRecord drawn(30, 4, 3);
     const Record joint = read_written([&](const Handle& root) {
         write_drawn(root, drawn);
@@ -102,7 +102,7 @@ TEST_CASE("record 2: of variances each component is judged by itself") {
               "Without a covariance there is no NEES of pair."});
 }
 
-TEST_CASE("record 2: variances that are right are undecided, and wrong ones are found") {
+TEST_CASE("record: variances that are right are undecided, and wrong ones are found") {
     const auto judged = [](double claimed) {
         return verdict_of(read_written([&](const Handle& root) { write_variances(root, uncorrelated(claimed)); }));
     };
@@ -119,7 +119,7 @@ TEST_CASE("record 2: variances that are right are undecided, and wrong ones are 
     CHECK(judged(2).verdict == Verdict::pessimistic);
 }
 
-TEST_CASE("record 2: a report of variances says what it cannot judge, and no `nan`") {
+TEST_CASE("record: a report of variances says what it cannot judge, and no `nan`") {
     Record record = read_written([&](const Handle& root) { write_variances(root, uncorrelated(1)); });
     const Report report = make_record_report(std::move(record), "record.h5", 0.15);
     const std::string text = report_text(report);
@@ -131,7 +131,7 @@ TEST_CASE("record 2: a report of variances says what it cannot judge, and no `na
     CHECK_FALSE(report_html(report, {}).empty());
 }
 
-TEST_CASE("record 2: covariances of groups without a joint one are those of the groups") {
+TEST_CASE("record: covariances of groups without a joint one are those of the groups") {
     const DrawnRecord drawn(30, 4, 4);
     const Record joint = read_written([&](const Handle& root) {
         write_drawn(root, drawn);
@@ -153,7 +153,7 @@ TEST_CASE("record 2: covariances of groups without a joint one are those of the 
     CHECK(verdict_of(record).verdict != Verdict::consistent);
 }
 
-TEST_CASE("record 2: NEES alone, of groups and of the whole state, with their dimensions") {
+TEST_CASE("record: NEES alone, of groups and of the whole state, with their dimensions") {
     const DrawnRecord drawn(30, 4, 4);
     const Record joint = read_written([&](const Handle& root) {
         write_drawn(root, drawn);
@@ -181,7 +181,7 @@ TEST_CASE("record 2: NEES alone, of groups and of the whole state, with their di
     CHECK(report_text(make_record_report(read_written(write), "record.h5", 0.15)).find("nan") == std::string::npos);
 }
 
-TEST_CASE("record 2: a NEES that is negative or infinite, and a variance that is not positive, fail their trial") {
+TEST_CASE("record: a NEES that is negative or infinite, and a variance that is not positive, fail their trial") {
     DrawnRecord drawn(5, 3, 2);
     const auto trouble = [](const Record& record) {
         REQUIRE(record.trouble_count == 1);
@@ -207,7 +207,7 @@ TEST_CASE("record 2: a NEES that is negative or infinite, and a variance that is
     CHECK(of_variance(std::nan("")) == "1, 1: the variance of `x1` is NaN, and the error is not");
 }
 
-TEST_CASE("record 2: parts that do not fit together are refused by name") {
+TEST_CASE("record: parts that do not fit together are refused by name") {
     const DrawnRecord drawn(3, 2, 3);
     check_refused([&](const Handle& root) { write_errors(root, drawn); }, "/covariance: is missing. Write it as");
     check_refused([&](const Handle&) {}, "/error: is missing. Write `error`");

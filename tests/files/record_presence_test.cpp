@@ -1,4 +1,4 @@
-// Records of version 2 whose components enter and leave the state.
+// Records whose components enter and leave the state.
 
 #include "record_support.hpp"
 
@@ -54,7 +54,7 @@ std::string trouble_of(const std::function<void(DrawnRecord&)>& change) {
 
 }  // namespace
 
-TEST_CASE("record 2: the whole state has at each step the dimension that it has there") {
+TEST_CASE("record: the whole state has at each step the dimension that it has there") {
     const DrawnRecord drawn = growing();
     const Record record = read_growing(drawn);
     CHECK(record.trouble_count == 0);
@@ -99,7 +99,7 @@ TEST_CASE("record 2: the whole state has at each step the dimension that it has 
         CHECK(relative(arm.columns[column_nees_ratio][trial], run_means[trial]) < 1e-11);
 }
 
-TEST_CASE("record 2: a group is judged at the steps where it is whole") {
+TEST_CASE("record: a group is judged at the steps where it is whole") {
     const DrawnRecord drawn = growing();
     const Record record = read_growing(drawn);
     const std::vector<std::pair<std::string, std::vector<int>>> groups{
@@ -135,7 +135,7 @@ TEST_CASE("record 2: a group is judged at the steps where it is whole") {
 }
 
 TEST_CASE(
-    "record 2: a group that no trial has at any step is not judged, and keeps nothing from being said of the rest") {
+    "record: a group that no trial has at any step is not judged, and keeps nothing from being said of the rest") {
     DrawnRecord drawn = growing();
     for (int trial = 0; trial < trials; ++trial)
         for (int step = 0; step < steps; ++step) drawn.hide(trial, step, 4);
@@ -147,7 +147,7 @@ TEST_CASE(
     CHECK(evidence.groups[0].run.count == trials);
 }
 
-TEST_CASE("record 2: a NaN that is not of a component outside the state fails its trial") {
+TEST_CASE("record: a NaN that is not of a component outside the state fails its trial") {
     const double nan = std::nan("");
     CHECK(trouble_of([&](DrawnRecord& r) { r.error[r.at(2, 4)](1) = nan; }) ==
           "step 4: the error of `x1` is NaN, and the covariance is not");
@@ -166,7 +166,7 @@ TEST_CASE("record 2: a NaN that is not of a component outside the state fails it
     CHECK(trouble_of([&](DrawnRecord& r) { r.error[r.at(2, 4)](1) = HUGE_VAL; }) == "step 4: the error is not finite");
 }
 
-TEST_CASE("record 2: a step that does not exist is no leaving, and a trial that ends early must say so") {
+TEST_CASE("record: a step that does not exist is no leaving, and a trial that ends early must say so") {
     DrawnRecord drawn = growing();
     for (int j = 0; j < n; ++j) drawn.hide(7, 3, j);
     CHECK(read_growing(drawn).trouble_count == 0);

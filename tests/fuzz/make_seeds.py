@@ -45,12 +45,12 @@ def copy_results(path, target, libver, left_out=FOR_OTHERS + CHECKSUMS):
         copy_group(source, copy, left_out)
 
 
-def write(path, datasets, libver=("earliest", "v108"), blocks=None, attributes=(), **options):
+def write(path, datasets, libver=("earliest", "v108"), groups=None, attributes=(), **options):
     with h5py.File(path, "w", libver=libver) as file:
         for name, values in datasets.items():
             file.create_dataset(name, data=values, track_times=False, **options)
-        if blocks is not None:
-            file.attrs["blocks"] = blocks
+        if groups is not None:
+            file.attrs["groups"] = groups
         for name, value in attributes:
             *place, name = name.rsplit("/", 1)
             (file[place[0]] if place else file).attrs[name] = value
@@ -117,10 +117,10 @@ def write_noise(folder):
 def write_judge(folder):
     write_elsewhere(folder, "elsewhere.h5", record(2, 2, 2))
     write_foreign_types(folder, record(2, 2, 2))
-    write(folder / "plain.h5", record(3, 2, 2), libver="earliest", blocks="pose 0:1, rest 1:2")
-    write(folder / "headers.h5", record(3, 4, 2, 1), blocks="pose 0:1")
-    write(folder / "fixed-text.h5", record(2, 2, 3), blocks=np.bytes_("pose 0:2, last 2:3"))
-    write(folder / "list.h5", record(1, 3, 2, 2), blocks=["pose 0:1", "rest 1:2"])
+    write(folder / "plain.h5", record(3, 2, 2), libver="earliest", groups="pose 0:1, rest 1:2")
+    write(folder / "headers.h5", record(3, 4, 2, 1), groups="pose 0:1")
+    write(folder / "fixed-text.h5", record(2, 2, 3), groups=np.bytes_("pose 0:2, last 2:3"))
+    write(folder / "list.h5", record(1, 3, 2, 2), groups=["pose 0:1", "rest 1:2"])
     write(folder / "latest.h5", record(2, 2, 2, 1), libver="latest")
     write(folder / "packed.h5", record(4, 3, 2, 1), compression=9, shuffle=True, fletcher32=True, chunks=True)
     write(folder / "singles.h5", {name: values.astype("f4") for name, values in record(3, 2, 2, 1).items()})
@@ -133,7 +133,7 @@ def write_judge(folder):
 
 
 def write_second(folder):
-    """Records of version 2: a state that grows, parts without the whole, poses, rows in groups."""
+    """Records with everything that is optional: a state that grows, parts without the whole, poses, rows in groups."""
     version = ("record_version", np.int32(2))
     grows = record(3, 4, 3, 2)
     grows["error"][:, :2, 2] = np.nan
@@ -174,7 +174,7 @@ def write_second(folder):
     beside["group/one/covariance"] = beside.pop("covariance")[..., :1, :1]
     beside["error"][0, 1, 1] = beside["nees"][0, 1] = beside["innovation"][1, 1, 0] = np.nan
     write(folder / "second-beside.h5", beside, attributes=[
-        version, ("blocks", "one 0"), ("row_groups", "gps 1, baro 0"), ("nees/dimension", np.int32(2))])
+        version, ("groups", "one 0"), ("row_groups", "gps 1, baro 0"), ("nees/dimension", np.int32(2))])
 
 
 def main(results, seeds):

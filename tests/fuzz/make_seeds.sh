@@ -7,8 +7,6 @@ program=${1:-build-fuzz/credence}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 seeds=tests/fuzz/seeds
-mkdir -p "$work/earlier"
-mv "$seeds"/results/schema-* "$work/earlier/"  # of an earlier release: this one reports them, and cannot write them
 rm -rf "$seeds"
 mkdir -p "$seeds"/{scenario,noise,judge,results}
 

@@ -6,7 +6,7 @@
 #include "scratch_file.hpp"
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <cmath>
 

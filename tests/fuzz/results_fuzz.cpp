@@ -9,7 +9,7 @@
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 using namespace credence;
 using namespace credence::fuzz;

@@ -6,7 +6,7 @@
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <cstdint>
 #include <optional>

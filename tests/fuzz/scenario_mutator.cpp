@@ -1,7 +1,7 @@
 #include "scenario_mutator.hpp"
 
 #include <credence/text.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <algorithm>
 #include <random>

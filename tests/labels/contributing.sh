@@ -33,7 +33,7 @@ if command -v ccache >/dev/null; then
   launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_C_COMPILER_LAUNCHER=ccache)
 fi
 { cmake -S "$tree" -B "$build" "${generator[@]}" "${launcher[@]}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug \
-    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCREDENCE_TARGET_V4=OFF -DCREDENCE_WRITTEN_OUT=0 -DCREDENCE_MPI=OFF &&
+    -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCREDENCE_TARGET_V4=OFF -DCREDENCE_WRITTEN_OUT=0 &&
   cmake --build "$build" --target credence tracker write_record -j "$(nproc)"; } >"$work/log" 2>&1 ||
   { tail -n 60 "$work/log"; fail "diffs: the tree does not build with them"; }
 credence=$build/credence scenario=$tree/experiments/seed/ekf-circle-constant.ini

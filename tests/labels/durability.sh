@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Label durability: a sample of everything in tests/durability, all of which `all.sh` runs: power fails, each resource
-# fails once, streams are closed, bytes flip, two programs take turns; the program is killed before and after changes to
-# its files and at random times, and refused by the system. It loses nothing that was committed.
+# Label durability: a sample of what `tests/durability/all.sh` runs: power fails, each resource fails once, bytes flip; the
+# program is killed before and after changes to its files and at random times, and refused by the system. It loses
+# nothing that was committed.
 set -euo pipefail
 for tool in cc h5diff h5dump python3; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }

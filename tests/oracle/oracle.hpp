@@ -18,7 +18,7 @@
 // Stacked measurements hold the seen features by rising j, two rows each, and then every edge in graph order.
 
 #include <credence/detail/draws.hpp>
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 #include <Eigen/Dense>
 

@@ -51,18 +51,18 @@ def write(path, record, attribute=None, without_trials=False, **options):
             if "dtype" in settings:  # what is expected is of the values in the file
                 setattr(record, name, file[name][...].astype(float))
         if attribute is not None:
-            file.attrs.create("blocks", *attribute)
+            file.attrs.create("groups", *attribute)
 
 
 # ---- small records, one a way of writing -----------------------------------------------------------------------------
 
 
-def gaussian(rng, trials, steps, n, m=0, blocks=None):
+def gaussian(rng, trials, steps, n, m=0, groups=None):
     P = random_covariances(rng, trials * steps, n).reshape(trials, steps, n, n)
     if not m:
-        return Record(rounded(draws(rng, P)), P, blocks=blocks)
+        return Record(rounded(draws(rng, P)), P, groups=groups)
     S = random_covariances(rng, trials * steps, m).reshape(trials, steps, m, m)
-    return Record(rounded(draws(rng, P)), P, rounded(draws(rng, S)), S, blocks)
+    return Record(rounded(draws(rng, P)), P, rounded(draws(rng, S)), S, groups)
 
 
 def hide_rows(rng, record, share):
@@ -161,11 +161,11 @@ def small(folder):
     cases = {
         "gaussian": (lambda rng: gaussian(rng, 60, 6, 5, 4, {"pose": (0, 3), "feature_1": (3, 5)}),
                      dict(attribute=(text, (), utf8), compression="gzip", shuffle=True)),
-        "ragged": (ragged, dict(attribute=(np.bytes_("pose 0:2 ,all_but-1\t1: 3"),), compression="gzip", shuffle=True)),
+        "ragged": (ragged, dict(attribute=(np.bytes_("pose 0:2 ,all_but-1\t1:3"),), compression="gzip", shuffle=True)),
         "troubled": (troubled, dict(attribute=(["first 0:1"], (1,), ascii_))),
         "many troubles": (many_troubles, dict()),
         "single": (lambda rng: gaussian(rng, 1, 12, 4, 3), dict(without_trials=True)),
-        "singles": (lambda rng: gaussian(rng, 50, 5, 4, blocks={"a": (0, 2), "b": (1, 4)}),
+        "singles": (lambda rng: gaussian(rng, 50, 5, 4, groups={"a": (0, 2), "b": (1, 4)}),
                     dict(attribute=(np.array([b"a 0:2", b"b 1:4"]),), dtype="f4", chunks=(7, 2, 3, 3),
                          compression="gzip")),
         "one": (lambda rng: gaussian(rng, 30, 3, 1, 1), dict(attribute=(h5py.Empty("S1"),))),
@@ -241,7 +241,7 @@ def large(path, trials):
         sizes = {"error": (12,), "covariance": (12, 12), "innovation": (6,), "innovation_covariance": (6, 6)}
         for name, size in sizes.items():
             file.create_dataset(name, shape=(trials, 200, *size), dtype="f8")
-        file.attrs["blocks"] = "pose 0:3, features 3:12"
+        file.attrs["groups"] = "pose 0:3, features 3:12"
         for first in range(0, trials, at_once):
             part = slice(first, min(first + at_once, trials))
             count = part.stop - part.start

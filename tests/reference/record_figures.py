@@ -6,14 +6,13 @@ import numpy as np
 from scipy import stats
 
 LEVELS = [0.5, 0.9, 0.95, 0.99]
-CELLS = 4096
 
 
 class Record:
-    def __init__(self, error, covariance, innovation=None, innovation_covariance=None, blocks=None):
+    def __init__(self, error, covariance, innovation=None, innovation_covariance=None, groups=None):
         self.error, self.covariance, self.steps = error, covariance, None
         self.innovation, self.innovation_covariance = innovation, innovation_covariance
-        self.blocks = blocks or {}
+        self.groups = groups or {}
 
     def datasets(self):
         names = ["error", "covariance", "innovation", "innovation_covariance", "steps"]
@@ -33,7 +32,7 @@ class Expected:
     def __init__(self, record):
         self.record = record
         self.trials, self.steps, self.n = record.error.shape
-        self.blocks = {"all": (0, self.n), **record.blocks}
+        self.groups = {"all": (0, self.n), **record.groups}
         known_error = ~np.isnan(record.error).all(axis=2)
         self.there = known_error | ~np.isnan(record.covariance).all(axis=(2, 3))
         last = [np.flatnonzero(row)[-1] + 1 if row.any() else 0 for row in known_error]
@@ -103,6 +102,12 @@ class Expected:
             return "the error is NaN, and the covariance is not"
         if np.isnan(P).all():
             return "the covariance is NaN, and the error is not"
+        variances = np.diagonal(P)
+        for j in range(self.n):
+            if np.isnan(variances[j]) and not np.isnan(e[j]):
+                return f"the covariance of `x{j}` is NaN, and the error is not"
+            if np.isnan(e[j]) and not np.isnan(variances[j]):
+                return f"the error of `x{j}` is NaN, and the covariance is not"
         for what, values in (("error", e), ("covariance", P)):
             if not np.isfinite(values).all():
                 return f"the {what} is not finite"
@@ -115,7 +120,7 @@ class Expected:
 
     def compute_state(self):
         error, covariance = self.record.error[self.there], self.P[self.there]
-        for name, (first, end) in self.blocks.items():
+        for name, (first, end) in self.groups.items():
             block, e = covariance[:, first:end, first:end], error[:, first:end]
             self.put("nees", name, (e * np.linalg.solve(block, e[..., None])[..., 0]).sum(axis=1))
             self.put("squared_error", name, (e**2).sum(axis=1))
@@ -140,18 +145,23 @@ class Expected:
         if name != "nis_rows":
             result["square_sum"] = np.nansum(values**2, axis=0)
         if name == "nees":
-            first, end = self.blocks[part]
+            first, end = self.groups[part]
             bounds = stats.chi2.ppf(LEVELS, end - first)
             result["dimension"] = end - first
             result["covered"] = [[int((values[:, k] < bound).sum()) for bound in bounds] for k in range(self.steps)]
         return result
 
     def products(self):
-        lags = range(1, min(10, self.steps - 1) + 1)
-        pairs = [self.white[:, lag:] * self.white[:, :-lag] for lag in lags]
-        of_trials = [np.nansum(pair, axis=(1, 2)) for pair in pairs]
-        return {"sum": [one.sum() for one in of_trials], "square_sum": [(one**2).sum() for one in of_trials],
-                "count": [int((~np.isnan(pair)).sum()) for pair in pairs]}
+        """A lag counts the measurements of a row, whatever the steps between."""
+        result = {"sum": [], "square_sum": [], "count": []}
+        rows = [[row[~np.isnan(row)] for row in trial.T] for trial in self.white]
+        for lag in range(1, min(10, self.steps - 1) + 1):
+            pairs = [[row[lag:] * row[:-lag] for row in trial] for trial in rows]
+            of_trials = np.array([sum(pair.sum() for pair in trial) for trial in pairs])
+            result["sum"].append(of_trials.sum())
+            result["square_sum"].append((of_trials**2).sum())
+            result["count"].append(sum(len(pair) for trial in pairs for pair in trial))
+        return result
 
     def columns(self):
         used = ~self.failed
@@ -159,7 +169,7 @@ class Expected:
                   for name in ["trace_P", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P"]}
         trace = self.values["variance", "all"]
         last = [np.flatnonzero(row)[-1] if row.any() else 0 for row in self.there]
-        pose = "pose" if "pose" in self.blocks else "all"
+        pose = "pose" if "pose" in self.groups else "all"
         result["trace_P"] = np.where(used, trace[np.arange(self.trials), last], np.nan)
         result["mean_trace_P"][used] = np.nanmean(trace[used], axis=1)
         result["pose_error"][used] = np.nansum(self.values["squared_error", pose][used], axis=1)
@@ -173,12 +183,6 @@ class Expected:
             result["status"][trial], result["status_pose"][trial] = status, step + 1
         return result
 
-    def cells(self):
-        """Trials in the lowest and highest sixteenth of the cells, by step."""
-        cell = np.floor(stats.chi2.cdf(self.values["nees", "all"], self.n) * CELLS)
-        return [[int((cell[:, k] < CELLS // 16).sum()), int((cell[:, k] >= CELLS - CELLS // 16).sum())]
-                for k in range(self.steps)]
-
     def everything(self, by_trial=True):
         nees = self.values["nees", "all"]
         of_step = [nees[self.there[:, k], k] for k in range(self.steps)]
@@ -189,7 +193,6 @@ class Expected:
             "figures": [self.figure(*key, values) for key, values in self.values.items()],
             "shape_distance": [stats.kstest(v, stats.chi2(self.n).cdf).statistic if len(v) else math.nan
                                for v in of_step],
-            "cells": self.cells(),
             "products": self.products() if self.white is not None else None,
         }
         if by_trial:

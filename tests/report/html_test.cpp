@@ -4,7 +4,7 @@
 
 #include "report/format.hpp"
 #include "report/html/charts/chart.hpp"
-#include <credence/histogram.hpp>
+#include <credence/detail/histogram.hpp>
 #include "report/html/html.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "catch.hpp"
 
 #include <credence/error.hpp>
-#include <credence/sweep.hpp>
+#include <credence/detail/sweep.hpp>
 #include <credence/text.hpp>
 
 #include <algorithm>

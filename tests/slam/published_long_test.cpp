@@ -5,7 +5,7 @@
 #include "store_study.hpp"
 #include "support.hpp"
 
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <cstdio>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include "of_scenarios.hpp"
 #include "support.hpp"
 
-#include <credence/paired.hpp>
+#include <credence/detail/paired.hpp>
 
 #include "numeric/superaccumulator.hpp"
 

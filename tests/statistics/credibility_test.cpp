@@ -1,6 +1,6 @@
 // Credibility after Li and Zhao, against NumPy, by hand, and on synthetic errors.
 
-#include <credence/credibility.hpp>
+#include <credence/detail/credibility.hpp>
 
 #include "reference.hpp"
 #include "synthetic.hpp"

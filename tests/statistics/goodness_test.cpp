@@ -21,6 +21,12 @@ std::vector<double> chi_square_values(Normals& normals, int degrees, int count, 
     return values;
 }
 
+/// The distance of values from chi-square(degrees).
+double chi_square_distance(std::vector<double> values, double degrees) {
+    for (double& value : values) value = 1 - chi_square_p(value, degrees);
+    return uniform_distance(std::move(values));
+}
+
 /// Counts in `cells` cells of equal probability under chi-square(degrees).
 std::vector<std::int64_t> cell_counts(const std::vector<double>& values, int degrees, int cells) {
     std::vector<std::int64_t> counts(static_cast<std::size_t>(cells));

@@ -1,6 +1,6 @@
 // Paired comparison of two arms, against SciPy and NumPy, and by replication.
 
-#include <credence/paired.hpp>
+#include <credence/detail/paired.hpp>
 
 #include "reference.hpp"
 #include "synthetic.hpp"

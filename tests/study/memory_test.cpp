@@ -1,6 +1,6 @@
 // Totals and details that are in memory only while they are needed: the same results, and little memory.
 
-#include <credence/merge.hpp>
+#include "files/merge/merge.hpp"
 
 #include "catch.hpp"
 #include "journal_support.hpp"

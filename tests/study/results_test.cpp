@@ -4,7 +4,7 @@
 #include "of_scenarios.hpp"
 #include "support.hpp"
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include <algorithm>
 

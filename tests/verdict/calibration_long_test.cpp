@@ -117,7 +117,7 @@ void look_at_verdict(const Evidence& evidence, Calibration& calibration) {
     for (const double margin : {0.0, 0.05}) {
         const Consistency judged = judge(evidence, margin);
         bool size = false, bias = false;
-        for (const Finding& finding : judged.findings) (finding.what == "biased" ? bias : size) = true;
+        for (const Finding& finding : judged.findings) (finding.what == Fault::biased ? bias : size) = true;
         const std::string at = ", margin " + std::to_string(margin);
         calibration.at_most("false finding of optimism or pessimism" + at, 0.05, size);
         calibration.at_most("false finding of bias" + at, 0.05, bias);
@@ -168,7 +168,7 @@ TEST_CASE("calibration: few trials of few steps rarely make a filter that is rig
             Calibration calibration;
             replicate(s, few, 500, [&](const Evidence& evidence) {
                 bool size = false;
-                for (const Finding& finding : judge(evidence, 0).findings) size = size || finding.what != "biased";
+                for (const Finding& finding : judge(evidence, 0).findings) size = size || finding.what != Fault::biased;
                 calibration.at_most("false finding, " + std::to_string(few) + " trials", 0.05, size);
             });
             CAPTURE(poses);
@@ -183,7 +183,7 @@ TEST_CASE("calibration: a single trial's innovations rarely speak against a filt
     replicate(matched_linear(), 1, 2000, [&](const Evidence& evidence) {
         bool size = false, correlated = false;
         for (const Finding& finding : judge(evidence, 0).findings)
-            (finding.what == "correlated" ? correlated : size) = true;
+            (finding.what == Fault::correlated ? correlated : size) = true;
         calibration.at_most("false finding of a single trial's NIS", 0.025, size);
         calibration.between("false finding of correlation", any_of(0.025 / 10, 10), 0.03, correlated);
         calibration.at_most("false finding of either", 0.05, size || correlated);

@@ -110,7 +110,7 @@ TEST_CASE("consistency: the verdict on a single trial uses its innovations") {
     CHECK(judge(evidence, 0.05).verdict == Verdict::consistent);
     evidence.whiteness.front().scaled = 0.01;  // ten standard errors
     CHECK(judge(evidence, 0.05).verdict == Verdict::undecided);
-    CHECK(judge(evidence, 0.05).findings.front().what == "correlated");
+    CHECK(judge(evidence, 0.05).findings.front().what == Fault::correlated);
     evidence.whiteness.front().scaled = 0;
     evidence.nis = {nis_of(1.2, 0.01)};
     CHECK(judge(evidence, 0.05).verdict == Verdict::optimistic);

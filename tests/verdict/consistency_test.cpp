@@ -129,7 +129,7 @@ TEST_CASE("consistency: a bias of one component is found and named, and keeps a 
         REQUIRE(c.findings.size() == (share > 0.1 ? 1 : 0));
         CHECK(verdict_name(c.verdict) == (share > 0.1 ? "optimistic" : "consistent"));
         if (c.findings.empty()) continue;
-        CHECK(c.findings.front().what == "biased");
+        CHECK(c.findings.front().what == Fault::biased);
         CHECK(c.findings.front().where == "f1_x");
         CHECK(c.findings.front().when.starts_with("over all steps"));
     }
@@ -148,7 +148,7 @@ TEST_CASE("consistency: a dropped correlation, which mean NEES cannot see, is fo
     const Consistency c = judge(evidence_of_first_arm(results), 0.05);
     CHECK(verdict_name(c.verdict) == "mixed");
     const auto direction = std::find_if(c.findings.begin(), c.findings.end(), [](const Finding& f) {
-        return f.what == "optimistic" && f.about == Subject::direction;
+        return f.what == Fault::optimistic && f.about == Subject::direction;
     });
     REQUIRE(direction != c.findings.end());
     CHECK_THAT(direction->when, Catch::Contains("r_x") && Catch::Contains("r_y"));

@@ -4,7 +4,7 @@
 #include "catch.hpp"
 #include "study_support.hpp"
 
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <credence/report.hpp>
 
 #include "report/words.hpp"
@@ -130,7 +130,7 @@ TEST_CASE("report: an unknown correlation of innovations is said to be so, and i
     const Report report = make_report(noise_of_1e9(), 0.05);
     const Evidence& evidence = report.arms.front().evidence;
     REQUIRE(std::any_of(evidence.whiteness.begin(), evidence.whiteness.end(), [](auto& lag) { return !lag.known(); }));
-    for (const Finding& caution : report.arms.front().consistency.cautions) CHECK(caution.what != "correlated");
+    for (const Finding& caution : report.arms.front().consistency.cautions) CHECK(caution.what != Fault::correlated);
     CHECK_THAT(report_text(report), Contains("note, innovations: their correlation could not be computed"));
 }
 

@@ -32,8 +32,8 @@ TEST_CASE("suspicion: only between the plain and the corrected bound, on either 
         return PositiveSample{400, 1 + margin + standard_errors * se, deviation, 4};
     };
     CHECK_FALSE(suspicion_of(at(1.6), level, margin));
-    CHECK(suspicion_of(at(1.7), level, margin)->what == "optimistic");
-    CHECK(suspicion_of(at(2.4), level, margin)->what == "optimistic");
+    CHECK(suspicion_of(at(1.7), level, margin)->what == Fault::optimistic);
+    CHECK(suspicion_of(at(2.4), level, margin)->what == Fault::optimistic);
     CHECK_FALSE(suspicion_of(at(2.5), level, margin));          // it is shown
     CHECK_FALSE(suspicion_of({29, 1.5, 1, 4}, level, margin));  // too few to know the spread
     // Where something is too small, rare large errors that were not seen withhold the finding for longer.
@@ -41,7 +41,7 @@ TEST_CASE("suspicion: only between the plain and the corrected bound, on either 
     CHECK_FALSE(claim_on_mean(small, level, margin).below);
     const std::optional<Suspicion> looks = suspicion_of(small, level, margin);
     REQUIRE(looks);
-    CHECK(looks->what == "pessimistic");
+    CHECK(looks->what == Fault::pessimistic);
     CHECK(looks->value == 0.8);
     PositiveSample more = small;
     more.trials = 1.1 * looks->trials.value;
@@ -54,7 +54,7 @@ TEST_CASE("suspicion: the number is that of the mean, and its range that of the 
     const Moments z{200, -0.24, 0.9, 0.9 / std::sqrt(200.0)};
     const std::optional<Suspicion> looks = suspicion_of_bias(z, 1e-4, 0.1);
     REQUIRE(looks);
-    CHECK(looks->what == "biased");
+    CHECK(looks->what == Fault::biased);
     CHECK(looks->value == -0.24);
     const double half = t_quantile(0.1, 199) * z.standard_error, wide = t_quantile(2e-4, 199) * 0.9;
     const auto two_digits = [](double number) { return Approx(number).epsilon(0.05); };

@@ -7,7 +7,7 @@
 
 #include <credence/detail/block.hpp>
 #include <credence/ini.hpp>
-#include <credence/trajectory.hpp>
+#include <credence/detail/trajectory.hpp>
 #include "worlds/simulate.hpp"
 
 #include <algorithm>
@@ -74,7 +74,7 @@ Block one_by_one(const Scenario& scenario, const typename W::Settings& settings,
 
 Block in_lanes(const Scenario& scenario, const std::string& target, int trials) {
     const Forced forced(target);
-    return BlockRunner(scenario).run(7, 0, trials);
+    return BlockRunner(world_of(scenario), scenario).run(7, 0, trials);
 }
 
 Scenario of_world(const std::string& world) {

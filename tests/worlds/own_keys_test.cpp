@@ -3,7 +3,7 @@
 #include "catch.hpp"
 
 #include <credence/error.hpp>
-#include <credence/own_keys.hpp>
+#include <credence/detail/own_keys.hpp>
 
 using namespace credence;
 

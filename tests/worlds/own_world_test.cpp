@@ -9,9 +9,9 @@
 #include <credence/consistency.hpp>
 #include <credence/evidence.hpp>
 #include <credence/ini.hpp>
-#include <credence/merge.hpp>
+#include "files/merge/merge.hpp"
 #include <credence/report.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include "files/stored_run.hpp"
 
 #include <cmath>

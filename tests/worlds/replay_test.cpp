@@ -6,7 +6,7 @@
 
 #include <credence/ini.hpp>
 #include <credence/own_world.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <bit>
 

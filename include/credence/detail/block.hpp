@@ -2,7 +2,7 @@
 // Module engine: the block: 256 consecutive trials of one scenario under every arm. It is a pure function of (scenario,
 // root seed, block index): threads, shards and resumed runs only choose which blocks to run.
 
-#include <credence/worlds.hpp>
+#include <credence/detail/world.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -48,7 +48,7 @@ bool detailed(const SimulationShape& shape, std::int64_t index);
 /// A scenario prepared for running its blocks.
 class BlockRunner {
 public:
-    explicit BlockRunner(const Scenario& scenario);
+    BlockRunner(const World& world, const Scenario& scenario);
 
     /// Simulates the first `trials` trials of a block. Thread-safe.
     Block run(std::uint64_t root_seed, std::int64_t index, int trials) const;

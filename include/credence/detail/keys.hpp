@@ -4,7 +4,7 @@
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/world.hpp>
 
 #include <functional>
 #include <string>

@@ -2,7 +2,7 @@
 // Module worlds: what the engine makes of the trials of a user's own world.
 
 #include <credence/own_trial.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/world.hpp>
 
 #include <functional>
 #include <memory>

@@ -2,7 +2,7 @@
 // Module worlds: the adapter by which every world, ours and a user's own, becomes what engine, files and program know.
 
 #include <credence/detail/keys.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <memory>
 #include <string>

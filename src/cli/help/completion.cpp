@@ -7,7 +7,7 @@
 #include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <algorithm>
 #include <cctype>

@@ -8,7 +8,7 @@
 #include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include "worlds/simulate.hpp"
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <algorithm>
 #include <cctype>

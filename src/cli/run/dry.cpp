@@ -4,6 +4,7 @@
 #include "cli/process/progress.hpp"
 
 #include <credence/error.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <omp.h>
 
@@ -12,10 +13,6 @@
 #include <optional>
 
 namespace credence::cli {
-
-std::string threads_text(const RunRequest& request) {
-    return (request.ranks > 1 ? std::to_string(request.ranks) + " x " : "") + std::to_string(request.options.threads);
-}
 
 namespace {
 
@@ -29,7 +26,7 @@ struct BlockSeconds {
 BlockSeconds seconds_of_a_block(const Scenario& scenario, const RunRequest& request) {
     constexpr int octet = 8;  // a pack of fewer trials takes as long
     const double enough = std::min(0.1, 5 / static_cast<double>(request.scenarios.size()));
-    const BlockRunner runner(scenario);
+    const BlockRunner runner(world_of(scenario), scenario);
     const std::int64_t last = (request.options.trials - 1) / block_size;
     const auto seconds_of = [&](int trials) {
         const auto start = std::chrono::steady_clock::now();
@@ -94,12 +91,12 @@ int dry_run(const RunRequest& request, const Study& study) {
         seconds += of_block.block * static_cast<double>(missing.count()) +
                    of_block.trial * static_cast<double>(trials_in(missing, request.options.trials));
     }
-    const std::int64_t of_a_rank = std::min<std::int64_t>(request.options.threads, omp_get_num_procs()),
-                       at_once = std::min(of_a_rank * request.ranks, std::max<std::int64_t>(1, blocks));
+    const std::int64_t at_once = std::min(
+        {std::int64_t{request.options.threads}, std::int64_t{omp_get_num_procs()}, std::max<std::int64_t>(1, blocks)});
     const Footprint size = size_of(request, study);
     seconds = seconds / static_cast<double>(at_once) + seconds_of_writing(size, study.scenarios.size());
     print("scenarios: " + std::to_string(request.scenarios.size()) + ", trials of each: " +
-          std::to_string(request.options.trials) + ", threads: " + threads_text(request) + ".\n" +
+          std::to_string(request.options.trials) + ", threads: " + std::to_string(request.options.threads) + ".\n" +
           wrapped("About " + duration_text(seconds) + ", " + bytes_text(size.memory) +
                   " of memory, " + bytes_text(size.file) + " in " + printable(request.output) +
                   (request.keep == Keep::trials ? ", as much again in its journal meanwhile"

@@ -5,9 +5,6 @@
 
 namespace credence::cli {
 
-/// `4`, or `3 x 4` for as many on each of several ranks.
-std::string threads_text(const RunRequest& request);
-
 /// Refuses a run for which memory or disk are too small, as far as that is known in advance. A run with --until may
 /// need less than its ceiling, and is not refused. Throws InputError.
 void check_fit(const RunRequest& request, const Study& study);

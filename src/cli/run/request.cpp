@@ -1,11 +1,11 @@
 #include "cli/run/request.hpp"
 
+#include "cli/run/launcher.hpp"
 #include "cli/version.hpp"
 #include "cli/file_kind.hpp"
 #include "files/system/durable_file.hpp"
 
 #include <credence/error.hpp>
-#include "cluster/launcher.hpp"
 #include <credence/text.hpp>
 
 #include <omp.h>
@@ -85,7 +85,6 @@ RunRequest read_request(const Parsed& parsed) {
     request.root_seed = parsed.seed(request.root_seed);
     request.options.threads = static_cast<int>(parsed.integer("threads", omp_get_max_threads(), 1, 4096));
     request.trials_given = parsed.has("trials");
-    request.threads_given = parsed.has("threads");
     request.start = start_of(parsed);
     request.quiet = parsed.has("quiet");
     request.keep = parsed.choice("keep") == keep_name(Keep::aggregates) ? Keep::aggregates : Keep::trials;

@@ -23,8 +23,6 @@ struct RunRequest {
     std::int64_t commit_every = 0;
     Keep keep = Keep::trials;
     bool quiet = false;
-    int ranks = 1;                     ///< processes that share the run
-    bool threads_given = false;        ///< otherwise every rank takes as many as it may have
 
     StoppingRule rule() const { return {goals, options.trials}; }
 };

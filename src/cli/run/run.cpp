@@ -1,6 +1,5 @@
 #include "cli/process/interrupt.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/run/ranks.hpp"
 #include "cli/run/dry.hpp"
 #include "cli/run/until.hpp"
 #include "cli/version.hpp"
@@ -8,7 +7,7 @@
 #include "base/program_name.hpp"
 #include <credence/error.hpp>
 #include <credence/report.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
 #include <chrono>
@@ -40,11 +39,6 @@ const Command& run_command() {
           "run block b of 256 trials where b mod N = I only; `" + program_name() +
               " merge` joins the files; auto: the "
               "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
-         {"mpi",
-          "WHEN",
-          "share the run among the ranks of an MPI job: auto (default: where mpirun started it), on, off",
-          false,
-          {"auto", "on", "off"}},
          {"resume", "",
           "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
          {"overwrite", "", "replace a results file that exists"},
@@ -85,16 +79,12 @@ struct Work {
 };
 
 /// Runs the missing blocks of the request.
-Work work_on(StoredRun& stored, const RunRequest& request, RankLeader* ranks) {
+Work work_on(StoredRun& stored, const RunRequest& request) {
     const auto start = std::chrono::steady_clock::now();
     Work work;
     RunOptions options = request.options;
-    options.stop = [ranks] { return Interrupt::came() || (ranks != nullptr && ranks->asked_to_stop()); };
-    options.workers = ranks;
+    options.stop = Interrupt::came;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
-    if (ranks != nullptr)
-        ranks->begin(definition_of(stored.study()), request.threads_given ? options.threads : 0,
-                     request.commit_every > 0 ? RankLeader::Sending::at_once : RankLeader::Sending::now_and_then);
     // With --until the number of trials is not known yet: each interim analysis asks for its own.
     options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
     if (!request.goals.empty()) {
@@ -113,7 +103,7 @@ RunFacts facts_of(const RunRequest& request, const Work& work, const std::string
                   const std::string& command_line) {
     RunFacts facts = build_facts();
     facts.emplace_back("started", started);
-    facts.emplace_back("threads", threads_text(request));
+    facts.emplace_back("threads", std::to_string(request.options.threads));
     facts.emplace_back("wall_seconds", to_text(work.seconds));
     facts.emplace_back("command_line", command_line);
     return facts;
@@ -131,18 +121,11 @@ std::string resuming(std::string command_line, const Shard& shard) {
     return command_line.find(resume) == std::string::npos ? command_line + resume : command_line;
 }
 
-/// The reason why the run stopped, such as SIGTERM; empty where it was not stopped.
-std::string stopped_by(const RankLeader* ranks) {
-    if (Interrupt::came()) return Interrupt::name();
-    return ranks != nullptr ? ranks->stopped_by() : "";
-}
-
-int stopped(const StoredRun& stored, const RunRequest& request, const std::string& signal,
-            const std::string& command_line) {
+int stopped(const StoredRun& stored, const RunRequest& request, const std::string& command_line) {
     std::int64_t done = 0;
     for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
-    say(program_name() + " run: stopped by " + signal + " with " + std::to_string(done) + " trials kept in " +
-        printable(request.output) + " (complete = 0). This goes on with them:\n  " +
+    say(program_name() + " run: stopped by " + Interrupt::name() + " with " + std::to_string(done) +
+        " trials kept in " + printable(request.output) + " (complete = 0). This goes on with them:\n  " +
         resuming(command_line, request.options.shard) + "\n");
     return 3;
 }
@@ -151,15 +134,15 @@ void print_table(const Study& study, const RunRequest& request, const Work& work
     print(report_text(make_report(study, {})) + "\n" + (work.last_analysis ? stopping_text(*work.last_analysis) : "") +
           printable(request.output) +
           (work.changed ? ": " + file_size_text(request.output) + ", computed in " + duration_text(work.seconds) +
-                              " on " + threads_text(request) + " threads\n"
+                              " on " + std::to_string(request.options.threads) + " threads\n"
                         : " has these trials already\n"));
 }
 
 /// Runs and writes the results. Failures are thrown with the progress that is kept.
-Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const std::string& command_line) {
+Work keep(StoredRun& stored, const RunRequest& request, const std::string& command_line) {
     const std::string started = now_text();
     try {
-        Work work = work_on(stored, request, ranks);
+        Work work = work_on(stored, request);
         work.changed = stored.finish(facts_of(request, work, started, command_line));
         return work;
     } catch (const Failure& failure) {
@@ -172,21 +155,15 @@ Work keep(StoredRun& stored, const RunRequest& request, RankLeader* ranks, const
 }  // namespace
 
 int run(const Parsed& parsed, const std::string& command_line) {
-    const std::unique_ptr<Transport> post = transport_of(parsed);
-    if (post && post->rank() > 0) return follow_rank_0(*post);
-    const bool shared = post && post->size() > 1;
-    const std::unique_ptr<RankLeader> ranks = shared ? std::make_unique<RankLeader>(*post) : nullptr;
     RunRequest request = read_request(parsed);
-    if (post) request.ranks = post->size();
     const Interrupt interrupt;
     StoredRun stored = starting_run(request);
     if (!request.quiet) say_notes(request.scenarios, "run");
     if (parsed.has("dry-run")) return dry_run(request, stored.study());
     if (!parsed.has("force")) check_fit(request, stored.study());
 
-    const Work work = keep(stored, request, ranks.get(), command_line);
-    const std::string signal = stopped_by(ranks.get());
-    if (!signal.empty() && !stored.study().complete) return stopped(stored, request, signal, command_line);
+    const Work work = keep(stored, request, command_line);
+    if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
     if (work.last_analysis && !work.last_analysis->met)
         say(program_name() + " run: " + imprecision_text(*work.last_analysis, request.rule()) + "\n");
     if (!request.quiet) print_table(stored.study(), request, work);

@@ -16,7 +16,7 @@ namespace credence::hdf5 {
 /// Opens a file for reading, after checks of our own: a regular file that starts with HDF5's signature.
 Handle open_file(const std::string& path);
 
-/// Path of the file that contains the object.
+/// The size in bytes of the file that contains the object.
 hsize_t file_size(const Handle& object);
 
 /// The name of a type in messages, such as `64-bit floats`.

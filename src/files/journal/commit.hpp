@@ -2,7 +2,7 @@
 // The format of a journal: a header, then commits, each with blocks of one scenario and the scenario's totals after
 // them [docs/durability.md, The journal].
 
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "base/bytes.hpp"
 #include "files/system/checksum.hpp"

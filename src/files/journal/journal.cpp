@@ -49,14 +49,6 @@ void Journal::take(std::size_t scenario, const Block& block) {
     ++pending_blocks_;
 }
 
-void Journal::take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) {
-    Kept& kept = kept_[scenario];
-    kept.pending.insert(kept.pending.end(), blocks.begin(), blocks.end());
-    kept.pending_values.put_raw(values.data(), values.size());
-    pending_size_ += values.size();
-    pending_blocks_ += blocks.size();
-}
-
 namespace {
 
 constexpr std::size_t too_much = std::size_t{64} << 20;
@@ -97,7 +89,7 @@ void Journal::put_commit(std::size_t scenario, const Study& study) {
     start.counted = kept.counted;
     start.shard = shard_;
     start.release = release_;
-    note_computed(computed_by_, release_, scenario, kept.pending);
+    note_release(computed_by_, release_);
     totals_size_ += totals.size();
     // Moved out: values are large, and a string that is only cleared would keep its capacity, one for every scenario.
     batch_.push_back({commit_start_bytes(static_cast<std::uint32_t>(scenario), start, keep,

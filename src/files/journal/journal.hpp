@@ -4,6 +4,7 @@
 
 #include "files/journal/file.hpp"
 #include "files/journal/commit.hpp"
+#include "study/releases.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -57,7 +58,6 @@ struct JournalScenario {
     std::int64_t asked = 0;    ///< trials that the study was asked for at the last totals
     std::int64_t counted = 0;  ///< trials in the last totals
     JournalTotals totals;
-    Provenance computed_by;    ///< provenance of this scenario alone
 };
 
 class Journal : public BlockKeeper {
@@ -80,8 +80,8 @@ public:
     void remove() { file_.remove(); }
     /// Throws Failure unless the file's bytes are those that were read when it was opened and those written since.
     void check_unchanged() const;
-    /// Which release computed which blocks of the study.
-    const Provenance& computed_by() const { return computed_by_; }
+    /// The releases that computed blocks of the study.
+    const std::vector<std::string>& computed_by() const { return computed_by_; }
 
     /// Number of blocks after which a commit is made; 0: half a second, and more where there is little to commit.
     void commit_every(std::int64_t blocks) { commit_every_ = blocks; }
@@ -93,7 +93,6 @@ public:
 
     void take_back(std::size_t scenario, std::int64_t block) override;
     void take(std::size_t scenario, const Block& block) override;
-    void take(std::size_t scenario, const std::vector<std::int64_t>& blocks, const std::string& values) override;
     bool due(std::int64_t held) const override;
     bool full() const override;
     void prepare(const Study& study) override;
@@ -137,7 +136,7 @@ private:
     std::uint32_t seal_ = 0;  ///< checksum of the header and of the checksums of all commits
     Shard shard_;
     std::string release_ = unknown_release;
-    Provenance computed_by_;
+    std::vector<std::string> computed_by_;
     std::vector<Kept> kept_;
 
     /// A commit to be written, its checksum still missing.

@@ -24,17 +24,12 @@ std::vector<JournalScenario> Journal::scan(const Study& study) {
     const std::int64_t end = scan_commits(file_, header_size_, layouts, [&](const FoundCommit& record) {
         seal_ = seal_with(seal_, record.checksum);
         JournalScenario& scenario = found[record.scenario];
-        BlockRanges blocks;
-        for (std::size_t b = 0; b < record.places.size(); ++b) {
-            blocks.add(record.start.blocks[b].index);
+        for (std::size_t b = 0; b < record.places.size(); ++b)
             scenario.placed.put(record.start.blocks[b].index,
                                 {record.start.blocks[b].trials, record.places[b], false});
-        }
-        for (const BlockRange& range : record.start.ranges) {
-            blocks.add(range);
+        for (const BlockRange& range : record.start.ranges)
             scenario.placed.put(range, record.start.trials, layouts[record.scenario]);
-        }
-        note_computed(scenario.computed_by, record.start.release, 0, blocks);
+        note_release(computed_by_, record.start.release);
         scenario.asked = record.start.trials;
         scenario.counted = record.start.counted;
         scenario.totals = {record.totals, record.end - record.totals};
@@ -111,7 +106,6 @@ void Journal::load(Study& study) {
             ScenarioResults& results = study.scenarios[s];
             add_places(placed, found[s]);
             kept_[s].counted = found[s].counted;
-            for (const ComputedBy& one : found[s].computed_by) note_computed(computed_by_, one.release, s, one.of(0));
             kept_[s].totals = found[s].totals;
             drop_totals(results);
             set_blocks(results, placed.blocks, placed.trials_up_to());

@@ -1,7 +1,7 @@
 #pragma once
 // A scenario's totals as bytes: the part of a commit that sums up all blocks so far.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "base/bytes.hpp"
 

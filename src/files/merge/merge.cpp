@@ -1,9 +1,10 @@
-#include <credence/merge.hpp>
+#include "files/merge/merge.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
 #include "files/merge/scenario.hpp"
+#include "study/releases.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -46,9 +47,9 @@ namespace {
 /// Throws unless trials of the two files may be merged.
 void check_releases(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t a,
                     std::size_t b) {
-    for (const ComputedBy& one : other.computed_by)
-        if (const std::string unlike = unmixable(first.computed_by, one.release); !unlike.empty())
-            throw InputError("cannot merge " + paths[b] + " with " + paths[a] + " (" + one.release +
+    for (const std::string& release : other.computed_by)
+        if (const std::string unlike = unmixable(first.computed_by, release); !unlike.empty())
+            throw InputError("cannot merge " + paths[b] + " with " + paths[a] + " (" + release +
                              " computed trials of it, and " + unlike +
                              " of the other; draws and columns may differ between them). Run one of them again.");
 }
@@ -63,11 +64,8 @@ public:
         if (scenarios_.empty()) begin(part, file);
         check_same_study(study_, part, paths_, file, first_);
         check_releases(study_, part, paths_, first_, file);
-        for (std::size_t s = 0; s < scenarios_.size(); ++s) {
-            const BlockRanges fresh = part.scenarios[s].blocks.without(scenarios_[s].blocks());
-            note_computed(study_.computed_by, part.computed_by, s, fresh);
-            scenarios_[s].add(part.scenarios[s], file);
-        }
+        for (const std::string& release : part.computed_by) note_release(study_.computed_by, release);
+        for (std::size_t s = 0; s < scenarios_.size(); ++s) scenarios_[s].add(part.scenarios[s], file);
     }
 
     /// Whether a file has a block that an earlier one had.
@@ -135,7 +133,6 @@ Study merge_results(const std::vector<std::string>& paths, std::int64_t most_tot
     Merger merger(paths);
     for (std::size_t file = 0; file < paths.size(); ++file) {
         Study part = read_results_without_totals(paths[file]).study;
-        check_schema(part, paths[file], "merge");
         if (merger.shares(part)) return merge_shared(paths, most_totals, release);
         merger.add(file, std::move(part));
     }

@@ -1,6 +1,7 @@
 #include "files/merge/totals.hpp"
 
 #include <credence/error.hpp>
+#include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
 #include "files/results/agreement.hpp"
@@ -119,7 +120,7 @@ private:
                 check_computed(other);
             }
         }
-        const BlockRunner runner(from.scenario);
+        const BlockRunner runner(world_of(from.scenario), from.scenario);
         for (const std::int64_t block : left) {
             const Block computed = compute(runner, block);
             add_totals(expected, computed);
@@ -136,7 +137,7 @@ private:
         computed_[place] = true;
         const ScenarioResults from = read(place);
         ScenarioResults expected = empty_results(from.scenario, from.keep);
-        const BlockRunner runner(from.scenario);
+        const BlockRunner runner(world_of(from.scenario), from.scenario);
         for (const std::int64_t block : from.blocks) add_totals(expected, compute(runner, block));
         if (totals_of(expected) != totals_of(from))
             throw InputError("cannot merge " + path_of(place) + " (its totals of " + from.scenario.name +

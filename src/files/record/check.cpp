@@ -18,10 +18,6 @@ using hdf5::Error;
 
 constexpr double largest_asymmetry = 1e-9;
 
-bool all_finite(const double* values, std::ptrdiff_t count) {
-    return std::all_of(values, values + count, [](double value) { return std::isfinite(value); });
-}
-
 void refuse_asymmetry(const std::string& dataset, const RecordStep& step, int i, int j, double above, double below) {
     throw Error(dataset,
                 "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
@@ -29,19 +25,6 @@ void refuse_asymmetry(const std::string& dataset, const RecordStep& step, int i,
                     "] is " + to_text(above) + ", [" + std::to_string(j) + ", " + std::to_string(i) + "] is " +
                     to_text(below),
                 "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
-}
-
-/// Copies the error and its covariance, of which some value is a number. Returns what is wrong with them.
-std::string read_state(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
-    const std::ptrdiff_t n = shape.n;
-    if (!any_number(step.error, n)) return "the error is NaN, and the covariance is not";
-    if (!any_number(step.covariance, n * n)) return "the covariance is NaN, and the error is not";
-    if (!all_finite(step.error, shape.n)) return "the error is not finite";
-    checked.e = Eigen::Map<const Eigen::VectorXd>(step.error, shape.n);
-    return read_symmetric("/covariance", step, step.covariance, shape.n, counted_up(shape.n),
-                          shape.covariance_epsilon, checked.P)
-               ? ""
-               : "the covariance is not finite";
 }
 
 }  // namespace
@@ -91,14 +74,6 @@ std::string read_innovation(const RecordStep& step, const RecordShape& shape, Ch
                           shape.innovation_epsilon, checked.S)
                ? ""
                : "the innovation covariance is not finite";
-}
-
-Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked) {
-    if (!any_number(step.error, shape.n) && !any_number(step.covariance, std::ptrdiff_t{shape.n} * shape.n))
-        return Presence::absent;
-    checked.broken = read_state(step, shape, checked);
-    if (checked.broken.empty() && shape.has_innovations()) checked.broken = read_innovation(step, shape, checked);
-    return checked.broken.empty() ? Presence::there : Presence::broken;
 }
 
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of the check of a step that both versions of a record share.
+// Parts of the check of a step.
 
 #include "worlds/own/step.hpp"
 

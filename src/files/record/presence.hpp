@@ -1,5 +1,5 @@
 #pragma once
-// Checks the steps of a record of version 2, in which components enter and leave the state.
+// Checks the steps of a record, in which components may enter and leave the state.
 
 #include "worlds/own/step.hpp"
 
@@ -15,7 +15,7 @@ public:
     explicit PresenceChecker(const RecordShape& shape);
 
     void start_trial();
-    /// As check_step does for version 1.
+    /// Whether the step exists; what is wrong with it goes to `checked.broken`.
     Presence check(const RecordStep& step, CheckedStep& checked);
 
 private:

@@ -1,7 +1,7 @@
 #pragma once
 // The results of a record, before its trials are added.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "files/record/reader.hpp"
 

@@ -9,16 +9,13 @@
 
 namespace credence {
 
-/// How the lag of two innovations of a row is counted: in steps (records of version 1), or in measurements of the row,
-/// whatever the steps between: a row that is observed at every eleventh step has its lag 1 there.
-enum class Lags { in_steps, in_measurements };
-
-/// Products of a row's whitened innovation and of that a lag before, summed over steps and rows.
+/// Products of a row's whitened innovation and of that a lag before, summed over steps and rows. A lag counts the
+/// measurements of the row, whatever the steps between: a row that is observed at every eleventh step has its lag 1
+/// there.
 class RowProducts {
 public:
     /// `rows`: of an innovation; 0 where there is none.
-    RowProducts(std::size_t lags, std::size_t rows, Lags counted)
-        : sum(lags), count(lags), now(rows), counted_(counted), before_(rows) {}
+    RowProducts(std::size_t lags, std::size_t rows) : sum(lags), count(lags), now(rows), before_(rows) {}
 
     void start_trial() {
         sum.assign(sum.size(), 0.0);
@@ -36,7 +33,7 @@ public:
                 sum[lag - 1] += product;
                 count[lag - 1] += 1;
             }
-            if (counted_ == Lags::in_steps || !std::isnan(now[row])) before.push_back(now[row]);
+            if (!std::isnan(now[row])) before.push_back(now[row]);
         }
     }
 
@@ -50,7 +47,6 @@ public:
     std::vector<double> now;         ///< [rows] of the current step, NaN where not observed
 
 private:
-    Lags counted_;
     std::vector<std::vector<double>> before_;  ///< [rows] measurements of the trial so far
 };
 

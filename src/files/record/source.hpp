@@ -86,7 +86,7 @@ private:
     const hdf5::Handle& root_;
 };
 
-/// A record of version 2 in arrays, which must outlive it and its datasets.
+/// A record in arrays, which must outlive it and its datasets.
 class ArraySource : public RecordSource {
 public:
     explicit ArraySource(const RecordArrays& record) : record_(record) {}

@@ -28,21 +28,18 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
       judge_(shape_, all_series_),
       presence_(shape_),
       gaps_(size(shape_.steps)),
-      products_(size(lag_count(shape_.steps + 1)), size(shape_.m),
-                shape_.version == 1 ? Lags::in_steps : Lags::in_measurements),
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m)),
       moments_(shape_.n, shape_.groups.size()) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
     keeps_nees_ = shape.trials <= most_values / shape.steps;
-    keeps_cells_ =
-        std::int64_t{shape.steps} * distribution_cells <= most_values && (shape.version == 1 || !keeps_nees_);
+    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && !keeps_nees_;
     if (keeps_nees_) nees_.resize(size(shape.steps));
     if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
     for (const ComponentGroup& group : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
     roundings_.resize(size(shape.steps) * (1 + shape.groups.size()));
-    if (shape.version == 1) return;
     for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
     if (!shape.has_joint()) return;
     dimensions_.resize(size(shape.steps));
@@ -60,7 +57,7 @@ void RecordTotals::add(const RecordStep& step) {
 
 void RecordTotals::add_covered(const RecordStep& step) {
     const bool covered = shape_.covers(step.trial, step.step);
-    switch (covered ? check(step) : Presence::absent) {
+    switch (covered ? presence_.check(step, checked_) : Presence::absent) {
         case Presence::there: return add_figures(step, checked_);
         case Presence::broken: return note(step, Status::non_finite, checked_.broken);
         case Presence::absent: break;
@@ -78,10 +75,6 @@ void RecordTotals::check_end(std::int64_t trial) {
     note({trial, end}, Status::non_finite,
          of + (declared ? "the " : "") + std::to_string(asked) + " steps" +
              (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
-}
-
-Presence RecordTotals::check(const RecordStep& step) {
-    return shape_.version == 1 ? check_step(step, shape_, checked_) : presence_.check(step, checked_);
 }
 
 void RecordTotals::start_trial() {
@@ -269,7 +262,7 @@ const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
     return all;
 }
 
-/// Of version 2 the values of `nees_` are their probabilities, so that those of states of any dimension are together.
+/// The values of `nees_` are their probabilities, so that those of states of any dimension are together.
 void RecordTotals::add_distribution() {
     for (const std::size_t k : present_) {
         ++arm().present[k];
@@ -278,7 +271,7 @@ void RecordTotals::add_distribution() {
         const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
         if (keeps_cells_)
             ++arm().cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
-        if (keeps_nees_) nees_[k].push_back(shape_.version == 1 ? nees : 1 - chi_square_p(nees, dimension));
+        if (keeps_nees_) nees_[k].push_back(1 - chi_square_p(nees, dimension));
     }
 }
 
@@ -290,8 +283,7 @@ Record RecordTotals::finish() {
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");
     if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
-        arm().distribution_distance[k] = shape_.version == 1 ? chi_square_distance(std::move(nees_[k]), shape_.n)
-                                                             : uniform_distance(std::move(nees_[k]));
+        arm().distribution_distance[k] = uniform_distance(std::move(nees_[k]));
     return std::move(record_);
 }
 

@@ -47,7 +47,6 @@ private:
     void add_series(std::size_t f);
     void add_coverage(std::size_t f, std::size_t k, double value);
     void add_distribution();
-    Presence check(const RecordStep& step);
     void set_dimension(std::size_t k);
     void add_rounding(std::size_t k);
     void finish_rounding();
@@ -58,7 +57,7 @@ private:
     StateSeries all_series_;
     AlikeSums alike_;
     StepEvaluator judge_;
-    PresenceChecker presence_;                   ///< of version 2
+    PresenceChecker presence_;
     GapCounter gaps_;
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
@@ -76,7 +75,7 @@ private:
     RecordTrouble trouble_;                      ///< why the trial failed, if it did
     std::vector<std::size_t> present_;           ///< steps that exist, in order
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
-    /// [steps] of the state, of version 2 with a joint covariance; else empty.
+    /// [steps] of the state, if there is a joint covariance; else empty.
     std::vector<int> dimensions_;
     RowProducts products_;
     TrialMomentSums moments_;

@@ -1,7 +1,7 @@
 #pragma once
 // The aggregates that an arm's group holds instead of columns if no trial is kept [docs/results-format.md, Aggregates].
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "files/hdf5/read.hpp"
 #include "files/hdf5/write.hpp"

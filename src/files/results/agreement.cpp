@@ -27,7 +27,7 @@ std::optional<std::size_t> series_of(const ScenarioResults& results, SeriesRole 
     return std::nullopt;
 }
 
-std::optional<std::size_t> column_named(const ScenarioResults& results, const std::string& name) {
+std::optional<std::size_t> series_named(const ScenarioResults& results, const std::string& name) {
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (results.all_series[f].name == name) return f;
     return std::nullopt;
@@ -44,7 +44,7 @@ std::vector<Relation> relations(const ScenarioResults& results) {
     add("nees_ratio", 0, Steps::all, static_cast<double>(results.steps()) * results.state_size());
     add("mean_trace_P", variance, Steps::all, results.steps());
     add("trace_P", variance, Steps::last, 1);
-    add("unseen", column_named(results, "unseen_features"), Steps::all, 1);
+    add("unseen", series_named(results, "unseen_features"), Steps::all, 1);
     add("squared_error", series_of(results, SeriesRole::squared_error, "all"), Steps::all, 1);
     return all;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // The columns of a results file, read in parts, and the trials that they are of.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "files/hdf5/read.hpp"
 

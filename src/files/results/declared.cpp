@@ -4,6 +4,7 @@
 
 #include <credence/ini.hpp>
 #include "scenario/state_series.hpp"
+#include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
 #include "files/record/layout/groups.hpp"
@@ -109,10 +110,9 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
         throw Error(steps.place(), "is no list of steps");
     scenario.poses = static_cast<int>(steps.extents()[0]) + 1;
     scenario.components = read_components(arm);
-    // Schema version 2 has the name `blocks`.
-    const std::string groups = hdf5::has_attribute(group, "blocks") ? "blocks" : "groups";
-    scenario.groups = parse_groups(list_entries(hdf5::read_text(group, groups)),
-                                   static_cast<int>(scenario.components.size()), hdf5::attribute_place(group, groups));
+    scenario.groups =
+        parse_groups(list_entries(hdf5::read_text(group, "groups")), static_cast<int>(scenario.components.size()),
+                     hdf5::attribute_place(group, "groups"));
     results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
     results.all_series = StateSeries(scenario.components, scenario.groups,
                                    hdf5::has_link(arm, "nis_total") ? Innovations::given : Innovations::none)

@@ -2,7 +2,7 @@
 // A scenario's declaration in a results file: by its world or, if this program does not have that world, by the file's
 // own content.
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "files/hdf5/read.hpp"
 

@@ -135,9 +135,9 @@ void read_products(const Handle& group, const ScenarioResults& results, hsize_t 
 
 }  // namespace
 
-std::vector<std::string> evidence_links(const ScenarioResults& results, int schema) {
+std::vector<std::string> evidence_links(const ScenarioResults& results) {
     std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
-    if (results.moment_count() > 0 && schema > 2) names.insert(names.end(), {"moment", moments_name});
+    if (results.moment_count() > 0) names.insert(names.end(), {"moment", moments_name});
     if (distribution_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
     for (const Series& series : results.all_series)
         if (series.role == SeriesRole::nees) names.push_back(coverage_name(series));
@@ -176,8 +176,7 @@ void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t 
     arm.nees = read_single(group, "detailed_nees", {detailed, steps});
     arm.errors = read_single(group, "detailed_error", {detailed, steps, size});
     const auto moments = static_cast<hsize_t>(results.moment_count());
-    arm.moments.assign(detailed * moments, nan);  // what files of schema 2 have of them
-    if (moments == 0 || !hdf5::has_link(group, moments_name)) return;  // (read_arm requires it where it must be there)
+    if (moments == 0) return;
     check_numbered<std::int32_t>(group, "moment", 0, moments);
     arm.moments = read_as<double>(group, moments_name, {detailed, moments});
 }

@@ -2,7 +2,7 @@
 // The parts of an arm's group beside columns and totals: coverage, the distribution of NEES, whiteness, and the errors
 // of the detailed trials [docs/results-format.md, Coverage, Distribution, Whiteness, Errors].
 
-#include <credence/results.hpp>
+#include <credence/detail/results.hpp>
 
 #include "files/hdf5/read.hpp"
 #include "files/hdf5/write.hpp"
@@ -18,7 +18,7 @@ struct EvidenceDimensions {
 };
 
 /// Names of these datasets, coordinates included.
-std::vector<std::string> evidence_links(const ScenarioResults& results, int schema);
+std::vector<std::string> evidence_links(const ScenarioResults& results);
 
 void write_evidence(const hdf5::Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm);

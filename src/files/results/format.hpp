@@ -2,7 +2,7 @@
 // Definitions shared by the two kinds of file that the store writes. docs/results-format.md describes the files.
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
 #include "files/system/durable_file.hpp"
@@ -18,7 +18,7 @@ namespace credence {
 
 inline const std::string results_format = "credence results", trajectories_format = "credence trajectories";
 inline const std::string run_group = "run";
-/// Facts in the group /run: which release computed which blocks, and which one wrote the file.
+/// Facts in the group /run: the releases that computed trials, and the one that wrote the file.
 inline const std::string computed_by_fact = "computed_by", version_fact = "credence_version",
                          revision_fact = "git_revision";
 

@@ -9,7 +9,7 @@
 
 namespace credence {
 
-std::vector<std::string> arm_links(const ScenarioResults& results, int schema) {
+std::vector<std::string> arm_links(const ScenarioResults& results) {
     std::vector<std::string> names{"step", "part"};
     if (results.keep == Keep::trials) {
         names.push_back("trial");
@@ -23,14 +23,14 @@ std::vector<std::string> arm_links(const ScenarioResults& results, int schema) {
         if (!series.integer) names.push_back(series.name + "_square_total");
         names.push_back(series.name + "_run_square_total");
     }
-    const std::vector<std::string> evidence = evidence_links(results, schema);
+    const std::vector<std::string> evidence = evidence_links(results);
     names.insert(names.end(), evidence.begin(), evidence.end());
     return names;
 }
 
 void refuse_clashing_links(const Study& study) {
     for (const ScenarioResults& results : study.scenarios) {
-        std::vector<std::string> names = arm_links(results, schema_version);
+        std::vector<std::string> names = arm_links(results);
         std::ranges::sort(names);
         if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
             throw InputError("cannot store scenario " + results.scenario.name + " (its world " +

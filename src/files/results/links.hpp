@@ -9,7 +9,7 @@
 namespace credence {
 
 /// Names of the datasets in the group of the next arm.
-std::vector<std::string> arm_links(const ScenarioResults& results, int schema);
+std::vector<std::string> arm_links(const ScenarioResults& results);
 
 /// Throws InputError where two datasets of an arm would have one name: those of columns, groups and components of a
 /// user's own world.

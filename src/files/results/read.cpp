@@ -1,4 +1,4 @@
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <credence/text.hpp>
 
@@ -10,6 +10,7 @@
 #include "files/results/format.hpp"
 #include "files/results/links.hpp"
 #include "files/results/sums.hpp"
+#include "study/releases.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +61,6 @@ struct Opened {
     std::string path;
     std::int64_t asked = 0;  ///< trials of each scenario that were asked for
     Keep keep = Keep::trials;
-    int schema = schema_version;
     std::optional<std::int64_t> most_totals;  ///< most bytes of totals to load; nothing: they are not read
 };
 
@@ -137,7 +137,7 @@ private:
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
                     const Opened& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
-    require_links(group, arm_links(results, source.schema));
+    require_links(group, arm_links(results));
     const bool trials = results.keep == Keep::trials;
     const BlockRanges blocks = trials ? read_blocks(group, source.asked) : read_block_ranges(group, source.asked);
     if (results.arms.empty()) set_blocks(results, blocks, source.asked);
@@ -177,16 +177,24 @@ ScenarioResults read_scenario_results(const std::string& name, const Opened& sou
     return results;
 }
 
-/// The schema version, which this program must be able to read.
-int read_header(const Handle& root) {
+/// The release that a results file names as its maker; empty if it names none.
+std::string release_that_wrote(const Handle& root) {
+    if (!hdf5::has_link(root, run_group)) return {};
+    const Handle run = hdf5::open_group(root, run_group);
+    return hdf5::has_attribute(run, version_fact) ? hdf5::read_text(run, version_fact) : std::string();
+}
+
+/// Throws if this program cannot read the file.
+void check_header(const Handle& root) {
     if (!hdf5::has_attribute(root, "format") || hdf5::read_text(root, "format") != results_format)
         throw Error("the file", "is not a results file", "Give a file that credence run wrote");
     const int version = hdf5::read_number<std::int32_t>(root, "schema_version");
-    if (version != schema_version && version != 2)
-        throw Error("/@schema_version",
-                    "is " + std::to_string(version) + ", this program's is " + std::to_string(schema_version),
-                    "Use the release that wrote the file, or run the study again");
-    return version;
+    if (version == schema_version) return;
+    const std::string release = release_that_wrote(root);
+    throw Error("/@schema_version",
+                "is " + std::to_string(version) + ", this program's is " + std::to_string(schema_version) +
+                    (release.empty() ? "" : "; the file was made by release " + printable(release)),
+                "Report it with that release, or run the study again");
 }
 
 /// Whether every trial that was asked for is present. Throws where the file says so but some are missing.
@@ -199,20 +207,14 @@ bool read_complete(const Handle& root, const Study& study) {
     return complete == 1;
 }
 
-/// Where the file does not name the release that computed its blocks, it was the one that wrote the file.
-Provenance computed_by(const Study& study, const RunFacts& run) {
+/// If the file does not name the releases that computed its trials, it was the one that wrote the file.
+std::vector<std::string> computed_by(const RunFacts& run) {
     const auto fact = [&](const std::string& name) {
         const auto found = std::find_if(run.begin(), run.end(), [&](const auto& one) { return one.first == name; });
         return found == run.end() ? "" : found->second;
     };
-    if (const std::string releases = fact(computed_by_fact); !releases.empty()) try {
-            return read_provenance(releases, study);
-        } catch (const std::invalid_argument&) {
-            throw Error("/run/@" + computed_by_fact, "is no list of releases and of blocks that are there");
-        }
-    return fact(version_fact).empty()
-               ? Provenance{}
-               : read_provenance(release_name(fact(version_fact), fact(revision_fact)), study);
+    if (const std::string releases = fact(computed_by_fact); !releases.empty()) return split_list(releases, '\n');
+    return {fact(version_fact).empty() ? unknown_release : release_name(fact(version_fact), fact(revision_fact))};
 }
 
 StoredStudy read_study(const Opened& source) {
@@ -223,7 +225,6 @@ StoredStudy read_study(const Opened& source) {
     if (hdf5::read_text(root, "root_seed_text") != std::to_string(study.root_seed))
         throw Error("/@root_seed_text", "is not root_seed=" + std::to_string(study.root_seed));
     study.trials = source.asked;
-    study.schema = source.schema;
     TotalsInMemory in_memory(source.most_totals.value_or(0));
     for (const std::string& name : hdf5::link_names(root))
         if (name != run_group) {
@@ -236,14 +237,14 @@ StoredStudy read_study(const Opened& source) {
     const Handle run = hdf5::open_group(root, run_group);
     for (const std::string& name : hdf5::attribute_names(run))
         stored.run.emplace_back(name, hdf5::read_text(run, name));
-    study.computed_by = computed_by(study, stored.run);
+    study.computed_by = computed_by(stored.run);
     return stored;
 }
 
 Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
     Opened source{
-        std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, schema_version, most_totals};
-    source.schema = read_header(*source.file);
+        std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
+    check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");
     // Only a file that keeps no trials has this attribute.

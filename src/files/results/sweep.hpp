@@ -1,7 +1,7 @@
 #pragma once
 // A scenario's place in a sweep as attributes of its group, for readers that do not parse the scenario's text.
 
-#include <credence/sweep.hpp>
+#include <credence/detail/sweep.hpp>
 
 #include "files/hdf5/handle.hpp"
 

@@ -1,4 +1,4 @@
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <credence/text.hpp>
 
@@ -160,8 +160,7 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
         for (const ArmResults& arm : (*with_totals).arms) write_arm(group, *with_totals, arm);
     }
     RunFacts facts = run;
-    if (const std::string releases = provenance_text(study); !releases.empty())
-        facts.emplace_back(computed_by_fact, releases);
+    if (!study.computed_by.empty()) facts.emplace_back(computed_by_fact, joined(study.computed_by, "\n"));
     write_run_facts(root, facts);
 }
 

@@ -1,7 +1,7 @@
 #include "files/system/durable_file.hpp"
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "files/system/byte_file.hpp"
 #include "files/system/system_file.hpp"

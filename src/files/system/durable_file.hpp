@@ -1,7 +1,7 @@
 #pragma once
 // A file that appears under its name only when it is complete and on the disk.
 
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <functional>
 #include <string>

@@ -1,8 +1,8 @@
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include <credence/text.hpp>
 
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 #include "files/hdf5/read.hpp"
 

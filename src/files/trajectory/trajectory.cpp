@@ -1,4 +1,4 @@
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "files/results/format.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 // Selects the arms, and their files, that are compared.
 
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <optional>
 #include <string>
 #include <vector>

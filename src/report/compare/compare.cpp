@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 

@@ -1,7 +1,7 @@
 // Machine-readable output of a comparison: JSON and CSV.
 
 #include <cmath>
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <credence/text.hpp>
 
 #include "report/compare/choice.hpp"

@@ -1,6 +1,6 @@
 // The comparison as one page: conclusions, then each pair's tables and charts, and the sources.
 
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 
 #include "report/compare/words.hpp"
 #include "report/format.hpp"

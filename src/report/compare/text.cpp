@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 #include <credence/text.hpp>
 
 #include "base/program_name.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // Texts that every format of a comparison uses.
 
-#include <credence/compare.hpp>
+#include "report/compare/compare.hpp"
 
 #include <string>
 

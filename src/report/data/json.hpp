@@ -1,9 +1,9 @@
 #pragma once
 // Parts of a report as JSON. NaN becomes null.
 
-#include <credence/comparison.hpp>
+#include <credence/detail/comparison.hpp>
 #include <credence/evidence.hpp>
-#include <credence/sweep.hpp>
+#include <credence/detail/sweep.hpp>
 
 #include <nlohmann/json.hpp>
 

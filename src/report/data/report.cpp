@@ -56,7 +56,7 @@ Json gaps_json(const RecordGaps& gaps) {
 Json findings_json(const std::vector<Finding>& findings) {
     Json json = Json::array();
     for (const Finding& finding : findings)
-        json.push_back({{"what", finding.what},
+        json.push_back({{"what", fault_name(finding.what)},
                         {"about", subject_name(finding.about)},
                         {"where", finding.where},
                         {"when", when_text(finding)},
@@ -70,7 +70,7 @@ Json findings_json(const std::vector<Finding>& findings) {
 Json suspicions_json(const std::vector<Suspicion>& suspicions) {
     Json json = Json::array();
     for (const Suspicion& one : suspicions)
-        json.push_back({{"what", one.what},
+        json.push_back({{"what", fault_name(one.what)},
                         {"about", subject_name(one.about)},
                         {"where", one.where},
                         {"measure", one.measure},

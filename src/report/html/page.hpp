@@ -81,7 +81,7 @@ Html distribution_charts(const Part& part);
 /// Drawings of one pair; `number` makes its ids unique within the scenario.
 Html difference_charts(const Comparison& pair, std::size_t number);
 
-/// A collapsed section with its summary; `print_open` is expanded in print.
+/// A collapsed section with its summary; `InPrint::open` is expanded in print.
 enum class InPrint { closed, open };
 Html folded(const std::string& summary, const Html& content, InPrint in_print = InPrint::closed);
 

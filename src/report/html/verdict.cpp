@@ -56,7 +56,7 @@ Table findings_table(const std::string& caption, const std::vector<Finding>& fin
     Table table(caption, {"what", "where", "when", "value", "interval, corrected"});
     for (const Finding& finding : findings) {
         const double half = half_width(finding.interval);
-        table.row(finding.what, {finding.where, when_text(finding), number_cell_within(finding.value, half),
+        table.row(fault_name(finding.what), {finding.where, when_text(finding), number_cell_within(finding.value, half),
                                  interval_cell(finding.interval, decimals_for(half, finding.value))});
     }
     return table;
@@ -67,8 +67,9 @@ Table suspicions_table(const ArmReport& arm) {
         arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
         {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
     for (const Suspicion& one : arm.consistency.suspicions)
-        table.row(one.what, {one.where + ", " + one.measure, short_cell(one.value), count_cell(one.trials.value),
-                             count_cell(one.trials.low) + " to " + count_cell(one.trials.high)});
+        table.row(fault_name(one.what),
+                  {one.where + ", " + one.measure, short_cell(one.value), count_cell(one.trials.value),
+                   count_cell(one.trials.low) + " to " + count_cell(one.trials.high)});
     return table;
 }
 

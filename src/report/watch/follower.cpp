@@ -1,7 +1,7 @@
 #include "report/watch/follower.hpp"
 
 #include <credence/error.hpp>
-#include <credence/store.hpp>
+#include <credence/detail/store.hpp>
 
 #include "files/journal/totals.hpp"
 

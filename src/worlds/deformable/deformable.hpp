@@ -2,7 +2,7 @@
 // The deformable world of the document as one of the worlds.
 
 #include <credence/detail/block.hpp>
-#include <credence/recorded_noise.hpp>
+#include <credence/detail/recorded_noise.hpp>
 #include "slam/trial/problem.hpp"
 #include "worlds/deformable/keys.hpp"
 #include "worlds/simulate.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // The keys of the deformable world [docs/model.md].
 
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 #include <credence/detail/keys.hpp>
 
 #include <string>

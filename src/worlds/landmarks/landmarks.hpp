@@ -3,7 +3,7 @@
 
 #include "worlds/landmarks/problem.hpp"
 #include "worlds/simulate.hpp"
-#include <credence/worlds.hpp>
+#include <credence/detail/worlds.hpp>
 
 #include <memory>
 #include <string>

@@ -15,7 +15,7 @@ struct LandmarkView : CommonView {
 /// The state that these trials estimate: with a heading and without edges.
 SlamState state_of(const LandmarkSettings& scenario);
 
-/// The per-step series, in the order in which landmark_trial.hpp writes them: those of any SLAM trial, and whether an
+/// The per-step series, in the order in which landmarks/trial.hpp writes them: those of any SLAM trial, and whether an
 /// iterated update had come to rest.
 std::vector<Series> landmark_series(const LandmarkSettings& scenario);
 

@@ -4,7 +4,7 @@
 //
 // Targets: lengths in `length_unit`, angles in radians; sigma is a standard deviation.
 
-#include <credence/deformable_settings.hpp>
+#include <credence/detail/deformable_settings.hpp>
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// The part of a unit of the engine that runs trials among landmarks; what simulate_unit.cpp says holds here.
+// The part of a target that runs trials among landmarks; what deformable/target.cpp says holds here.
 
 #include "slam/estimators/estimators.hpp"
 #include "worlds/landmarks/trial.hpp"

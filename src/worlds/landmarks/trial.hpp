@@ -1,6 +1,7 @@
 #pragma once
-// One trial of one arm in the world of landmarks, poses in order [docs/landmarks.md]. It reads like trial.hpp,
-// and shares everything with it but the world: layout, belief, estimators, update, judge and observers.
+// One trial of one arm in the world of landmarks, poses in order [docs/landmarks.md]. It reads like
+// slam/trial/trial.hpp, and shares everything with it but the world: layout, belief, estimators, update, evaluation and
+// observers.
 
 #include "worlds/landmarks/problem.hpp"
 #include "slam/trial/workspace.hpp"

@@ -1,4 +1,4 @@
-#include <credence/own_keys.hpp>
+#include <credence/detail/own_keys.hpp>
 
 #include <credence/text.hpp>
 

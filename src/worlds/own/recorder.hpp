@@ -2,7 +2,7 @@
 // A trial of a user's own world that records its trajectory.
 
 #include <credence/own_trial.hpp>
-#include <credence/trajectory.hpp>
+#include <credence/detail/trajectory.hpp>
 #include "scenario/state_series.hpp"
 
 #include <functional>

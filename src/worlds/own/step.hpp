@@ -40,8 +40,6 @@ struct RecordShape {
     std::vector<int> declared;       ///< [trials] steps of each trial by the dataset `steps`; empty without it
     int longest = 0;                 ///< steps of the longest trial, by its errors
 
-    // Of a record of version 2.
-    int version = 1;
     std::vector<Component> components;   ///< [n] names and units; empty: x0, x1 ... without a unit
     std::vector<GroupSource> sources;    ///< [groups]; empty: all `joint`
     /// [groups] of the types in the file, where a group has a covariance of its own.
@@ -93,7 +91,7 @@ struct CheckedStep {
     Eigen::MatrixXd S;       ///< [rows, rows], symmetric
     std::string broken;      ///< such as `the covariance is not finite`
 
-    // Of a record of version 2. Components that are not in the state are 0 in e and P.
+    // Components that are not in the state are 0 in e and P.
     std::vector<char> here;             ///< [n] whether the component is in the state; empty: all are
     std::vector<Eigen::MatrixXd> own;   ///< [groups] a group's own covariance
     std::vector<double> nees;           ///< [groups] a group's NEES as given; NaN where it has none at this step
@@ -101,11 +99,6 @@ struct CheckedStep {
     /// Whether all components of the group are in the state.
     bool whole(const ComponentGroup& group) const;
 };
-
-/// Reads a step. It is broken where its error is NaN and its covariance is not, or where some of its error, of its
-/// covariance, of an observed row of its innovation or of that row's covariance is not finite. Throws hdf5::Error,
-/// naming dataset, trial and step, where a covariance is not symmetric.
-Presence check_step(const RecordStep& step, const RecordShape& shape, CheckedStep& checked);
 
 /// What of a step is beyond the bound at which a trial counts as diverged, as in a study: its error or its covariance.
 /// Empty where nothing is.

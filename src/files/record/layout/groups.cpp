@@ -1,8 +1,7 @@
 #include "files/record/layout/groups.hpp"
 
-#include <credence/scenario.hpp>
+#include <credence/detail/scenario.hpp>
 #include <credence/text.hpp>
-
 
 #include <algorithm>
 
@@ -13,31 +12,7 @@ namespace {
 using hdf5::Error;
 
 constexpr std::size_t most_groups = 1000;
-const std::string example = "Write the blocks as NAME FIRST:END, counted from 0 and END not included, such as "
-                            "`pose 0:3, feature_1 3:5` for components 0, 1, 2 and 3, 4";
-
 std::string quoted(const std::string& text) { return "`" + printable(text) + "`"; }
-
-/// One `NAME FIRST:END`.
-ComponentGroup parse_block(const std::string& entry, int n, const std::string& place) {
-    const std::size_t space = entry.find_first_of(" \t\r\n"), colon = entry.find(':');
-    if (space == std::string::npos || colon == std::string::npos || colon < space)
-        throw Error(place, "broken entry " + quoted(entry), example);
-    const std::string name = entry.substr(0, space);
-    const auto first = to_integer(trimmed(entry.substr(space, colon - space)));
-    const auto end = to_integer(trimmed(entry.substr(colon + 1)));
-    if (!first || !end) throw Error(place, "broken entry " + quoted(entry), example);
-    if (!names_something(name))
-        throw Error(place, quoted(name) + " is no name for a block", "Use letters, digits, _ and -");
-    if (name == "all")
-        throw Error(place, "`all` cannot name a block, because it stands for the whole state",
-                    "Leave that block out: the whole state is judged anyway");
-    if (*first < 0 || *end <= *first) throw Error(place, quoted(entry) + " has no components", example);
-    if (*end > n)
-        throw Error(place, quoted(entry) + " ends beyond the " + std::to_string(n) + " components of the state",
-                    example);
-    return {name, static_cast<int>(*first), static_cast<int>(*end - *first)};
-}
 
 /// What a list is of, for messages.
 struct Listed {
@@ -124,19 +99,6 @@ ComponentGroup group_of(const std::string& name, std::vector<int> members) {
     return group;
 }
 
-std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place) {
-    std::vector<ComponentGroup> groups{{"all", 0, n}};
-    for (const std::string& entry : split_list(text)) {
-        const ComponentGroup group = parse_block(entry, n, place);
-        if (std::ranges::find(groups, group.name, &ComponentGroup::name) != groups.end())
-            throw Error(place, "names two blocks " + quoted(group.name), "Give each block a name of its own");
-        if (groups.size() > most_groups)
-            throw Error(place, "has more than " + std::to_string(most_groups) + " blocks", "Leave some out");
-        groups.push_back(group);
-    }
-    return groups;
-}
-
 void require_group_name(const std::string& name, const std::string& what, const std::string& place) {
     if (!names_something(name))
         throw Error(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
@@ -163,21 +125,15 @@ std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const 
     return groups;
 }
 
-std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n) {
-    const std::string name = "blocks", place = record_attribute_place(name);
-    if (source.has_attribute(name)) return parse_blocks(source.text(name), n, place);
-    if (source.has(name) || source.has_attribute(name, "error"))
-        throw Error(place, "is missing, but there is a `blocks` elsewhere", "Make it an attribute of the root, `/`");
-    return parse_blocks("", n, place);
-}
-
 std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
-    const bool groups = source.has_attribute("groups"), blocks = source.has_attribute("blocks");
-    const std::string place = record_attribute_place(groups || !blocks ? "groups" : "blocks");
-    if (groups && blocks) throw Error(place, "is there, and `blocks` too", "Write one of them");
-    if (source.has("groups") && !groups)
+    const std::string name = "groups", place = record_attribute_place(name);
+    if (source.has_attribute(name)) return parse_groups(source.list(name), n, place);
+    if (source.has(name))
         throw Error(place, "is missing, but there is a `groups` elsewhere", "Make it an attribute of the root, `/`");
-    return parse_groups(groups || blocks ? source.list(groups ? "groups" : "blocks") : ListEntries(), n, place);
+    if (source.has_attribute("blocks"))
+        throw Error(record_attribute_place("blocks"), "is of a record of release 0.2 or earlier",
+                    "Write it as the attribute `groups`");
+    return parse_groups({}, n, place);
 }
 
 std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults) {

@@ -9,11 +9,8 @@
 
 namespace credence {
 
-/// The whole state as `all`, then the component groups of version 1, such as `pose 0:3, feature_1 3:5`, of a state of n
-/// components. Throws hdf5::Error at `place`, as all functions here.
-std::vector<ComponentGroup> parse_blocks(const std::string& text, int n, const std::string& place);
-
-/// The same for version 2: `position 0 2, velocity 1 3, heading 4`, with ranges such as `0:3` between them.
+/// The whole state as `all`, then the component groups, such as `position 0 2, velocity 1 3, heading 4`, with ranges
+/// such as `0:3` between them, of a state of n components. Throws hdf5::Error at `place`, as all functions here.
 std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place);
 
 /// A group of one component or more: contiguous where they are so, and in order.
@@ -22,10 +19,8 @@ ComponentGroup group_of(const std::string& name, std::vector<int> members);
 /// Groups of the m rows of an innovation, such as `gps 0:3, baro 3`.
 std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const std::string& place);
 
-/// The component groups of a record: of the attribute `groups`, or of `blocks` as earlier records call it.
+/// The component groups of a record, of the attribute `groups`.
 std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);
-/// Those of version 1, of the attribute `blocks`.
-std::vector<ComponentGroup> read_blocks(const RecordSource& source, int n);
 
 /// Names and units of the n components by the attributes `component_names` and `component_units`; without both,
 /// `defaults` (n, or empty). Without names they are those of `defaults`, or x0, x1 ...; of names without units, the

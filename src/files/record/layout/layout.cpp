@@ -1,4 +1,4 @@
-// Which datasets a record has, of either version.
+// Which datasets a record has.
 
 #include "files/record/layout/layout.hpp"
 
@@ -42,15 +42,14 @@ void set_state(const PlacedExtents& error, RecordLayout& layout) {
 
 namespace {
 
-/// The root attribute `record_version`; 1 without it.
-int read_version(const RecordSource& source) {
+/// Throws unless the root attribute `record_version` is 2, or missing.
+void check_version(const RecordSource& source) {
     const std::string name = "record_version", place = record_attribute_place(name);
-    if (!source.has_attribute(name)) return 1;
+    if (!source.has_attribute(name)) return;
     const std::optional<double> version = source.number(name);
     if (!version) throw Error(place, "is not one number", "Write 2");
-    if (*version != 1 && *version != 2)
+    if (*version != 2)
         throw Error(place, "is " + to_text(*version), "Write 2, or use a newer credence if there is such a version");
-    return static_cast<int>(*version);
 }
 
 void open_innovations(const RecordSource& source, RecordDatasets& data) {
@@ -70,30 +69,12 @@ void add_innovations(const RecordSource& source, const PlacedExtents& leading, R
     shape.m = static_cast<int>(innovation.extents.back());
     shape.innovation_epsilon = data.innovation_covariance->epsilon();
     const std::string name = "row_groups";
-    if (shape.version == 2 && source.has_attribute(name))
+    if (source.has_attribute(name))
         shape.row_groups = parse_row_groups(source.list(name), shape.m, record_attribute_place(name));
 }
 
-RecordLayout open_version_1(const RecordSource& source) {
+RecordLayout open_datasets(const RecordSource& source) {
     RecordLayout layout;
-    RecordDatasets& data = layout.data;
-    data.error = source.open("error");
-    data.covariance = source.open("covariance");
-    open_innovations(source, data);
-    const PlacedExtents error = placed(*data.error);
-    require_squares(error, *data.covariance, "error", "covariance");
-    set_state(error, layout);
-    layout.shape.groups = read_blocks(source, layout.shape.n);
-    data.own.resize(layout.shape.groups.size());
-    layout.shape.covariance_epsilon = data.covariance->epsilon();
-    add_innovations(source, error, layout);
-    add_steps(source, layout.shape);
-    return layout;
-}
-
-RecordLayout open_version_2(const RecordSource& source) {
-    RecordLayout layout;
-    layout.shape.version = 2;
     open_innovations(source, layout.data);
     PlacedExtents leading = open_errors(source, layout.data);
     layout.shape.has_errors = !leading.extents.empty();
@@ -121,7 +102,8 @@ void require_room(const RecordShape& shape) {
 }  // namespace
 
 RecordLayout open_record(const RecordSource& source) {
-    RecordLayout layout = read_version(source) == 1 ? open_version_1(source) : open_version_2(source);
+    check_version(source);
+    RecordLayout layout = open_datasets(source);
     require_room(layout.shape);
     return layout;
 }

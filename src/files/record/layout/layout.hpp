@@ -30,7 +30,7 @@ struct RecordLayout {
     RecordDatasets data;
 };
 
-/// Opens the datasets of a record of either version and checks that they fit together. Throws hdf5::Error.
+/// Opens the datasets of a record and checks that they fit together. Throws hdf5::Error.
 RecordLayout open_record(const RecordSource& source);
 
 }  // namespace credence

@@ -27,7 +27,7 @@ int open_nees(const RecordSource& source, const std::string& path, std::size_t b
 
 /// Opens `error`, or `truth` and `estimate`. Returns its extents [..., n], empty without errors.
 PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data);
-/// A record of version 2 with errors.
+/// A record with errors.
 void open_states(const RecordSource& source, const PlacedExtents& error, RecordLayout& layout);
 /// One of NEES alone: /nees, and /group/NAME/nees of groups that need not be named elsewhere. Returns the extents that
 /// an error of one component would have.

@@ -1,4 +1,4 @@
-// The datasets of a record of version 2 that has errors.
+// The datasets of a record that has errors.
 
 #include <algorithm>
 

@@ -38,7 +38,7 @@ struct Range {
     bool known = false;
 
     void include(double value);
-    /// A scale a little wider than the range; logarithmic where all is positive and high/low above `decades_from`.
+    /// A scale a little wider than the range; logarithmic if all is positive and high/low is above `logarithmic_from`.
     Scale scale(double from, double to, double logarithmic_from) const;
 };
 
