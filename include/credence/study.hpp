@@ -24,7 +24,7 @@ struct Study {
     std::vector<ScenarioResults> scenarios;
     std::int64_t trials = 0;            ///< of each scenario that were asked for
     bool complete = true;               ///< every scenario has all of them
-    /// The releases that computed trials of it, such as `credence 0.3.0, git revision 1a2b3c4`.
+    /// The releases that computed trials of it, such as `credence 0.3.0, git revision 1a2b3c4`; empty if not known.
     std::vector<std::string> computed_by{};
 };
 

@@ -144,6 +144,7 @@ Study StoredRun::stored(const StudyDefinition& asked) const {
 
 void StoredRun::read_file(const StudyDefinition& asked) {
     study_ = stored(asked);
+    if (study_.computed_by.empty()) study_.computed_by = {unknown_release};
     in_file_ = Contents::of(study_);
 }
 

@@ -3,6 +3,7 @@
 
 #include "report/compare/compare.hpp"
 #include "files/merge/merge.hpp"
+#include <credence/detail/worlds.hpp>
 #include <credence/report.hpp>
 #include "study/stopping.hpp"
 #include "report/watch/watch.hpp"

@@ -75,8 +75,8 @@ const std::vector<Damage> value_damages{
 };
 
 const std::vector<Damage> shape_damages{
-    {"/error: is missing. A record holds `error` [trial, step, n] and", [](auto& r) { remove(r, "error"); }},
-    {"/covariance: is missing. A record holds", [](auto& r) { remove(r, "covariance"); }},
+    {"/error: is missing. Write `error` [trial, step, n], `truth` and `estimate`", [](auto& r) { remove(r, "error"); }},
+    {"/covariance: is missing. Write it as [trial, step, n, n], or as", [](auto& r) { remove(r, "covariance"); }},
     {"/innovation: is missing, but /innovation_covariance is there. Write both, or neither",
      [](auto& r) { remove(r, "innovation"); }},
     {"/innovation_covariance: is missing, but /innovation is there",
@@ -92,7 +92,7 @@ const std::vector<Damage> shape_damages{
     {"/covariance: does not fit: it is [3, 4, 2, 3] and /error [3, 4, 2]. Write error as [trial, step, size] and",
      extents("covariance", {3, 4, 2, 3})},
     {"/covariance: does not fit: it is [4, 2, 2] and /error [3, 4, 2]", extents("covariance", {4, 2, 2})},
-    {"/covariance: does not fit: it is [12] and /error [12]", extents("error", {12}, "covariance", {12})},
+    {"/error: is [12]. Write it as [trial, step, n]", extents("error", {12}, "covariance", {12})},
     {"/error: is [12]. Write it as [trial, step, n]", extents("error", {12}, "covariance", {12, 12})},
     {"/error: is [1, 3, 4, 2]. Write it", extents("error", {1, 3, 4, 2}, "covariance", {1, 3, 4, 2, 2})},
     {"/innovation: does not fit: it is [2, 4, 2] and /error [3, 4, 2]. Write it as [trial, step, row], with NaN",
@@ -156,7 +156,7 @@ const std::vector<Damage> group_damages{
     {"/@groups: broken entry `a 0:1 b 1:2`", groups("a 0:1 b 1:2")},
     {"/@groups: broken entry ``", groups("a 0:1,")},
     {"/@groups: broken entry `a x:1`", groups("a x:1")},
-    {"/@groups: broken entry `a\\u001b[31m 0;1`", groups("a\x1b[31m 0;1")},
+    {"/@groups: `a\\u001b[31m` is no name for a group", groups("a\x1b[31m 0;1")},
     {"/@groups: `f(1)` is no name for a group. Use letters, digits, _ and -", groups("f(1) 0:1")},
     {"/@groups: `all` cannot name a group", groups("all 0:2")},
     {"/@groups: names two groups `a`", groups("a 0:1, a 1:2")},

@@ -8,6 +8,7 @@
 #include "results_format_page.hpp"
 #include "store_study.hpp"
 
+#include <credence/detail/worlds.hpp>
 #include <credence/ini.hpp>
 
 #include <algorithm>

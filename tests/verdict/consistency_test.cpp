@@ -34,7 +34,7 @@ double ratio(const Evidence& evidence, const std::string& group) {
     return 0;
 }
 
-bool has(const Consistency& consistency, const std::string& what, const std::string& where) {
+bool has(const Consistency& consistency, Fault what, const std::string& where) {
     return std::any_of(consistency.findings.begin(), consistency.findings.end(),
                        [&](const Finding& f) { return f.what == what && f.where == where; });
 }
@@ -86,8 +86,8 @@ TEST_CASE("consistency: assuming 0.8 of the measurement noise, a filter is optim
     CHECK(ratio(evidence, "all") == Approx(1.382).margin(0.02));
     CHECK(ratio(evidence, "pose") == Approx(0.99).margin(0.05));
     CHECK(ratio(evidence, "feature_1") == Approx(1.165).margin(0.04));
-    CHECK(has(c, "optimistic", "all"));
-    CHECK_FALSE(has(c, "optimistic", "pose"));
+    CHECK(has(c, Fault::optimistic, "all"));
+    CHECK_FALSE(has(c, Fault::optimistic, "pose"));
 }
 
 TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic", "[long]") {
@@ -97,7 +97,7 @@ TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic
     const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "pessimistic");
     CHECK(ratio(evidence, "all") == Approx(1 / 1.1).margin(0.006));
-    CHECK(has(c, "pessimistic", "all"));
+    CHECK(has(c, Fault::pessimistic, "all"));
 }
 
 TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") {
@@ -110,8 +110,8 @@ TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") 
     const Consistency c = judge(evidence, 0.05);
     CHECK(verdict_name(c.verdict) == "mixed");
     CHECK(ratio(evidence, "all") == Approx(0.97).margin(0.04));
-    CHECK(has(c, "optimistic", "pose"));
-    CHECK(has(c, "pessimistic", "features"));
+    CHECK(has(c, Fault::optimistic, "pose"));
+    CHECK(has(c, Fault::pessimistic, "features"));
 }
 
 TEST_CASE("consistency: a bias of one component is found and named, and keeps a filter from being consistent",

@@ -62,7 +62,8 @@ std::string record_attribute_place(const std::string& name, const std::string& p
 
 ListEntries list_entries(const std::string& text) {
     ListEntries entries;
-    for (const std::string& entry : split_list(text)) {
+    for (std::string& entry : split_list(text)) {
+        std::ranges::replace_if(entry, [](char c) { return c == '\t' || c == '\r' || c == '\n'; }, ' ');
         std::vector<std::string>& words = entries.emplace_back();
         for (std::string& word : split_list(entry, ' '))
             if (!word.empty()) words.push_back(std::move(word));

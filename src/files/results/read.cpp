@@ -194,7 +194,8 @@ void check_header(const Handle& root) {
     throw Error("/@schema_version",
                 "is " + std::to_string(version) + ", this program's is " + std::to_string(schema_version) +
                     (release.empty() ? "" : "; the file was made by release " + printable(release)),
-                "Report it with that release, or run the study again");
+                std::string("Report it with ") + (release.empty() ? "the release that made it" : "that release") +
+                    ", or run the study again");
 }
 
 /// Whether every trial that was asked for is present. Throws where the file says so but some are missing.
@@ -207,14 +208,16 @@ bool read_complete(const Handle& root, const Study& study) {
     return complete == 1;
 }
 
-/// If the file does not name the releases that computed its trials, it was the one that wrote the file.
+/// If the file does not name the releases that computed its trials, it was the one that wrote the file; empty if it
+/// does not say which that was.
 std::vector<std::string> computed_by(const RunFacts& run) {
     const auto fact = [&](const std::string& name) {
         const auto found = std::find_if(run.begin(), run.end(), [&](const auto& one) { return one.first == name; });
         return found == run.end() ? "" : found->second;
     };
     if (const std::string releases = fact(computed_by_fact); !releases.empty()) return split_list(releases, '\n');
-    return {fact(version_fact).empty() ? unknown_release : release_name(fact(version_fact), fact(revision_fact))};
+    if (fact(version_fact).empty()) return {};
+    return {release_name(fact(version_fact), fact(revision_fact))};
 }
 
 StoredStudy read_study(const Opened& source) {
