@@ -73,7 +73,7 @@ inline std::vector<std::vector<double>> trial_values(const double* draws, const 
 inline void add_trial(const std::vector<std::vector<double>>& values, const std::vector<Series>& figures,
                       ArmResults& arm) {
     for (std::size_t f = 0; f < figures.size(); ++f) {
-        SeriesTotals& totals = arm.totals[f];
+        SeriesTotals& totals = arm.totals.series[f];
         double run = 0;
         for (std::size_t k = 0; k < steps; ++k) {
             const double value = values[k][f];
@@ -88,9 +88,10 @@ inline void add_trial(const std::vector<std::vector<double>>& values, const std:
     }
     for (std::size_t k = 0; k < steps; ++k) {
         arm.nees.push_back(values[k][0]);
-        ++arm.cells[k * distribution_cells + static_cast<std::size_t>(equiprobable_cells(n)->cell(values[k][0]))];
+        ++arm.totals
+              .cells[k * distribution_cells + static_cast<std::size_t>(equiprobable_cells(n)->cell(values[k][0]))];
     }
-    ++arm.counted;
+    ++arm.totals.trials.counted();
 }
 
 inline void add_products(const double* innovations, ProductTotals& products) {
@@ -112,18 +113,18 @@ inline ScenarioResults results(double claimed) {
     ArmResults arm;
     for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
     for (const Series& figure : results.all_series)
-        arm.totals.push_back(
+        arm.totals.series.push_back(
             {std::vector<ExactSum>(steps),
              std::vector<ExactSum>(figure.integer ? 0 : steps),
              {},
              {},
              std::vector<std::int64_t>(figure.role == SeriesRole::nees ? steps * coverage_level_count : 0)});
-    arm.cells.resize(steps * distribution_cells);
-    arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
+    arm.totals.cells.resize(steps * distribution_cells);
+    arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     for (std::size_t i = 0; i < trials; ++i) {
         const double* seen = innovations.data() + i * steps * rows;
         add_trial(trial_values(draws.data() + i * steps * n, seen, claimed), results.all_series, arm);
-        add_products(seen, arm.products);
+        add_products(seen, arm.totals.products);
     }
     for (std::size_t i = 0; i < draws.size(); ++i)
         arm.errors.push_back(draws[i] * expected()["sigma"][i / n % steps].get<double>());

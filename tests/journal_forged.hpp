@@ -63,8 +63,8 @@ struct Made {
         put_bytes(path + ".journal", bytes);
         const std::string watched = refusal<InputError>([&] { RunWatch(path).snapshot(); }),
                           text = refused(path, asked);
-        // A program that only reads it refuses it too.
-        if (!text.empty()) CHECK(watched.starts_with(path + ".journal: is damaged: "));
+        // A program that only reads it refuses it too, but for what is in the values, which it does not read.
+        if (!text.empty() && !says(text, "unknown status")) CHECK(watched.starts_with(path + ".journal: is damaged: "));
         std::filesystem::remove(path);
         return text;
     }

@@ -127,7 +127,7 @@ inline std::size_t series_named(const Record& record, const std::string& name) {
 }
 
 inline const SeriesTotals& totals_named(const Record& record, const std::string& name) {
-    return record.results.arms.front().totals[series_named(record, name)];
+    return record.results.arms.front().totals.series[series_named(record, name)];
 }
 
 /// What reading the record says, of which every message must name its place.

@@ -64,7 +64,6 @@ inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {s
     for (ScenarioResults& results : study.scenarios) {
         extend(results, 5);
         for (ArmResults& arm : results.arms) {
-            arm.counted = 4;
             for (std::size_t c = 0; c < results.columns.size(); ++c)
                 for (std::size_t i = 0; i < 5; ++i) {
                     const bool real = results.columns[c].type == ColumnType::real;
@@ -76,27 +75,28 @@ inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {s
             std::size_t next = 0;
             for (std::size_t f = 0; f < results.all_series.size(); ++f) {
                 const bool integer = results.all_series[f].integer;
-                for (ExactSum& sum : arm.totals[f].sum) {
+                for (ExactSum& sum : arm.totals.series[f].sum) {
                     sum = integer ? ExactSum::from_parts({0x1p60, 1, -static_cast<double>(next)}) : awkward_sum(next);
                     ++next;
                 }
-                for (ExactSum& sum : arm.totals[f].square_sum) sum = awkward_sum(next++);
-                arm.totals[f].run_square_sum = awkward_sum(next++);
-                for (std::size_t i = 0; i < arm.totals[f].covered.size(); ++i)
-                    arm.totals[f].covered[i] = static_cast<std::int64_t>(1 + i % 4);
+                for (ExactSum& sum : arm.totals.series[f].square_sum) sum = awkward_sum(next++);
+                arm.totals.series[f].run_square_sum = awkward_sum(next++);
+                for (std::size_t i = 0; i < arm.totals.series[f].covered.size(); ++i)
+                    arm.totals.series[f].covered[i] = static_cast<std::int64_t>(1 + i % 4);
             }
             for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k)
-                arm.cells[k * distribution_cells + 17 * k] = arm.counted;
-            for (std::size_t lag = 0; lag < arm.products.sum.size(); ++lag) {
-                arm.products.sum[lag] = awkward_sum(next++);
-                arm.products.square_sum[lag] = awkward_sum(next++);
-                arm.products.count[lag] = static_cast<std::int64_t>(lag) << 40;
+                arm.totals.cells[k * distribution_cells + 17 * k] = 4;
+            for (std::size_t lag = 0; lag < arm.totals.products.sum.size(); ++lag) {
+                arm.totals.products.sum[lag] = awkward_sum(next++);
+                arm.totals.products.square_sum[lag] = awkward_sum(next++);
+                arm.totals.products.count[lag] = static_cast<std::int64_t>(lag) << 40;
             }
             for (std::size_t i = 0; i < arm.errors.size(); ++i)
                 arm.errors[i] = i % 7 == 3 ? -NAN : 0.25 * static_cast<double>(i);
             for (std::size_t i = 0; i < arm.nees.size(); ++i)
                 arm.nees[i] = i % 5 == 2 ? NAN : 0.125 * static_cast<double>(i);
         }
+        recount(results);
     }
     return study;
 }

@@ -25,7 +25,7 @@ bool same_moments(const ExactMoments& a, const ExactMoments& b) {
     return a.count == b.count && same_sums({a.sum, a.square_sum}, {b.sum, b.square_sum});
 }
 
-bool same_aggregates(const ArmAggregates& a, const ArmAggregates& b) {
+bool same_trials(const TrialTotals& a, const TrialTotals& b) {
     if (a.statuses != b.statuses || a.columns.size() != b.columns.size()) return false;
     if (!std::equal(a.columns.begin(), a.columns.end(), b.columns.begin(), same_moments)) return false;
     for (std::size_t arm = 0; arm < a.differences.size(); ++arm)
@@ -38,24 +38,29 @@ bool same_aggregates(const ArmAggregates& a, const ArmAggregates& b) {
 }
 
 bool same_columns(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm) {
-    if (a.keep == Keep::aggregates) return same_aggregates(a.arms[arm].aggregates, b.arms[arm].aggregates);
+    if (a.keep == Keep::aggregates) return true;
     for (std::size_t c = 0; c < a.columns.size(); ++c)
         if (!same_bits(column_values(a, a.arms[arm], c), column_values(b, b.arms[arm], c))) return false;
     return true;
 }
 
-bool same_arm(const ArmResults& a, const ArmResults& b) {
-    if (a.name != b.name || a.counted != b.counted) return false;
-    for (std::size_t f = 0; f < a.totals.size(); ++f)
-        if (!same_sums(a.totals[f].sum, b.totals[f].sum) ||
-            !same_sums(a.totals[f].square_sum, b.totals[f].square_sum) ||
-            !same_bits(a.totals[f].run_square_sum.parts(), b.totals[f].run_square_sum.parts()))
+bool same_series(const std::vector<SeriesTotals>& a, const std::vector<SeriesTotals>& b) {
+    for (std::size_t f = 0; f < a.size(); ++f)
+        if (!same_sums(a[f].sum, b[f].sum) || !same_sums(a[f].square_sum, b[f].square_sum) ||
+            !same_bits(a[f].run_square_sum.parts(), b[f].run_square_sum.parts()) || a[f].covered != b[f].covered)
             return false;
-    for (std::size_t f = 0; f < a.totals.size(); ++f)
-        if (a.totals[f].covered != b.totals[f].covered) return false;
-    return a.cells == b.cells && same_sums(a.products.sum, b.products.sum) &&
-           same_sums(a.products.square_sum, b.products.square_sum) && a.products.count == b.products.count &&
-           same_bits(a.errors, b.errors) && same_bits(a.nees, b.nees);
+    return true;
+}
+
+bool same_totals(const Totals& a, const Totals& b) {
+    return same_trials(a.trials, b.trials) && same_series(a.series, b.series) && a.cells == b.cells &&
+           same_sums(a.products.sum, b.products.sum) && same_sums(a.products.square_sum, b.products.square_sum) &&
+           a.products.count == b.products.count;
+}
+
+bool same_arm(const ArmResults& a, const ArmResults& b) {
+    return a.name == b.name && same_totals(a.totals, b.totals) && same_bits(a.errors, b.errors) &&
+           same_bits(a.nees, b.nees);
 }
 
 }  // namespace

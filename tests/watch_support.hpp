@@ -18,6 +18,13 @@ inline void check_same(const Moments& moments, const Summary& expected) {
     CHECK(t_interval(moments).low == Approx(expected.ci95.low).epsilon(1e-12).margin(1e-15));
 }
 
+/// Those of the pairs that have both values.
+inline std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
+    return differences;  // of others they are NaN
+}
+
 inline std::vector<double> trace_of(const ScenarioResults& results, const ArmResults& arm) {
     return figure_values(results, arm, column_trace_P);
 }
@@ -36,7 +43,7 @@ inline void check_says(const Snapshot& snapshot, const Study& study) {
         for (std::size_t a = 0; a < results.arms.size(); ++a) {
             const WatchedArm& arm = scenario.arms[a];
             CAPTURE(scenario.name, arm.name);
-            CHECK(arm.failed == results.trials - results.arms[a].counted);
+            CHECK(arm.failed == results.trials - results.arms[a].totals.trials.counted());
             for (std::size_t f = 0; f < arm.columns.size(); ++f)
                 check_same(arm.columns[f],
                            summarise(figure_values(results, results.arms[a], watched_columns(results.columns)[f])));

@@ -30,7 +30,7 @@ struct Summary {
     double standard_deviation = 0;  ///< with count - 1
 };
 
-/// Values that are NaN are left out. The mean is the exact sum, rounded, over the count.
+/// Of values; those that are NaN are left out. Mean and spread are those of their exact sums [moments_of].
 Summary summarise(std::vector<double> values);
 
 /// Quantile of type 7 [Hyndman and Fan 1996] of values without NaN, 0 <= p <= 1; reorders them. NaN for no values.
@@ -38,9 +38,6 @@ double quantile(std::vector<double>& values, double p);
 
 /// Share of values below `x`, ties counted half (mid-rank), in percent. NaN values are left out.
 double percentile_of(const std::vector<double>& values, double x);
-
-/// Differences a - b of the pairs in which neither is NaN.
-std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Mean and spread from sums alone: of `count` values with sum and sum of squares.
 struct Moments {

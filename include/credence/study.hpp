@@ -1,6 +1,7 @@
 #pragma once
 // Module study: the study: scenarios with their arms, which blocks to run, and how.
 
+#include <credence/detail/block.hpp>
 #include <credence/detail/results.hpp>
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 namespace credence {
 
 /// Version of the layout of results files. A file of another version is refused.
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 /// Version of draws, columns and series.
 inline constexpr int draws_version = 2;
 

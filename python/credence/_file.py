@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
 Source = str | os.PathLike[str] | BinaryIO
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 RESULTS, TRAJECTORIES = "credence results", "credence trajectories"
 
 

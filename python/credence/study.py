@@ -217,7 +217,7 @@ def open(source: Source) -> Study:
     Parameters
     ----------
     source : path or binary file
-        What ``credence run -o`` wrote, of schema version 3; or an open file, such as io.BytesIO.
+        What ``credence run -o`` wrote, of schema version 4; or an open file, such as io.BytesIO.
 
     Returns
     -------

@@ -174,8 +174,8 @@ def test_what_cannot_be_read_is_refused(tmp_path):
     with pytest.raises(ValueError, match="format=none"):
         credence.open(tmp_path / "other.h5")
     newer = studies.edited(studies.one_scenario(), tmp_path / "new.h5",
-                           lambda file: file.attrs.modify("schema_version", np.int32(4)))
-    with pytest.raises(ValueError, match="schema_version=4 \\(this package reads 3\\)"):
+                           lambda file: file.attrs.modify("schema_version", np.int32(5)))
+    with pytest.raises(ValueError, match="schema_version=5 \\(this package reads 4\\)"):
         credence.open(newer)
 
 

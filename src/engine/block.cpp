@@ -220,12 +220,6 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
 
 }  // namespace
 
-std::int64_t block_count(std::int64_t trials) { return (trials + block_size - 1) / block_size; }
-
-int trials_in_block(std::int64_t trials, std::int64_t index) {
-    return static_cast<int>(std::min<std::int64_t>(block_size, trials - index * block_size));
-}
-
 bool detailed(const SimulationShape& shape, std::int64_t index) {
     static_assert(block_size == 256, "detailed_trials counts whole blocks");
     return index < detailed_trials(shape.poses - 1, shape.state_size) / block_size;

@@ -2,7 +2,6 @@
 
 #include <credence/error.hpp>
 
-#include "files/results/agreement.hpp"
 #include "files/results/links.hpp"
 #include "files/journal/journal.hpp"
 #include "files/system/system_file.hpp"
@@ -138,7 +137,6 @@ Study StoredRun::stored(const StudyDefinition& asked) const {
     check_same_study(
         definition_of(study), asked, output_.path,
         journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
-    check_agreement(study, output_.path);
     return study;
 }
 

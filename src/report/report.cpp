@@ -27,36 +27,29 @@ std::optional<PublishedPlace> place_of(const std::optional<std::vector<Published
 /// NEES and NIS ratios have tests of their own.
 bool has_bootstrap(const std::string& column) { return column != "nees_ratio" && column != "nis_ratio"; }
 
-/// A column's report from totals: mean and spread are known, the distribution is not.
-ColumnReport aggregate_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c) {
-    const Column& column = results.columns[c];
-    ColumnReport report{column.name, column.unit, summary_of(aggregate_moments(arm, c)),
-                        std::vector<double>(std::size(reported_quantiles), nan), std::nullopt,
-                        place_of(published_for(results.scenario, column.name), arm.name, {}), std::nullopt};
-    if (has_bootstrap(column.name)) report.bootstrap95 = Interval{nan, nan};
-    return report;
-}
-
+/// Without the trials the distribution is not known.
 ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm, std::size_t c,
                            std::uint64_t root_seed) {
     const Column& column = results.columns[c];
-    if (results.keep == Keep::aggregates) return aggregate_report(results, arm, c);
-    std::vector<double> values = figure_values(results, arm, c);
+    const bool trials = results.keep == Keep::trials;
+    std::vector<double> values = trials ? figure_values(results, arm, c) : std::vector<double>();
     const auto published = published_for(results.scenario, column.name);
-    ColumnReport report{column.name, column.unit, summarise(values), {}, std::nullopt,
+    ColumnReport report{column.name, column.unit, summary_of(column_moments(arm, c)), {}, std::nullopt,
                         place_of(published, arm.name, values), std::nullopt};
     if (has_bootstrap(column.name))
-        report.bootstrap95 = bootstrap_mean_interval(
-            values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name);
+        report.bootstrap95 = trials ? bootstrap_mean_interval(
+                                          values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name)
+                                    : Interval{nan, nan};
     std::erase_if(values, [](double value) { return std::isnan(value); });
+    report.summary.median = quantile(values, 0.5);
     for (const double p : reported_quantiles) report.quantiles.push_back(quantile(values, p));
-    if (published)
+    if (published && trials)
         report.histogram = histogram(values, column.type == ColumnType::real ? BinWidths::ratio : BinWidths::equal);
     return report;
 }
 
 std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmResults& arm) {
-    const std::vector<std::int64_t> counts = status_counts(results, arm);
+    const std::vector<std::int64_t>& counts = arm.totals.trials.statuses;
     const auto most = std::max_element(counts.begin() + 1, counts.end());  // after `completed`
     if (*most == 0) return std::nullopt;
     FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0,
@@ -109,7 +102,7 @@ Report make_report(const Study& study, const Limits& limits) {
     report.complete = study.complete;
     report.keep = keep_of(study);
     report.limits = limits;
-    report.pairs = planned_against_baselines(study);
+    report.pairs = planned_against_baselines(study.scenarios, study.root_seed);
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         const WithTotals with_totals(results);

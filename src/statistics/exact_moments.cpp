@@ -43,18 +43,17 @@ void ExactMoments::subtract(const ExactMoments& other) {
 }
 
 ExactMoments exact_moments(const std::vector<double>& values) {
-    constexpr std::size_t at_once = 512;  // a superaccumulator takes 1024 numbers, and a square may be two
+    constexpr std::size_t at_once = 1024;  // a superaccumulator takes no more
     ExactMoments moments;
     for (std::size_t first = 0; first < values.size(); first += at_once) {
-        Superaccumulator sum, square_sum;
+        Superaccumulator sums;
         for (std::size_t i = first; i < std::min(values.size(), first + at_once); ++i) {
             if (std::isnan(values[i])) continue;
             ++moments.count;
-            sum.add(values[i]);
-            add_product(square_sum, values[i], values[i]);
+            sums.add(values[i]);
         }
-        moments.sum.add(sum.sum());
-        moments.square_sum.add(square_sum.sum());
+        moments.sum.add(sums.sum());
+        moments.square_sum.add(sums.square_sum());
     }
     return moments;
 }
@@ -62,7 +61,11 @@ ExactMoments exact_moments(const std::vector<double>& values) {
 Moments moments_of(const ExactMoments& values) {
     const auto n = static_cast<double>(values.count);
     if (values.count < 1) return {n, nan, nan, nan};
-    const double mean = values.sum.rounded() / n;
+    double mean = values.sum.rounded() / n;
+    // Two roundings may miss the mean, even that of equal values: what they left is added.
+    ExactSum left = values.sum;
+    add_product(left, -n, mean);
+    mean += left.rounded() / n;
     if (values.count < 2) return {n, mean, nan, nan};
     // No values have a spread below 0: if a damaged file gives one, it must not appear as certainty.
     const double variance = spread_of(values) / n / (n - 1);

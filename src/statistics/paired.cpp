@@ -44,21 +44,6 @@ void test_signed_ranks(std::vector<double> differences, PairedComparison& compar
     comparison.wilcoxon_p = std::erfc(std::abs(comparison.wilcoxon_z) / std::sqrt(2.0));
 }
 
-void count_wins(const std::vector<double>& differences, PairedComparison& comparison) {
-    const double n = static_cast<double>(differences.size());
-    const auto share = [&](auto which) {
-        return static_cast<double>(std::count_if(differences.begin(), differences.end(), which)) / n;
-    };
-    comparison.wins_a = share([](double d) { return d < 0; });
-    comparison.wins_b = share([](double d) { return d > 0; });
-    comparison.ties = share([](double d) { return d == 0; });
-}
-
-double variance(std::vector<double> values) {
-    const double deviation = summarise(std::move(values)).standard_deviation;
-    return deviation * deviation;
-}
-
 }  // namespace
 
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
@@ -72,17 +57,12 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
         paired_a.push_back(a[i]);
         paired_b.push_back(b[i]);
     }
-    PairedComparison comparison;
-    comparison.pairs = static_cast<std::int64_t>(differences.size());
-    comparison.difference = summarise(differences);
+    PairedComparison comparison =
+        compare_totals(differences_of(paired_a, paired_b), exact_moments(paired_a), exact_moments(paired_b));
     comparison.bootstrap95 = bootstrap_mean_interval(by_trial, root_seed, column);
-    count_wins(differences, comparison);
     test_signed_ranks(differences, comparison);
-    const double deviation = comparison.difference.standard_deviation;
-    comparison.effect_size = comparison.difference.mean / deviation;
-    comparison.variance_reduction =
-        (variance(std::move(paired_a)) + variance(std::move(paired_b))) / (deviation * deviation);
     comparison.histogram = histogram(differences, BinWidths::equal);
+    comparison.difference.median = quantile(differences, 0.5);
     return comparison;
 }
 
@@ -95,12 +75,16 @@ PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMomen
     comparison.wins_a = static_cast<double>(totals.below) / static_cast<double>(pairs);
     comparison.wins_b = static_cast<double>(totals.above) / static_cast<double>(pairs);
     comparison.ties = static_cast<double>(pairs - totals.below - totals.above) / static_cast<double>(pairs);
-    const double deviation = comparison.difference.standard_deviation, deviation_a = moments_of(a).standard_deviation,
-                 deviation_b = moments_of(b).standard_deviation;
+    const Moments of_a = moments_of(a), of_b = moments_of(b);
+    const double deviation = comparison.difference.standard_deviation;
     comparison.effect_size = comparison.difference.mean / deviation;
-    if (a.count == pairs && b.count == pairs)
-        comparison.variance_reduction =
-            (deviation_a * deviation_a + deviation_b * deviation_b) / (deviation * deviation);
+    comparison.mean_a = comparison.mean_b = nan;
+    if (a.count != pairs || b.count != pairs) return comparison;
+    comparison.mean_a = of_a.mean;
+    comparison.mean_b = of_b.mean;
+    comparison.variance_reduction = (of_a.standard_deviation * of_a.standard_deviation +
+                                     of_b.standard_deviation * of_b.standard_deviation) /
+                                    (deviation * deviation);
     return comparison;
 }
 

@@ -1,6 +1,6 @@
 #include <credence/statistics.hpp>
 
-#include <credence/detail/exact_sum.hpp>
+#include <credence/detail/exact_moments.hpp>
 
 #include "base/nan.hpp"
 
@@ -15,12 +15,6 @@
 namespace credence {
 
 namespace {
-
-double exact_mean(const std::vector<double>& values) {
-    ExactSum sum;
-    for (const double value : values) sum.add(value);
-    return sum.rounded() / static_cast<double>(values.size());
-}
 
 /// Beyond so many degrees Boost's series end without an answer; a thousand million trials have more.
 constexpr double many_degrees = 1e10;
@@ -55,19 +49,7 @@ double chi_square_upper_quantile(double p, double degrees) {
 
 Summary summarise(std::vector<double> values) {
     std::erase_if(values, [](double value) { return std::isnan(value); });
-    Summary summary{static_cast<std::int64_t>(values.size()), nan, nan, {nan, nan}, nan, nan};
-    if (values.empty()) return summary;
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    summary.mean = *least == *most ? *least : exact_mean(values);  // N x / N may round to another number than x
-    if (values.size() > 1) {
-        double squares = 0;
-        for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
-        const double n = static_cast<double>(values.size());
-        summary.standard_deviation = std::sqrt(squares / (n - 1));
-        summary.standard_error = summary.standard_deviation / std::sqrt(n);
-        const double half = t_quantile(0.05, n - 1) * summary.standard_error;
-        summary.ci95 = {summary.mean - half, summary.mean + half};
-    }
+    Summary summary = summary_of(moments_of(exact_moments(values)));
     summary.median = quantile(values, 0.5);
     return summary;
 }
@@ -93,13 +75,6 @@ double percentile_of(const std::vector<double>& values, double x) {
     return count == 0
                ? nan
                : 100 * (static_cast<double>(below) + 0.5 * static_cast<double>(equal)) / static_cast<double>(count);
-}
-
-std::vector<double> paired_differences(const std::vector<double>& a, const std::vector<double>& b) {
-    std::vector<double> differences;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (!std::isnan(a[i] - b[i])) differences.push_back(a[i] - b[i]);
-    return differences;
 }
 
 Moments moments_from_sums(std::int64_t count, double sum, double square_sum) {

@@ -1,6 +1,7 @@
 // Running a study's blocks on threads.
 
 #include "base/idle_threads.hpp"
+#include "study/block_results.hpp"
 
 #include <credence/error.hpp>
 #include <credence/study.hpp>
@@ -149,17 +150,17 @@ private:
         const Block block = work_[task.scenario].runner.run(study_.root_seed, task.block, trials);
         ScenarioResults& results = study_.scenarios[task.scenario];
         store_columns(results, block);
-        if (finish_task(task, block, block_aggregates(results, block))) commit();
+        if (finish_task(task, block, trial_totals_of(results, block))) commit();
     }
 
     /// Adds the block's totals; returns whether a commit was prepared. Where that throws, such as for want of memory,
     /// the totals and what the keeper has of them are at odds: what other threads still finish is left out, or they
     /// would commit it.
-    bool finish_task(const Task& task, const Block& block, const std::vector<ArmAggregates>& aggregates) {
+    bool finish_task(const Task& task, const Block& block, const std::vector<TrialTotals>& of_trials) {
         const std::lock_guard lock(mutex_);
         if (at_odds_) return false;
         at_odds_ = true;
-        add_totals(study_.scenarios[task.scenario], block, aggregates);
+        add_totals(study_.scenarios[task.scenario], block, of_trials);
         if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
         finished(task);
         report();

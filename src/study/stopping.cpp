@@ -14,22 +14,23 @@ namespace credence {
 
 namespace {
 
-/// The first trials' values.
-std::vector<double> values_of(const StoppingSubject& subject, std::int64_t trials) {
+/// Of the first `trials` trials: from the totals if the study has no more, else from their values.
+Moments moments_of(const StoppingSubject& subject, std::int64_t trials) {
+    const ScenarioResults& results = *subject.results;
+    if (results.trials == trials)
+        return subject.subtracted == nullptr
+                   ? column_moments(*subject.arm, subject.column)
+                   : credence::moments_of(
+                         column_differences(results, *subject.arm, *subject.subtracted, subject.column).difference);
     const auto first_values = [&](const ArmResults& arm) {
-        std::vector<double> values = figure_values(*subject.results, arm, subject.column);
+        std::vector<double> values = figure_values(results, arm, subject.column);
         values.resize(static_cast<std::size_t>(trials));
         return values;
     };
-    if (subject.subtracted == nullptr) return first_values(*subject.arm);
-    return paired_differences(first_values(*subject.arm), first_values(*subject.subtracted));
-}
-
-/// The same for totals, which are of all trials.
-Moments aggregates_of(const StoppingSubject& subject) {
-    if (subject.subtracted == nullptr) return aggregate_moments(*subject.arm, subject.column);
-    return moments_of(
-        aggregate_differences(*subject.results, *subject.arm, *subject.subtracted, subject.column).difference);
+    const std::vector<double> values = first_values(*subject.arm);
+    return credence::moments_of(subject.subtracted == nullptr
+                                    ? exact_moments(values)
+                                    : differences_of(values, first_values(*subject.subtracted)).difference);
 }
 
 std::string name_of(const StoppingSubject& subject) {
@@ -79,7 +80,7 @@ std::vector<std::int64_t> analysis_trials(std::int64_t ceiling, std::int64_t fir
     return analyses;
 }
 
-GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number) {
+GoalState decide(const Moments& moments, const StoppingGoal& goal, int number) {
     GoalState state;
     state.count = static_cast<std::int64_t>(moments.count);
     state.mean = moments.mean;
@@ -87,20 +88,6 @@ GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int numb
     state.half_width = half_width_of(state.standard_deviation, moments.count, number);
     state.allowed = goal.half_width * (goal.kind == WidthKind::relative ? std::abs(state.mean) : 1);
     return state;
-}
-
-GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number) {
-    // In two passes in trial order, without the copy and the median of a summary: an analysis may use 1e7 values each.
-    Moments moments;
-    double squares = 0;
-    for (const double value : values)
-        if (!std::isnan(value)) moments.mean += value, ++moments.count;
-    moments.mean /= moments.count;
-    for (const double value : values)
-        if (!std::isnan(value)) squares += (value - moments.mean) * (value - moments.mean);
-    moments.standard_deviation =
-        moments.count > 1 ? std::sqrt(squares / (moments.count - 1)) : nan;
-    return decide_from(moments, goal, number);
 }
 
 InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>& goals, std::int64_t trials,
@@ -111,9 +98,7 @@ InterimAnalysis analysis_of(const Study& study, const std::vector<StoppingGoal>&
     InterimAnalysis analysis{trials, number, analysis_alpha(number), {}, true};
     for (const StoppingGoal& goal : goals)
         for (const StoppingSubject& subject : subjects_of(goal, study)) {
-            analysis.states.push_back(subject.results->keep == Keep::trials
-                                      ? decide(values_of(subject, trials), goal, number)
-                                      : decide_from(aggregates_of(subject), goal, number));
+            analysis.states.push_back(decide(moments_of(subject, trials), goal, number));
             analysis.states.back().name = name_of(subject);
             analysis.met = analysis.met && analysis.states.back().met();
         }

@@ -80,10 +80,8 @@ double analysis_alpha(int number);
 /// first, 2 first, 4 first ... below the ceiling, and the ceiling itself. Both at least 1.
 std::vector<std::int64_t> analysis_trials(std::int64_t ceiling, std::int64_t first = first_analysis_trials);
 
-/// The interval of a sample's mean, one value a trial, at interim analysis `number`; NaN values are left out. Its name
-/// is not set.
-GoalState decide(const std::vector<double>& values, const StoppingGoal& goal, int number);
-GoalState decide_from(const Moments& moments, const StoppingGoal& goal, int number);
+/// The interval of a sample's mean, one value a trial, at interim analysis `number`. Its name is not set.
+GoalState decide(const Moments& moments, const StoppingGoal& goal, int number);
 
 /// Interim analysis `number` at the first `trials` trials of every scenario; further trials are ignored, but where no
 /// trial is kept there must not be any. Throws as check_goals does; throws std::logic_error if a scenario has fewer

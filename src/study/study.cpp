@@ -1,5 +1,7 @@
 #include <credence/study.hpp>
 
+#include "study/block_results.hpp"
+
 #include <credence/error.hpp>
 
 #include <algorithm>

@@ -31,32 +31,28 @@ std::vector<double> CommonTrials::selected(const std::vector<double>& values, st
 
 namespace {
 
-Comparison compare_aggregates(const ComparedArm& a, const ComparedArm& b) {
-    if (&a.results != &b.results) throw std::logic_error("totals of different files have no pairs");
-    Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
-    for (std::size_t c = 0; c < a.results.columns.size(); ++c)
-        if (const Column& column = a.results.columns[c]; is_reported(column))
-            comparison.columns.push_back({column.name, column.unit,
-                                          compare_totals(aggregate_differences(a.results, a.arm, b.arm, c),
-                                                         a.arm.aggregates.columns[c], b.arm.aggregates.columns[c]),
-                                          0});
-    return comparison;
+PairedComparison compare_column(const ComparedArm& a, const ComparedArm& b, std::size_t c, const CommonTrials& common,
+                                std::uint64_t root_seed, const std::string& key) {
+    if (a.results.keep == Keep::aggregates)
+        return compare_totals(column_differences(a.results, a.arm, b.arm, c), a.arm.totals.trials.columns[c],
+                              b.arm.totals.trials.columns[c]);
+    return compare_paired(common.of_a(figure_values(a.results, a.arm, c)),
+                          common.of_b(figure_values(b.results, b.arm, c)), root_seed, key);
 }
 
 }  // namespace
 
 Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_t root_seed) {
-    if (a.results.keep == Keep::aggregates || b.results.keep == Keep::aggregates) return compare_aggregates(a, b);
+    if ((a.results.keep == Keep::aggregates || b.results.keep == Keep::aggregates) && &a.results != &b.results)
+        throw std::logic_error("totals of different files have no pairs");
     Comparison comparison{a.results.scenario.name, a.label, b.label, {}};
     const CommonTrials common(a.results, b.results);
-    for (std::size_t c = 0; c < a.results.columns.size(); ++c) {
-        const Column& column = a.results.columns[c];
-        if (!is_reported(column)) continue;
-        const std::vector<double> of_a = common.of_a(figure_values(a.results, a.arm, c)),
-                                  of_b = common.of_b(figure_values(b.results, b.arm, c));
-        const std::string key = comparison.scenario + "/" + comparison.name() + "/" + column.name;
-        comparison.columns.push_back({column.name, column.unit, compare_paired(of_a, of_b, root_seed, key), 0});
-    }
+    for (std::size_t c = 0; c < a.results.columns.size(); ++c)
+        if (const Column& column = a.results.columns[c]; is_reported(column)) {
+            const std::string key = comparison.scenario + "/" + comparison.name() + "/" + column.name;
+            comparison.columns.push_back(
+                {column.name, column.unit, compare_column(a, b, c, common, root_seed, key), 0});
+        }
     return comparison;
 }
 
@@ -70,13 +66,14 @@ void correct_together(std::vector<Comparison>& comparisons) {
         for (ComparedColumn& column : comparison.columns) column.holm_p = *next++;
 }
 
-std::vector<Comparison> planned_against_baselines(const Study& study) {
+std::vector<Comparison> planned_against_baselines(const std::vector<ScenarioResults>& scenarios,
+                                                  std::uint64_t root_seed) {
     std::vector<Comparison> comparisons;
-    for (const ScenarioResults& results : study.scenarios)
+    for (const ScenarioResults& results : scenarios)
         for (const ArmResults& arm : results.arms)
             if (const ArmResults* baseline = baseline_of(results, arm))
                 comparisons.push_back(
-                    compare_arms({results, arm, arm.name}, {results, *baseline, baseline->name}, study.root_seed));
+                    compare_arms({results, arm, arm.name}, {results, *baseline, baseline->name}, root_seed));
     correct_together(comparisons);
     return comparisons;
 }

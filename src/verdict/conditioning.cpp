@@ -64,7 +64,7 @@ void leave_out_whole_state(Evidence& evidence) {
 }  // namespace
 
 void add_rounding(const ArmResults& arm, Evidence& evidence) {
-    for (std::size_t g = 0; g < arm.rounding.size(); ++g) evidence.groups[g].rounding = arm.rounding[g];
+    for (std::size_t g = 0; g < arm.totals.rounding.size(); ++g) evidence.groups[g].rounding = arm.totals.rounding[g];
     if (!evidence.moments || !evidence.joint || evidence.moments->components > largest_moment_state) return;
     const Eigen::MatrixXd C = sum_of_covariances(*evidence.moments);
     for (GroupEvidence& group : evidence.groups)

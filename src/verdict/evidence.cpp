@@ -17,7 +17,7 @@ namespace {
 
 const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        if (results.all_series[f].name == name) return &arm.totals[f];
+        if (results.all_series[f].name == name) return &arm.totals.series[f];
     return nullptr;
 }
 
@@ -25,7 +25,7 @@ const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResult
 /// times rows.
 double rows_at(const Series& nis, const SeriesTotals* rows, const ArmResults& arm, std::size_t k) {
     const double counted = rows == nullptr ? 0 : rows->sum[k].rounded();
-    return counted + static_cast<double>(nis.more_rows) * static_cast<double>(arm.counted_at(k));
+    return counted + static_cast<double>(nis.more_rows) * static_cast<double>(arm.totals.counted_at(k));
 }
 
 NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
@@ -34,18 +34,19 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
     NisEvidence evidence{series.part, {}, 0, nan, {nan, nan}, {nan, nan}};
     ExactSum total;
     std::vector<double> totals;
-    for (std::size_t k = 0; k < arm.totals[f].sum.size(); ++k) {
+    for (std::size_t k = 0; k < arm.totals.series[f].sum.size(); ++k) {
         evidence.nis.degrees.push_back(rows_at(series, rows, arm, k));
         evidence.degrees += evidence.nis.degrees.back();
-        totals.push_back(arm.totals[f].sum[k].rounded());
-        total.add(arm.totals[f].sum[k]);
+        totals.push_back(arm.totals.series[f].sum[k].rounded());
+        total.add(arm.totals.series[f].sum[k]);
     }
     fill_bands(totals, evidence.nis);
     if (evidence.degrees > 0) {
         evidence.ratio = total.rounded() / evidence.degrees;
         const Interval band = chi_square_band(evidence.degrees, 0.05);
         evidence.scale95 = {evidence.ratio / band.high, evidence.ratio / band.low};
-        const Moments run = moments_from_sums(arm.counted, total.rounded(), arm.totals[f].run_square_sum.rounded());
+        const Moments run = moments_from_sums(arm.totals.trials.counted(), total.rounded(),
+                                              arm.totals.series[f].run_square_sum.rounded());
         const double rows_a_trial = evidence.degrees / run.count,
                      half = t_quantile(0.05, run.count - 1) * run.standard_error / rows_a_trial;
         evidence.ratio95 = {evidence.ratio - half, evidence.ratio + half};
@@ -55,7 +56,7 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
 
 /// Number of trials whose innovations were correlated: the detailed ones of a study, all of a record.
 double correlated_trials(const ScenarioResults& results, const ArmResults& arm) {
-    if (results.blocks.empty()) return static_cast<double>(arm.counted);
+    if (results.blocks.empty()) return static_cast<double>(arm.totals.trials.counted());
     const auto steps = static_cast<std::size_t>(results.steps());
     double trials = 0;
     for (std::size_t row = 0; row < arm.nees.size(); row += steps) trials += !std::isnan(arm.nees[row]);
@@ -159,13 +160,14 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
 
 DistributionEvidence distribution_evidence(const ScenarioResults& results, const ArmResults& arm) {
     DistributionEvidence evidence;
-    evidence.exact = !arm.distribution_distance.empty();
+    evidence.exact = !arm.totals.distribution_distance.empty();
     for (std::size_t k = 0; k < static_cast<std::size_t>(results.steps()); ++k) {
-        evidence.distance.push_back(evidence.exact ? arm.distribution_distance[k]
-                                    : arm.cells.empty()
-                                        ? nan
-                                        : cell_distance(arm.cells.data() + k * distribution_cells, distribution_cells));
-        const double count = static_cast<double>(arm.counted_at(arm.totals.front(), k));
+        evidence.distance.push_back(
+            evidence.exact ? arm.totals.distribution_distance[k]
+            : arm.totals.cells.empty()
+                ? nan
+                : cell_distance(arm.totals.cells.data() + k * distribution_cells, distribution_cells));
+        const double count = static_cast<double>(arm.totals.counted_at(arm.totals.series.front(), k));
         evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back())
                                  ? nan
                                  : kolmogorov_smirnov_p(evidence.distance.back(), count));
@@ -198,9 +200,9 @@ CredibilityEvidence credibility_evidence(const ScenarioResults& results, const A
 }
 
 void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
-    evidence.trials = arm.counted;
+    evidence.trials = arm.totals.trials.counted();
     evidence.all_trials = results.trials;
-    const std::vector<std::int64_t> statuses = status_counts(results, arm);
+    const std::vector<std::int64_t>& statuses = arm.totals.trials.statuses;
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) evidence.left_out += statuses[status];
     evidence.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
@@ -220,12 +222,12 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
         if (series.role == SeriesRole::nees) evidence.groups.push_back(group_evidence(results, arm, f));
         if (series.role == SeriesRole::nees_in_chart) evidence.charts.push_back(chart_evidence(results, arm, f));
         if (series.role == SeriesRole::standardised_error)
-            evidence.bias.push_back(bias_evidence(results, series, arm, arm.totals[f]));
+            evidence.bias.push_back(bias_evidence(results, series, arm, arm.totals.series[f]));
         if (series.role == SeriesRole::nis)
             if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0)
                 evidence.nis.push_back(std::move(nis));
     }
-    evidence.whiteness = whiteness_evidence(arm.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
+    evidence.whiteness = whiteness_evidence(arm.totals.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
                                            correlated_trials(results, arm));
     evidence.distribution = distribution_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);

@@ -32,7 +32,7 @@ std::vector<Coverage> coverage_of(const ArmResults& arm, const SeriesTotals& tot
         Coverage one{coverage_levels[level], {}, {}, 0};
         double known = 0;
         for (std::size_t k = 0; k < totals.sum.size(); ++k) {
-            const double trials = static_cast<double>(arm.counted_at(totals, k)),
+            const double trials = static_cast<double>(arm.totals.counted_at(totals, k)),
                          covered = static_cast<double>(totals.covered[k * coverage_level_count + level]);
             one.share.push_back(trials > 0 ? covered / trials : nan);
             one.interval.push_back(wilson_interval(covered, trials));
@@ -51,7 +51,7 @@ const SeriesTotals* totals_of(const ScenarioResults& results, const ArmResults& 
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (results.all_series[f].role == role && results.all_series[f].part == part) {
             unit = results.all_series[f].unit;
-            return &arm.totals[f];
+            return &arm.totals.series[f];
         }
     return nullptr;
 }
@@ -78,7 +78,7 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
 
 /// Degrees of freedom of the NEES of all trials at a step.
 double degrees_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, int dimension) {
-    return totals.dimensions.empty() ? static_cast<double>(arm.counted_at(totals, k)) * dimension
+    return totals.dimensions.empty() ? static_cast<double>(arm.totals.counted_at(totals, k)) * dimension
                                      : static_cast<double>(totals.dimensions[k]);
 }
 
@@ -86,7 +86,7 @@ double degrees_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t
 template <class Ratios>
 void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::size_t f, Ratios& evidence) {
     const Series& series = results.all_series[f];
-    const SeriesTotals& totals = arm.totals[f];
+    const SeriesTotals& totals = arm.totals.series[f];
     evidence.name = series.part;
     evidence.dimension = series.dimension;
     evidence.run = run_moments(arm, totals, results.steps(), 1.0 / series.dimension);
@@ -96,8 +96,8 @@ void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::siz
         evidence.anees.degrees.push_back(degrees_at(arm, totals, k, series.dimension));
         sums.push_back(totals.sum[k].rounded());
         if (!totals.dimensions.empty() && evidence.anees.degrees.back() > 0)  // of NEES/dim times the whole dimension
-            sums.back() *=
-                evidence.anees.degrees.back() / (static_cast<double>(arm.counted_at(totals, k)) * series.dimension);
+            sums.back() *= evidence.anees.degrees.back() /
+                           (static_cast<double>(arm.totals.counted_at(totals, k)) * series.dimension);
     }
     fill_bands(sums, evidence.anees);
 }
@@ -107,13 +107,13 @@ bool within(double value, const Interval& interval) { return value >= interval.l
 }  // namespace
 
 Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
-    return scaled(moments_from_sums(arm.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()),
+    return scaled(moments_from_sums(arm.totals.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()),
                   scale / steps);
 }
 
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale) {
     const double square = totals.square_sum.empty() ? nan : totals.square_sum[k].rounded();
-    return scaled(moments_from_sums(arm.counted_at(totals, k), totals.sum[k].rounded(), square), scale);
+    return scaled(moments_from_sums(arm.totals.counted_at(totals, k), totals.sum[k].rounded(), square), scale);
 }
 
 void fill_bands(const std::vector<double>& totals, BandedRatio& ratio) {
@@ -144,11 +144,12 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
     for (std::size_t k = 0; k < evidence.step.size(); ++k) {
         const Moments& step = evidence.step[k];
         const double whole = evidence.dimension,
-                     dimension = arm.totals[f].dimensions.empty() ? whole : evidence.anees.degrees[k] / step.count,
+                     dimension =
+                         arm.totals.series[f].dimensions.empty() ? whole : evidence.anees.degrees[k] / step.count,
                      deviation = step.standard_deviation * dimension;
         evidence.variance_ratio.push_back(deviation * deviation / (2 * dimension));
     }
-    evidence.coverage = coverage_of(arm, arm.totals[f]);
+    evidence.coverage = coverage_of(arm, arm.totals.series[f]);
     evidence.accuracy = accuracy_of(results, arm, evidence.name);
     return evidence;
 }

@@ -55,9 +55,9 @@ TEST_CASE(
             const ArmResults &kept = trials.scenarios[s].arms[a], &arm = one.scenarios[s].arms[a];
             CHECK(arm.columns.empty());
             CHECK(arm.errors == kept.errors);
-            CHECK(arm.cells == kept.cells);
-            for (std::size_t f = 0; f < arm.totals.size(); ++f)
-                CHECK(arm.totals[f].run_square_sum.parts() == kept.totals[f].run_square_sum.parts());
+            CHECK(arm.totals.cells == kept.totals.cells);
+            for (std::size_t f = 0; f < arm.totals.series.size(); ++f)
+                CHECK(arm.totals.series[f].run_square_sum.parts() == kept.totals.series[f].run_square_sum.parts());
         }
 }
 
@@ -272,7 +272,7 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
                 const WatchedArm& arm = snapshot.scenarios[s].arms[a];
                 for (std::size_t f = 0; f < arm.columns.size(); ++f) {
                     const Moments moments =
-                        moments_of(results.arms[a].aggregates.columns[watched_columns(results.columns)[f]]);
+                        moments_of(results.arms[a].totals.trials.columns[watched_columns(results.columns)[f]]);
                     CHECK(arm.columns[f].count == moments.count);
                     if (moments.count == 0) continue;
                     CHECK(arm.columns[f].mean == moments.mean);

@@ -104,11 +104,11 @@ TEST_CASE("journal: values and totals that are not the commit's are refused") {
     bad = made.record;
     std::fill(bad.totals.begin() + 8, bad.totals.end(), '\xff');
     CHECK(says(made.said({bad}), "is damaged"));
-    for (const std::int64_t counted : {std::int64_t{-1}, std::int64_t{4}, std::int64_t{1} << 60}) {
+    for (const std::int64_t completed : {std::int64_t{-1}, std::int64_t{4}, std::int64_t{1} << 60}) {
         Study study = made.study;
-        study.scenarios.front().arms.front().counted = counted;
+        study.scenarios.front().arms.front().totals.trials.statuses.front() = completed;
         bad.totals = totals_of(study.scenarios.front());
-        CAPTURE(counted);
+        CAPTURE(completed);
         CHECK(says(made.said({bad}), "is damaged"));
     }
 }
@@ -162,6 +162,7 @@ TEST_CASE("journal: a header that was made up is refused") {
     const Made made;
     ByteWriter body;
     body.put(static_cast<std::int32_t>(schema_version));
+    body.put(std::uint8_t{0});  // trials are kept
     body.put(std::uint8_t{0});
     for (int i = 0; i < 3; ++i) body.put(std::int64_t{0});  // no file was there
     body.put(std::int64_t{3});
@@ -171,7 +172,7 @@ TEST_CASE("journal: a header that was made up is refused") {
     const auto journal_of = [&](const ByteWriter& rest) {
         const std::string text = body.bytes() + rest.bytes();
         const auto size = static_cast<std::uint32_t>(text.size());
-        return sealed("credence-journal" + std::string("\6\0\0\0", 4) +
+        return sealed("credence-journal" + std::string("\10\0\0\0", 4) +
                       std::string(reinterpret_cast<const char*>(&size), sizeof size) + text);
     };
     const auto said = [&](const std::function<void(ByteWriter&)>& make) {

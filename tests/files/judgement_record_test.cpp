@@ -30,7 +30,7 @@ const SeriesTotals& totals_of(const ScenarioResults& results, const Json& figure
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (results.all_series[f].name == name) {
             CHECK(results.all_series[f].part == part);
-            return results.arms.front().totals[f];
+            return results.arms.front().totals.series[f];
         }
     FAIL("no figure " << name);
     throw std::logic_error(name);
@@ -67,13 +67,13 @@ void check_columns(const ScenarioResults& results, const Json& expected) {
 void check_arm(const ScenarioResults& results, const Json& expected) {
     const ArmResults& arm = results.arms.front();
     CHECK(arm.name == "record");
-    CHECK(arm.counted == expected["counted"]);
-    CHECK(arm.present == expected["present"].get<std::vector<std::int64_t>>());
-    check_agree(arm.distribution_distance, expected["shape_distance"]);
+    CHECK(arm.totals.trials.counted() == expected["counted"]);
+    CHECK(arm.totals.present == expected["present"].get<std::vector<std::int64_t>>());
+    check_agree(arm.totals.distribution_distance, expected["shape_distance"]);
     if (!expected["products"].is_null()) {
-        check_agree(rounded(arm.products.sum), expected["products"]["sum"]);
-        check_agree(rounded(arm.products.square_sum), expected["products"]["square_sum"]);
-        CHECK(arm.products.count == expected["products"]["count"].get<std::vector<std::int64_t>>());
+        check_agree(rounded(arm.totals.products.sum), expected["products"]["sum"]);
+        check_agree(rounded(arm.totals.products.square_sum), expected["products"]["square_sum"]);
+        CHECK(arm.totals.products.count == expected["products"]["count"].get<std::vector<std::int64_t>>());
     }
     std::size_t i = 0;
     for (const Json& trial : expected["nees"])
@@ -150,13 +150,13 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
     const Record record = check_reference("broken");
     CHECK(record.trouble_count == 12);
-    CHECK(record.results.arms.front().counted == 10);  // the two that only diverged are not left out
+    CHECK(record.results.arms.front().totals.trials.counted() == 10);  // the two that only diverged are not left out
 }
 
 TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {
     const Record record = check_reference("cut");
     CHECK(record.trouble_count == 10);
-    CHECK(record.results.arms.front().present.back() == 0);  // no trial has the last step, and none need have it
+    CHECK(record.results.arms.front().totals.present.back() == 0);  // no trial has the last step, and none need have it
 }
 
 TEST_CASE("record: of many troubles the first twenty are named and all are counted") {
@@ -199,12 +199,12 @@ TEST_CASE("record: a run of very many steps has distances, and no cells") {
     });
     const Record record = read_record(path);
     const ArmResults& arm = record.results.arms.front();
-    CHECK(arm.cells.empty());
-    CHECK(arm.distribution_distance.size() == 5000);
-    check_agrees(arm.distribution_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
+    CHECK(arm.totals.cells.empty());
+    CHECK(arm.totals.distribution_distance.size() == 5000);
+    check_agrees(arm.totals.distribution_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
     CHECK(arm.columns[column_nees_ratio][0] == 1);
     CHECK_FALSE(record.has_innovations);
-    CHECK(arm.products.count == std::vector<std::int64_t>(10, 0));
+    CHECK(arm.totals.products.count == std::vector<std::int64_t>(10, 0));
 }
 
 TEST_CASE("record: small asymmetry is averaged, progress reaches the end") {

@@ -206,7 +206,7 @@ TEST_CASE("record: the plain record itself is judged, and what else a file holds
     });
     const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == 0);
-    CHECK(record.results.arms.front().counted == 3);
+    CHECK(record.results.arms.front().totals.trials.counted() == 3);
     CHECK(record.results.all_series[2].part == "rest");
 }
 

@@ -102,9 +102,16 @@ void check_blocks(const Evidence& run, const Evidence& record) {
 
 TEST_CASE("judge: a run's trajectories, written as a record, give the run's evidence and verdict") {
     const TemporaryFolder folder;
-    for (const Settings& world :
-         {Settings{{"features.path", "circle"}}, Settings{{"model.process", "translation"}, {"edges.graph", "chain"}},
-          Settings{{"noise.heading", "0.05"}, {"filter.covariance", "0.5"}, {"edges.graph", "none"}}}) {
+    for (const Settings& world : {Settings{{"features.path", "circle"}},
+                                  Settings{{"model.process", "translation"},
+                                           {"edges.graph", "chain"},
+                                           {"sensor.range_min", "0"},
+                                           {"sensor.range_max", "inf"}},
+                                  Settings{{"noise.heading", "0.05"},
+                                           {"filter.covariance", "0.5"},
+                                           {"edges.graph", "none"},
+                                           {"sensor.range_min", "0"},
+                                           {"sensor.range_max", "inf"}}}) {
         CAPTURE(described(world));
         const DeformableSettings scenario = scenario_with(scenario_with(world), {{"arms.controllers", "fixed"}});
         constexpr int trials = 40;

@@ -96,26 +96,6 @@ TEST_CASE("merge: the same block with other values is refused by trials, arm and
     CHECK_FALSE(refused_to_merge({bad, good}).empty());
 }
 
-TEST_CASE("merge: totals that are not those of the trials' columns are refused, in any order") {
-    const Shards shards;
-    const std::string good = shards.shard(0, 2), other = shards.shard(1, 2);
-    for (const std::string name : {"nees_total", "nees_run_square_total", "trace_P_step_total", "unseen_features_total",
-                                   "trace_P_step_square_total"}) {
-        const std::string bad = damaged_copy(good, shards.folder / (name + ".h5"), [&](const Handle& root) {
-            scale(root, "/b/fixed.ekf/" + name, 2);
-        });
-        std::vector<std::vector<std::string>> orders{
-            {bad, other}, {other, bad}, {bad, good, other}, {good, other, bad}};
-        for (const std::vector<std::string>& paths : orders) {
-            const std::string said = refused_to_merge(paths);
-            CAPTURE(name, said);
-            CHECK(said.starts_with(bad + ": /b/fixed.ekf: the totals of "));
-        }
-        // Nor is such a file grown.
-        CHECK(says(refused(bad, shards.asked), bad + ": /b/fixed.ekf: the totals of "));
-    }
-}
-
 TEST_CASE("merge: totals of blocks that several files have contradict each other, whichever comes first") {
     Shards shards;
     shards.asked.scenarios = {tiny("b")};

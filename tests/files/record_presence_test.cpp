@@ -48,7 +48,7 @@ std::string trouble_of(const std::function<void(DrawnRecord&)>& change) {
     REQUIRE(record.trouble_count == 1);
     CHECK(record.troubles.front().trial == 2);
     CHECK(record.troubles.front().status == Status::non_finite);
-    CHECK(record.results.arms.front().counted == trials - 1);
+    CHECK(record.results.arms.front().totals.trials.counted() == trials - 1);
     return "step " + std::to_string(record.troubles.front().step) + ": " + record.troubles.front().what;
 }
 
@@ -83,8 +83,8 @@ TEST_CASE("record: the whole state has at each step the dimension that it has th
         CHECK(all.anees.degrees[at] == dimensions);
         CHECK(relative(all.step[at].mean, ratios / trials) < 1e-11);
         CHECK(relative(all.anees.ratio[at], ratios / trials) < 1e-11);
-        CHECK(arm.totals[0].covered[at * coverage_level_count] == below_median);
-        CHECK(std::abs(arm.distribution_distance[at] - uniform_distance(probabilities)) < 1e-9);
+        CHECK(arm.totals.series[0].covered[at * coverage_level_count] == below_median);
+        CHECK(std::abs(arm.totals.distribution_distance[at] - uniform_distance(probabilities)) < 1e-9);
         CHECK(relative(totals_named(record, "squared_error").sum[at].rounded(), error) < 1e-11);
     }
     double sum = 0, square_sum = 0;

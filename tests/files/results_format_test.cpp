@@ -156,7 +156,13 @@ TEST_CASE("store: every variable has a long name, units and dimension scales in 
         if (H5DSis_scale(dataset.id()) > 0) continue;
         using Names = std::vector<std::string>;
         const std::vector<std::string> expected =
-            name == "whiteness_count"             ? Names{"lag"}
+            name == "status_count"                ? Names{"status_code"}
+            : name == "column_count"              ? Names{"column"}
+            : name.starts_with("column_")         ? Names{"column", "part"}
+            : name.ends_with("_below") || name.ends_with("_above") || name == "difference_count"
+                ? Names{"subtracted_arm", "column"}
+            : name.starts_with("difference_")     ? Names{"subtracted_arm", "column", "part"}
+            : name == "whiteness_count"           ? Names{"lag"}
             : name.starts_with("whiteness_")      ? Names{"lag", "part"}
             : name == "detailed_nees"             ? Names{"detailed_trial", "step"}
             : name == "detailed_error"            ? Names{"detailed_trial", "step", "component"}

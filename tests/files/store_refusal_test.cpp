@@ -18,7 +18,7 @@ const std::string arm = "/first/greedy.ekf";
 const std::vector<Damage> header_damages{
     {"is not a results file", [](auto& r) { set_text(r, "/", "format", "credence trajectories"); }},
     {"is not a results file", [](auto& r) { H5Adelete(r.id(), "format"); }},
-    {"/@schema_version: is 9, this program's is 3",
+    {"/@schema_version: is 9, this program's is 4",
      [](auto& r) { set_number<std::int32_t>(r, "/", "schema_version", 9); }},
     {"/@schema_version: holds 64-bit integers, not 32-bit",
      [](auto& r) { set_number<std::int64_t>(r, "/", "schema_version", 1); }},
@@ -67,7 +67,8 @@ const std::vector<Damage> scenario_damages{
 };
 
 const std::vector<Damage> arm_damages{
-    {arm + "@counted_trials: is 3, but 4", [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
+    {arm + "@counted_trials: counts 3 trials that did not fail, but the totals are of 4",
+     [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
     {arm + "/trace_P: is missing", [](auto& r) { remove(r, arm + "/trace_P"); }},
     {arm + "/extra: does not belong here", [](auto& r) { replace<double>(r, arm + "/extra", {1}, {}); }},
     {arm + "/trace_P: is no readable dataset",

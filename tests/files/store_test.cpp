@@ -25,19 +25,19 @@ bool same(const std::vector<ExactSum>& a, const std::vector<ExactSum>& b) {
 
 void require_same(const ArmResults& found, const ArmResults& expected) {
     REQUIRE(found.name == expected.name);
-    CHECK(found.counted == expected.counted);
-    REQUIRE(found.totals.size() == expected.totals.size());
-    for (std::size_t f = 0; f < found.totals.size(); ++f) {
+    CHECK(found.totals.trials.counted() == expected.totals.trials.counted());
+    REQUIRE(found.totals.series.size() == expected.totals.series.size());
+    for (std::size_t f = 0; f < found.totals.series.size(); ++f) {
         INFO("figure " << f);
-        CHECK(same(found.totals[f].sum, expected.totals[f].sum));
-        CHECK(same(found.totals[f].square_sum, expected.totals[f].square_sum));
-        CHECK(same(found.totals[f].run_square_sum.parts(), expected.totals[f].run_square_sum.parts()));
-        CHECK(found.totals[f].covered == expected.totals[f].covered);
+        CHECK(same(found.totals.series[f].sum, expected.totals.series[f].sum));
+        CHECK(same(found.totals.series[f].square_sum, expected.totals.series[f].square_sum));
+        CHECK(same(found.totals.series[f].run_square_sum.parts(), expected.totals.series[f].run_square_sum.parts()));
+        CHECK(found.totals.series[f].covered == expected.totals.series[f].covered);
     }
-    CHECK(found.cells == expected.cells);
-    CHECK(same(found.products.sum, expected.products.sum));
-    CHECK(same(found.products.square_sum, expected.products.square_sum));
-    CHECK(found.products.count == expected.products.count);
+    CHECK(found.totals.cells == expected.totals.cells);
+    CHECK(same(found.totals.products.sum, expected.totals.products.sum));
+    CHECK(same(found.totals.products.square_sum, expected.totals.products.square_sum));
+    CHECK(found.totals.products.count == expected.totals.products.count);
     CHECK(same(found.errors, expected.errors));
     CHECK(same(found.nees, expected.nees));
 }

@@ -67,7 +67,7 @@ void use(Study& study) {
     for (const ScenarioResults& results : study.scenarios)
         for (const ArmResults& arm : results.arms) {
             require(arm.nees.size() == static_cast<std::size_t>(results.detailed() * results.steps()), "details fit");
-            require(results.keep == Keep::trials || arm.aggregates.trials() == results.trials,
+            require(results.keep == Keep::trials || arm.totals.trials.trials() == results.trials,
                     "aggregates are of all trials");
             for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c)
                 require(column_values(results, arm, c).size() == static_cast<std::size_t>(results.trials),

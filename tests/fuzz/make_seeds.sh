@@ -36,7 +36,6 @@ printf '[scenario]\nname = two\n[model]\nprocess = translation\n' >"$work/two.in
 printf '[scenario]\nname = three\nworld = landmarks\n[landmarks]\ncount = 1\n' >"$work/three.ini"
 "$program" run "$work/three.ini" --set scenario.poses=2 --set arms.estimators=ekf --trials 1 --quiet -o "$work/landmarks.h5"
 /usr/bin/python3 tests/fuzz/make_seeds.py "$work" "$seeds"
-mv "$work"/earlier/* "$seeds/results/"
 # Journals of runs that could not write their results: a limit on file sizes between the two. Of one block, and of two.
 mkdir -p "$seeds/journal"
 for keep in trials aggregates; do

@@ -57,7 +57,7 @@ TEST_CASE("compare: every number is computed from the columns") {
         }
     }
     // The same to the last bit as in a report beside the arms.
-    const std::vector<Comparison> reported = planned_against_baselines(study);
+    const std::vector<Comparison> reported = planned_against_baselines(study.scenarios, study.root_seed);
     for (std::size_t s = 0; s < 2; ++s)
         for (std::size_t c = 0; c < 6; ++c) {
             CHECK(reported[s].columns[c].paired.bootstrap95.low ==
@@ -168,6 +168,7 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     fail(study.scenarios[0], 0, 0, 20);
     fail(study.scenarios[0], 1, 10, 20);
     study.scenarios[0].arms[0].columns[column_status][100] = static_cast<double>(Status::diverged);
+    recount(study.scenarios[0]);
     const CompareReport report = compared({{"failed.h5", study}});
     const ComparedPair& pair = report.pairs[0];
     CHECK(pair.pairs() == 270);

@@ -22,6 +22,7 @@ Study failing_study() {
             static_cast<double>(i < 40 ? Status::non_finite : Status::covariance_not_positive_definite);
         columns[column_status_pose][i] = i < 30 ? 3 : 5;
     }
+    recount(study.scenarios.front());
     return study;
 }
 

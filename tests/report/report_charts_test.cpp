@@ -45,7 +45,7 @@ TEST_CASE("charts: the evidence is the series' totals over their dimension") {
             CHECK(chart.chart == "invariant");
             CHECK(chart.name == group);
             CHECK(chart.dimension == dimension);
-            const SeriesTotals& totals = arm.totals[column_named(results, name)];
+            const SeriesTotals& totals = arm.totals.series[column_named(results, name)];
             double sum = 0;
             for (std::size_t k = 0; k < totals.sum.size(); ++k) {
                 const double mean = totals.sum[k].rounded() / 300 / dimension;

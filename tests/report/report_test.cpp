@@ -27,6 +27,7 @@ Study with_failures() {
         fill_failed(study.scenarios.front().columns, values.data());
         for (std::size_t c = 0; c < values.size(); ++c) arm.columns[c][i] = values[c];
     }
+    recount(study.scenarios.front());
     return study;
 }
 
@@ -61,6 +62,7 @@ TEST_CASE("report: failed trials are counted and shown, and columns are summaris
 TEST_CASE("report: diverged trials stay in the columns and are named") {
     Study study = small_study(1, 300, 1);
     study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::diverged);
+    recount(study.scenarios.front());
     const Report report = make_report(study, 0.05);
     CHECK(report.arms.front().diverged == 1);
     CHECK(report.arms.front().failed == 0);
@@ -86,6 +88,7 @@ TEST_CASE("report: a published value is shown at its percentile") {
 TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") {
     Study study = with_failures();
     for (double& status : study.scenarios.front().arms.front().columns[column_status]) status = 3;  // all failed
+    recount(study.scenarios.front());
     const Report report = make_report(study, 0.05);
     const Json arms = Json::parse(report_json(report));
     REQUIRE(arms.size() == 4);

@@ -79,7 +79,6 @@ TEST_CASE("paired: values that are both infinite are no pair, and the ranks come
     CHECK(comparison.pairs == 2);
     CHECK(comparison.difference.mean == -2.5);
     CHECK(comparison.wins_a == 1);
-    CHECK(paired_differences({infinite, 1}, {infinite, 3}) == std::vector<double>{-2});
 }
 
 TEST_CASE("paired: without pairs everything is NaN, with one all but its difference and signs") {

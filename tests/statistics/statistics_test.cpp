@@ -72,9 +72,12 @@ TEST_CASE("statistics: percentile is the mid-rank") {
     CHECK(std::isnan(percentile_of({missing}, 2)));
 }
 
-TEST_CASE("statistics: pairs with a failed trial on either side are left out") {
-    const std::vector<double> differences = paired_differences({1, missing, 5, 7}, {0.5, 2, missing, 10});
-    CHECK(differences == std::vector<double>{0.5, -3.0});
+TEST_CASE("statistics: the mean of equal values is their value, and they have no spread") {
+    for (const int count : {2, 3, 7, 49, 1000}) {
+        const Summary summary = summarise(std::vector<double>(static_cast<std::size_t>(count), 0.1));
+        CHECK(summary.mean == 0.1);
+        CHECK(summary.standard_deviation == 0);
+    }
 }
 
 TEST_CASE("statistics: moments from sums are those of the values") {

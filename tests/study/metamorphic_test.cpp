@@ -42,7 +42,7 @@ void check_same_steps(const ScenarioResults& a, const ScenarioResults& b, std::s
         if (a.all_series[f].unit != "1") continue;
         CAPTURE(a.all_series[f].name);
         for (std::size_t k = 0; k < steps; ++k)
-            REQUIRE(a.arms[0].totals[f].sum[k].parts() == b.arms[0].totals[f].sum[k].parts());
+            REQUIRE(a.arms[0].totals.series[f].sum[k].parts() == b.arms[0].totals.series[f].sum[k].parts());
         ++compared;
     }
     CHECK(compared > 10);

@@ -47,12 +47,12 @@ std::vector<double> parts_of(const ScenarioResults& results) {
         all.push_back(-1);
     };
     for (const ArmResults& arm : results.arms) {
-        for (const SeriesTotals& totals : arm.totals) {
+        for (const SeriesTotals& totals : arm.totals.series) {
             for (const ExactSum& sum : totals.sum) append(sum);
             for (const ExactSum& sum : totals.square_sum) append(sum);
             append(totals.run_square_sum);
         }
-        all.push_back(static_cast<double>(arm.counted));
+        all.push_back(static_cast<double>(arm.totals.trials.counted()));
     }
     return all;
 }
@@ -78,7 +78,7 @@ TEST_CASE("results: empty results have the dimensions that the scenario declares
     CHECK(results.columns.size() == column_count);
     CHECK(results.all_series.size() == static_cast<std::size_t>(Problem(scenario).view().series_count));
     for (std::size_t f = 0; f < results.all_series.size(); ++f) {
-        const SeriesTotals& totals = results.arms[0].totals[f];
+        const SeriesTotals& totals = results.arms[0].totals.series[f];
         CHECK(totals.sum.size() == 19);
         CHECK(totals.square_sum.size() == (results.all_series[f].integer ? 0u : 19u));
         CHECK(totals.run_square_sum.rounded() == 0);
@@ -89,8 +89,8 @@ TEST_CASE("results: the order of the blocks does not matter") {
     const DeformableSettings scenario = mixed_world();
     const ScenarioResults forwards = results_of(scenario, 700), backwards = results_of(scenario, 700, true);
     CHECK(same(forwards, backwards));
-    CHECK(forwards.arms[0].counted > 0);
-    CHECK(forwards.arms[0].counted < 700);
+    CHECK(forwards.arms[0].totals.trials.counted() > 0);
+    CHECK(forwards.arms[0].totals.trials.counted() < 700);
 }
 
 TEST_CASE("results: totals are those of the trials that did not fail") {
@@ -107,9 +107,9 @@ TEST_CASE("results: totals are those of the trials that did not fail") {
         sum += value;
         ++counted;
     }
-    CHECK(results.arms[0].counted == counted);
+    CHECK(results.arms[0].totals.trials.counted() == counted);
     // trace_P is the last step's value; 300 roundings of a sum of positive numbers.
-    CHECK(relative(results.arms[0].totals[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
+    CHECK(relative(results.arms[0].totals.series[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
 }
 
 TEST_CASE("results: a partial block that is taken back and computed again gives the same bits as a fresh run") {

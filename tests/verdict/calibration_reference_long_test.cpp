@@ -100,7 +100,7 @@ TEST_CASE("calibration: NIS of rows that vary has their number of degrees, and w
 
 TEST_CASE("calibration: the correlation of innovations has Student's interval by the spread of the trials") {
     ScenarioResults made = results(1);
-    ProductTotals& products = made.arms.front().products;
+    ProductTotals& products = made.arms.front().totals.products;
     for (std::size_t i = 0; i < lags; ++i)
         products.square_sum[i] = ExactSum::from_parts({2.0 * static_cast<double>(products.count[i])});
     const Evidence found = evidence_of(made, made.arms.front());
@@ -133,7 +133,7 @@ TEST_CASE("calibration: bias, distribution and credibility of NumPy's draws are 
     check_agrees(found.credibility.nci, number(credibility["nci"]));
     check_agrees(found.credibility.inclination, number(credibility["inclination"]));
     ScenarioResults exact = results(1);
-    exact.arms.front().distribution_distance = numbers(distribution["distance"]);
+    exact.arms.front().totals.distribution_distance = numbers(distribution["distance"]);
     check_list(evidence_of(exact, exact.arms.front()).distribution.p, distribution["p"]);
 }
 

@@ -91,10 +91,10 @@ TEST_CASE("consistency: a wrong size of S is not taken for correlation") {
     const Evidence right = evidence_of(results, arm);
     // S four times too small: every nu~ is twice as long, every product four times.
     const auto scale = [](ExactSum& sum) { sum = ExactSum::from_parts({4 * sum.rounded()}); };
-    for (ExactSum& sum : arm.products.sum) scale(sum);
+    for (ExactSum& sum : arm.totals.products.sum) scale(sum);
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (results.all_series[f].role == SeriesRole::nis)
-            for (ExactSum& sum : arm.totals[f].sum) scale(sum);
+            for (ExactSum& sum : arm.totals.series[f].sum) scale(sum);
     const Evidence wrong = evidence_of(results, arm);
     for (std::size_t lag = 0; lag < right.whiteness.size(); ++lag) {
         CHECK(wrong.whiteness[lag].correlation == Approx(4 * right.whiteness[lag].correlation).epsilon(1e-12));

@@ -121,7 +121,8 @@ TEST_CASE("consistency: a bias of one component is found and named, and keeps a 
     const auto bias = std::find_if(results.all_series.begin(), results.all_series.end(),
                                    [](const Series& f) { return f.name == "standardised_error_f1_x"; });
     REQUIRE(bias != results.all_series.end());
-    SeriesTotals& totals = results.arms.front().totals[static_cast<std::size_t>(bias - results.all_series.begin())];
+    SeriesTotals& totals =
+        results.arms.front().totals.series[static_cast<std::size_t>(bias - results.all_series.begin())];
     for (const double share : {0.05, 0.2}) {  // of a sigma: within the margin, and beyond it
         for (ExactSum& step : totals.sum) step.add(20000 * share);
         const Consistency c = judge(evidence_of_first_arm(results), 0.05);
@@ -158,7 +159,7 @@ TEST_CASE("consistency: a dropped correlation, which mean NEES cannot see, is fo
 
 TEST_CASE("consistency: trouble at some steps only is found there", "[long]") {
     ScenarioResults results = simulated(matched_linear(), 20000);
-    SeriesTotals& whole = results.arms.front().totals.front();
+    SeriesTotals& whole = results.arms.front().totals.series.front();
     for (const std::size_t k : {2u, 3u, 4u, 8u}) {  // 10 % more NEES at steps 3 to 5 and 9
         whole.sum[k].add(0.1 * whole.sum[k].rounded());
         whole.square_sum[k].add(0.21 * whole.square_sum[k].rounded());

@@ -191,11 +191,11 @@ TEST_CASE("evidence: coverage and cells count the trials that did not fail") {
         for (std::size_t b = 0; b < covered.size(); ++b)
             for (Eigen::Index k = 0; k < steps; ++k)
                 for (Eigen::Index level = 0; level < 4; ++level)
-                    CHECK(static_cast<double>(arm.totals[b].covered[static_cast<std::size_t>(4 * k + level)]) ==
+                    CHECK(static_cast<double>(arm.totals.series[b].covered[static_cast<std::size_t>(4 * k + level)]) ==
                           covered[b](k, level));
         for (Eigen::Index k = 0; k < steps; ++k)
             for (Eigen::Index cell = 0; cell < distribution_cells; ++cell)
-                if (static_cast<double>(arm.cells[static_cast<std::size_t>(k * distribution_cells + cell)]) !=
+                if (static_cast<double>(arm.totals.cells[static_cast<std::size_t>(k * distribution_cells + cell)]) !=
                     cells(k, cell))
                     FAIL_CHECK("cell " << cell << " of step " << k + 1);
     }

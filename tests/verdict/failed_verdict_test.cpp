@@ -129,6 +129,7 @@ Study with_statuses(std::size_t failed, std::size_t diverged) {
     std::vector<double>& status = study.scenarios.front().arms.front().columns[column_status];
     for (std::size_t i = 0; i < failed + diverged; ++i)
         status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::diverged);
+    recount(study.scenarios.front());
     return study;
 }
 
@@ -185,7 +186,7 @@ TEST_CASE("failed: a trial that ends early has not failed where the dataset `ste
     values.write(folder / "record.h5");
     const Record record = read_record(folder / "record.h5");
     CHECK(record.trouble_count == 0);
-    CHECK(record.results.arms.front().present == std::vector<std::int64_t>{1000, 1000, 100, 100});
+    CHECK(record.results.arms.front().totals.present == std::vector<std::int64_t>{1000, 1000, 100, 100});
     CHECK(judge(evidence_of(record.results, record.results.arms.front()), limits()).verdict == Verdict::consistent);
     values.declared.assign(trials, static_cast<std::int32_t>(steps));
     values.write(folder / "record.h5");

@@ -39,7 +39,7 @@ double mean_ratio(const ArmResults& arm, const std::function<bool(Status)>& coun
 
 /// The number of trials with which a step's distribution was counted.
 std::int64_t counted_cells(const ArmResults& arm, std::size_t k) {
-    const auto first = arm.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells);
+    const auto first = arm.totals.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells);
     return std::accumulate(first, first + distribution_cells, std::int64_t{0});
 }
 
@@ -55,7 +55,8 @@ std::vector<double> values_with(std::size_t place, double outlier, std::size_t c
 /// An interim analysis of the first values, as the program makes it.
 InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingRule& rule, std::int64_t count,
                               int number) {
-    const GoalState state = decide({values.begin(), values.begin() + count}, rule.goals.front(), number);
+    const GoalState state =
+        decide(moments_of(exact_moments({values.begin(), values.begin() + count})), rule.goals.front(), number);
     return {count, number, analysis_alpha(number), {state}, state.met()};
 }
 

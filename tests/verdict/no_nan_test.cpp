@@ -46,7 +46,7 @@ Study all_ended(Status status) {
     Study study = run(small_scenarios(), 40);
     ArmResults& arm = study.scenarios.front().arms.front();
     std::fill(arm.columns[column_status].begin(), arm.columns[column_status].end(), static_cast<double>(status));
-    if (failed(status)) arm.counted = 0;
+    recount(study.scenarios.front());
     return study;
 }
 
@@ -57,14 +57,15 @@ Study without_numbers(double value) {
         for (ArmResults& arm : results.arms) {
             for (std::size_t c = 0; c < arm.columns.size(); ++c)
                 if (is_reported(results.columns[c])) std::fill(arm.columns[c].begin(), arm.columns[c].end(), value);
-            for (SeriesTotals& totals : arm.totals) {
+            for (SeriesTotals& totals : arm.totals.series) {
                 for (ExactSum& sum : totals.sum) sum.add(value);
                 for (ExactSum& sum : totals.square_sum) sum.add(value);
                 totals.run_square_sum.add(value);
             }
-            for (ExactSum& sum : arm.products.sum) sum.add(value);
+            for (ExactSum& sum : arm.totals.products.sum) sum.add(value);
             for (double& one : arm.nees) one = value;
         }
+    for (ScenarioResults& results : study.scenarios) recount(results);
     return study;
 }
 

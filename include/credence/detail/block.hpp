@@ -2,14 +2,13 @@
 // Module engine: the block: 256 consecutive trials of one scenario under every arm. It is a pure function of (scenario,
 // root seed, block index): threads, shards and resumed runs only choose which blocks to run.
 
+#include <credence/detail/block_ranges.hpp>
 #include <credence/detail/world.hpp>
 
 #include <cstdint>
 #include <vector>
 
 namespace credence {
-
-inline constexpr int block_size = 256;
 
 /// One arm's part of a block. Sums are over the trials that did not fail: eight running sums, trial i added to number i
 /// mod 8 in trial order, which are then added up in order. The result is the same for every lane width up to 8.
@@ -37,10 +36,6 @@ struct Block {
     int trials = 0;
     std::vector<ArmBlock> arms;             ///< in the order of the declaration
 };
-
-/// Number of blocks that hold `trials` trials, and the number of trials in block `index` of them.
-std::int64_t block_count(std::int64_t trials);
-int trials_in_block(std::int64_t trials, std::int64_t index);
 
 /// Whether the trials of a block are detailed: either all of them are or none.
 bool detailed(const SimulationShape& shape, std::int64_t index);

@@ -1,5 +1,5 @@
 #pragma once
-// Module study: sets of a study's blocks, stored as ranges: a complete study is one range, however many blocks it has.
+// Module totals: sets of a study's blocks, stored as ranges: a complete study is one range, however many blocks it has.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +9,16 @@
 #include <vector>
 
 namespace credence {
+
+/// Trials in a block; the last one of a study may have fewer.
+inline constexpr int block_size = 256;
+
+/// Number of blocks that hold `trials` trials, and the number of trials in block `index` of them.
+constexpr std::int64_t block_count(std::int64_t trials) { return (trials + block_size - 1) / block_size; }
+constexpr int trials_in_block(std::int64_t trials, std::int64_t index) {
+    const std::int64_t left = trials - index * block_size;
+    return left < block_size ? static_cast<int>(left) : block_size;
+}
 
 /// Blocks first, first + 1 ... last.
 struct BlockRange {

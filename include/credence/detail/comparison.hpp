@@ -3,7 +3,7 @@
 // another that shares its draws [docs/statistics.md, Comparison].
 
 #include <credence/detail/paired.hpp>
-#include <credence/study.hpp>
+#include <credence/detail/results.hpp>
 
 #include <string>
 #include <vector>
@@ -60,6 +60,7 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
 void correct_together(std::vector<Comparison>& comparisons);
 
 /// Every planned arm against its baseline: greedy - fixed of the same estimator, horizon - greedy.
-std::vector<Comparison> planned_against_baselines(const Study& study);
+std::vector<Comparison> planned_against_baselines(const std::vector<ScenarioResults>& scenarios,
+                                                  std::uint64_t root_seed);
 
 }  // namespace credence

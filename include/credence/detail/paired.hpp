@@ -14,6 +14,7 @@ namespace credence {
 /// The comparison of arm A with arm B by the pairs (a_i, b_i). NaN where there are too few pairs.
 struct PairedComparison {
     std::int64_t pairs = 0;         ///< trials in which neither arm failed
+    double mean_a = 0, mean_b = 0;  ///< over the pairs
     Summary difference;             ///< of a - b: mean, t interval, median
     Interval bootstrap95;           ///< of the mean difference
     double wins_a = 0, wins_b = 0;  ///< share of pairs in which the arm has the smaller value
@@ -37,8 +38,8 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
                                 const std::string& column);
 
 /// The same from totals: mean, t interval, shares of wins and d_z; values that need the trials are NaN, the histogram
-/// empty. The variance reduction is known where every trial of `a` and `b`, the values of the arms by themselves, is in
-/// a pair.
+/// empty. The means of the arms and the variance reduction are known if every trial of `a` and `b`, the values of the
+/// arms by themselves, is in a pair.
 PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMoments& a, const ExactMoments& b);
 
 /// p-values adjusted for their number [Holm 1979], in the order given: with p_(1) <= ... <= p_(m),

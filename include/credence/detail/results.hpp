@@ -1,11 +1,10 @@
 #pragma once
-// Module study: the results of a study in memory: the totals over its blocks. Columns and series are known by
-// declaration only.
+// Module totals: the results of a study in memory: its totals, and what is kept of the trials. Columns and series are
+// known by declaration only.
 
-#include <credence/detail/aggregates.hpp>
-#include <credence/detail/block.hpp>
 #include <credence/detail/block_ranges.hpp>
-#include <credence/detail/exact_sum.hpp>
+#include <credence/detail/scenario.hpp>
+#include <credence/detail/totals.hpp>
 
 #include <cstdint>
 #include <limits>
@@ -19,35 +18,10 @@ namespace credence {
 /// How the columns, which hold one number a trial, are kept.
 enum class Keep {
     trials,      ///< all of them
-    aggregates,  ///< totals over the trials [detail/aggregates.hpp]
+    aggregates,  ///< none: the totals alone
 };
 /// `trials`, `aggregates`
 std::string keep_name(Keep keep);
-
-/// Totals over trials of one declared series.
-struct SeriesTotals {
-    std::vector<ExactSum> sum;         ///< [K - 1] over the trials that did not fail
-    std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer series
-    ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
-    std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`
-    /// [K - 1, levels] of a nees: trials below the quantile of chi-square; else empty.
-    std::vector<std::int64_t> covered;
-
-    // Of a record only, in which a component group may be missing at some steps of a trial.
-    std::vector<std::int64_t> present{};  ///< [K - 1] trials with a value at the step; empty: as the arm says
-    std::int64_t runs = 0;                ///< trials with a value at some step; means only something beside `present`
-    /// [K - 1] of the NEES of a state that grows or shrinks: the dimensions that it has at the step, added up over the
-    /// trials; empty: each has the declared one. `sum` and `square_sum` are then of NEES / (dimension at the step)
-    /// times the declared dimension.
-    std::vector<std::int64_t> dimensions{};
-};
-
-/// Totals over the detailed trials of products of whitened innovations, by lag from 1 up.
-struct ProductTotals {
-    std::vector<ExactSum> sum;
-    std::vector<ExactSum> square_sum;  ///< of each trial's sum, squared
-    std::vector<std::int64_t> count;   ///< products
-};
 
 /// Columns of one arm that are kept in a file, because they may exceed the memory.
 class KeptColumns {
@@ -69,36 +43,18 @@ public:
     virtual void load(ScenarioResults& results) const = 0;
 };
 
-/// One arm of a scenario: per-trial columns and per-step totals.
+/// One arm of a scenario: its totals, and what is kept of its trials: all of their columns, details of the first ones.
 struct ArmResults {
     std::string name;
     /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them (read column_values), and where
     /// no trial is kept.
     std::vector<std::vector<double>> columns;
     std::shared_ptr<const KeptColumns> kept;
-    ArmAggregates aggregates;                  ///< where no trial is kept; else empty
-    std::vector<SeriesTotals> totals;          ///< [series_count]
-    std::int64_t counted = 0;                  ///< trials in the totals: those that did not fail
-    std::vector<std::int64_t> cells;           ///< [K - 1, distribution_cells] trials by cell of the first nees series
-    ProductTotals products;
+    Totals totals;
     std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
     std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees series, NaN likewise
     /// [detailed trials, moment_count], NaN likewise; empty where none are kept.
     std::vector<double> moments;
-
-    // Of a record only, whose runs may differ in length.
-    std::vector<std::int64_t> present;         ///< [K - 1] trials that have the step; empty: all counted ones have
-    /// [K - 1] exact distance of the NEES from chi-square; empty: by cells.
-    std::vector<double> distribution_distance;
-    /// [groups] at the worst step, the mean over the trials of what rounding may have done to NEES; empty: unknown.
-    std::vector<double> rounding;
-
-    std::int64_t counted_at(std::size_t step) const { return present.empty() ? counted : present[step]; }
-    /// Trials with a value of the series at a step, and at some step.
-    std::int64_t counted_at(const SeriesTotals& series, std::size_t step) const {
-        return series.present.empty() ? counted_at(step) : series.present[step];
-    }
-    std::int64_t counted_in(const SeriesTotals& series) const { return series.present.empty() ? counted : series.runs; }
 };
 
 struct ScenarioResults {
@@ -111,7 +67,7 @@ struct ScenarioResults {
     /// are 0, 1, 2 ... except for shards and interrupted runs. Empty for a record.
     BlockRanges blocks{};
     Keep keep = Keep::trials;
-    /// The source of the arms' totals (but `aggregates`, which are always in memory) and details where has_totals() is
+    /// The source of the arms' totals (but those of trials, which are always in memory) and details if has_totals() is
     /// false [load_totals]; nullptr: no trial has been computed.
     std::shared_ptr<const KeptTotals> kept_totals{};
     /// False of a record without a covariance of the whole state: then nothing shows that all of it is consistent.
@@ -130,11 +86,10 @@ struct ScenarioResults {
     int moment_count() const;
 };
 
-/// An empty result of a resolved scenario. Throws InputError where there is no such world.
-ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials);
-
-/// The same, its totals not in memory.
-ScenarioResults results_without_totals(const Scenario& scenario, Keep keep = Keep::trials);
+/// Gives results, which have none yet, the arms of their scenario, with totals of no trial [clear_totals].
+void name_arms(ScenarioResults& results);
+/// Sets the totals, but those of trials, to 0.
+void clear_totals(ScenarioResults& results);
 
 /// Totals and details of a study are held in memory up to this many bytes, or those of the scenarios that are being
 /// computed.
@@ -179,17 +134,11 @@ private:
     std::optional<ScenarioResults> loaded_;
 };
 
-/// Whether a column is a quantity of the trial, not its status.
-bool is_reported(const Column& column);
-
-/// Trials by how they ended.
-std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm);
-
-/// Where no trial is kept: the totals of a column over all rows without failed trials; and of its differences from
-/// those of another arm of the scenario, a - b.
-Moments aggregate_moments(const ArmResults& arm, std::size_t column);
-DifferenceTotals aggregate_differences(const ScenarioResults& results, const ArmResults& a, const ArmResults& b,
-                                       std::size_t column);
+/// Mean and spread of a column over the trials that did not fail; and of its differences from those of another arm of
+/// the scenario, a - b.
+Moments column_moments(const ArmResults& arm, std::size_t column);
+DifferenceTotals column_differences(const ScenarioResults& results, const ArmResults& a, const ArmResults& b,
+                                    std::size_t column);
 
 /// A column's values as stored, of all rows or of `count` rows from `first` on; read where they are kept in a file.
 std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);
@@ -223,15 +172,6 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
 /// Sets all blocks of `trials` trials, the totals in memory.
 void extend(ScenarioResults& results, std::int64_t trials);
 
-/// A block's part of the aggregates: empty where trials are kept. Can be called from several threads at once.
-std::vector<ArmAggregates> block_aggregates(const ScenarioResults& results, const Block& block);
-
-/// Adds a block's totals, and stores its details and columns (where they are kept, and not in a file) at their rows.
-/// Those of different blocks may be stored from several threads at once; totals may not.
-void store_columns(ScenarioResults& results, const Block& block);
-void add_totals(ScenarioResults& results, const Block& block, const std::vector<ArmAggregates>& aggregates);
-void add_totals(ScenarioResults& results, const Block& block);
-
 /// Whether the details of a block that both have are the same in both, under one arm; true where it has none.
 bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block);
 
@@ -240,8 +180,5 @@ void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t
 
 /// Adds the totals of other trials of the same arm.
 void add_totals(ArmResults& to, const ArmResults& from);
-
-/// Removes a block's totals, exactly: a partial last block is computed again when a study grows.
-void remove_totals(ScenarioResults& results, const Block& block);
 
 }  // namespace credence

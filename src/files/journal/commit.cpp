@@ -54,22 +54,34 @@ std::int64_t value_size(ColumnType type) {
     return type == ColumnType::real ? 8 : type == ColumnType::integer ? 4 : 1;
 }
 
+namespace {
+
+template <class T>
+void put_as(ByteWriter& to, const double* values, std::size_t count) {
+    to.put_all(std::vector<T>(values, values + count));
+}
+
+template <class T>
+void get_as(ByteReader& from, double* values, std::size_t count) {
+    const std::vector<T> read = from.get_all<T>(count);
+    std::copy(read.begin(), read.end(), values);
+}
+
+}  // namespace
+
 void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-        if (type == ColumnType::real) to.put(values[i]);
-        else if (type == ColumnType::integer) to.put(static_cast<std::int32_t>(values[i]));
-        else to.put(static_cast<std::int8_t>(values[i]));
-    }
+    if (type == ColumnType::real) to.put_raw(values, count * sizeof(double));
+    else if (type == ColumnType::integer) put_as<std::int32_t>(to, values, count);
+    else put_as<std::int8_t>(to, values, count);
 }
 
 void get_values(ByteReader& from, ColumnType type, double* values, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-        if (type == ColumnType::real) values[i] = from.get<double>();
-        else if (type == ColumnType::integer) values[i] = from.get<std::int32_t>();
-        else values[i] = from.get<std::int8_t>();
-        if (type == ColumnType::status && !(values[i] >= 0 && values[i] < static_cast<double>(status_names().size())))
-            throw BadBytes("an unknown status");
-    }
+    if (type == ColumnType::real) return get_as<double>(from, values, count);
+    if (type == ColumnType::integer) return get_as<std::int32_t>(from, values, count);
+    get_as<std::int8_t>(from, values, count);
+    const auto statuses = static_cast<double>(status_names().size());
+    if (!std::all_of(values, values + count, [&](double status) { return status >= 0 && status < statuses; }))
+        throw BadBytes("an unknown status");
 }
 
 std::vector<ColumnType> kept_types(const ScenarioResults& results) {

@@ -12,7 +12,7 @@ namespace credence {
 namespace {
 
 const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 6, aggregates_version = 7;  ///< of a journal that keeps trials, or none
+constexpr std::uint32_t journal_version = 8;
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
@@ -24,6 +24,7 @@ constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 std::string header_bytes(const JournalHeader& header) {
     ByteWriter body;
     body.put(static_cast<std::int32_t>(schema_version));
+    body.put(static_cast<std::uint8_t>(header.study.keep));
     body.put(static_cast<std::uint8_t>(header.base));
     body.put(header.base_file.inode);
     body.put(header.base_file.size);
@@ -35,7 +36,7 @@ std::string header_bytes(const JournalHeader& header) {
     for (const Scenario& scenario : header.study.scenarios) body.put_text(scenario_text(scenario));
     ByteWriter all;
     all.put_raw(magic.data(), magic.size());
-    all.put(header.study.keep == Keep::trials ? journal_version : aggregates_version);
+    all.put(journal_version);
     all.put(static_cast<std::uint32_t>(body.size()));
     all.put_raw(body.bytes().data(), body.size());
     all.put(checksum(all.bytes().data(), all.size()));
@@ -48,9 +49,9 @@ std::size_t header_size(const std::string& start, const std::string& path) {
         refuse(path, "is not a journal of credence", another);
     ByteReader from(start.data(), start.size());
     from.raw(magic.size());
-    if (const auto version = from.get<std::uint32_t>(); version != journal_version && version != aggregates_version)
-        refuse(path, "is a journal of version " + std::to_string(version) + ", this program's are " +
-                         std::to_string(journal_version) + " and " + std::to_string(aggregates_version),
+    if (const auto version = from.get<std::uint32_t>(); version != journal_version)
+        refuse(path, "is a journal of version " + std::to_string(version) + ", this program's is " +
+                         std::to_string(journal_version),
                "Finish the run with the release that began it");
     const auto body = from.get<std::uint32_t>();
     if (body > largest_header) refuse(path, "is damaged: its header is too long", another);
@@ -67,8 +68,9 @@ JournalHeader read_header(const std::string& start, const std::string& path, std
         refuse(path, "is of schema version " + std::to_string(version) + ", this program's is " +
                          std::to_string(schema_version), "Finish the run with the release that began it");
     JournalHeader header;
-    ByteReader version(all + magic.size(), sizeof(std::uint32_t));
-    header.study.keep = version.get<std::uint32_t>() == aggregates_version ? Keep::aggregates : Keep::trials;
+    const auto keep = body.get<std::uint8_t>();
+    if (keep > static_cast<std::uint8_t>(Keep::aggregates)) throw BadBytes("an unknown kind of study");
+    header.study.keep = static_cast<Keep>(keep);
     const auto base = body.get<std::uint8_t>();
     if (base > static_cast<std::uint8_t>(JournalBase::replaced)) throw BadBytes("an unknown kind of base");
     header.base = static_cast<JournalBase>(base);

@@ -84,8 +84,7 @@ void Journal::load_totals(std::size_t scenario, ScenarioResults& results) const 
         ByteReader totals(bytes.data(), bytes.size());
         get_totals(totals, results);
         for (const ArmResults& arm : results.arms)
-            if (arm.counted < 0 || arm.counted > kept.counted ||
-                (results.keep == Keep::aggregates && arm.aggregates.trials() != kept.counted))
+            if (arm.totals.trials.trials() != kept.counted)
                 throw BadBytes("totals of an impossible number of trials");
         read_details(scenario, results);
     } catch (const BadBytes& bad) {

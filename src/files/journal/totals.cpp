@@ -1,6 +1,6 @@
 #include "files/journal/totals.hpp"
 
-#include "study/visit_totals.hpp"
+#include "totals/visit_totals.hpp"
 
 #include <algorithm>
 
@@ -72,10 +72,10 @@ void get_moments(ByteReader& from, ExactMoments& moments) {
     get(from, moments.square_sum);
 }
 
-void put_aggregates(ByteWriter& to, const ArmAggregates& aggregates) {
-    for (const std::int64_t trials : aggregates.statuses) to.put_count(static_cast<std::uint64_t>(trials));
-    for (const ExactMoments& column : aggregates.columns) put_moments(to, column);
-    for (const std::vector<DifferenceTotals>& columns : aggregates.differences)
+void put_trials(ByteWriter& to, const TrialTotals& all) {
+    for (const std::int64_t trials : all.statuses) to.put_count(static_cast<std::uint64_t>(trials));
+    for (const ExactMoments& column : all.columns) put_moments(to, column);
+    for (const std::vector<DifferenceTotals>& columns : all.differences)
         for (const DifferenceTotals& totals : columns) {
             put_moments(to, totals.difference);
             to.put_count(static_cast<std::uint64_t>(totals.below));
@@ -83,40 +83,32 @@ void put_aggregates(ByteWriter& to, const ArmAggregates& aggregates) {
         }
 }
 
-void get_aggregates(ByteReader& from, ArmAggregates& aggregates) {
-    for (std::int64_t& trials : aggregates.statuses) trials = get_number(from);
-    for (ExactMoments& column : aggregates.columns) get_moments(from, column);
-    for (std::vector<DifferenceTotals>& columns : aggregates.differences)
+void get_trials(ByteReader& from, TrialTotals& all) {
+    for (std::int64_t& trials : all.statuses) trials = get_number(from);
+    for (ExactMoments& column : all.columns) get_moments(from, column);
+    for (std::vector<DifferenceTotals>& columns : all.differences)
         for (DifferenceTotals& totals : columns) {
             get_moments(from, totals.difference);
             totals.below = get_number(from);
             totals.above = get_number(from);
         }
-    if (const char* problem = problem_of(aggregates)) throw BadBytes(problem);
-}
-
-void put_arm(ByteWriter& to, const ArmResults& arm) {
-    to.put(arm.counted);
-    visit_totals([&](const auto& part) { put(to, part); }, arm);
-    put_aggregates(to, arm.aggregates);
-}
-
-void get_arm(ByteReader& from, ArmResults& arm) {
-    arm.counted = from.get<std::int64_t>();
-    visit_totals([&](auto& part) { get(from, part); }, arm);
-    if (arm.aggregates.statuses.empty()) return;  // the trials are kept
-    get_aggregates(from, arm.aggregates);
-    if (arm.aggregates.counted() != arm.counted) throw BadBytes("totals of an impossible number of trials");
+    if (const char* problem = problem_of(all)) throw BadBytes(problem);
 }
 
 }  // namespace
 
 void put_totals(ByteWriter& to, const ScenarioResults& results) {
-    for (const ArmResults& arm : results.arms) put_arm(to, arm);
+    for (const ArmResults& arm : results.arms) put_trials(to, arm.totals.trials);
+    for (const ArmResults& arm : results.arms) visit_totals([&](const auto& part) { put(to, part); }, arm.totals);
+}
+
+void get_trial_totals(ByteReader& from, ScenarioResults& results) {
+    for (ArmResults& arm : results.arms) get_trials(from, arm.totals.trials);
 }
 
 void get_totals(ByteReader& from, ScenarioResults& results) {
-    for (ArmResults& arm : results.arms) get_arm(from, arm);
+    get_trial_totals(from, results);
+    for (ArmResults& arm : results.arms) visit_totals([&](auto& part) { get(from, part); }, arm.totals);
     if (from.left() != 0) throw BadBytes("has more than the totals");
 }
 

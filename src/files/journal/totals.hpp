@@ -11,7 +11,10 @@ namespace credence {
 /// trials are left out.
 void put_totals(ByteWriter& to, const ScenarioResults& results);
 
-/// Reads them into results of the same scenario. Throws BadBytes where they are not its totals or are invalid.
+/// Reads the totals of trials alone, which come first.
+void get_trial_totals(ByteReader& from, ScenarioResults& results);
+
+/// Reads all of them into results of the same scenario. Throws BadBytes where they are not its totals or are invalid.
 void get_totals(ByteReader& from, ScenarioResults& results);
 
 }  // namespace credence

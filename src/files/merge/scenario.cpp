@@ -1,5 +1,7 @@
 #include "files/merge/scenario.hpp"
 
+#include "study/block_results.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <utility>

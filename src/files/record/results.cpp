@@ -48,15 +48,18 @@ ArmResults empty_arm(const ScenarioResults& results) {
     for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
     for (const Series& series : results.all_series) {
         const std::size_t counts = series.role == SeriesRole::nees ? steps * coverage_level_count : 0;
-        arm.totals.push_back({std::vector<ExactSum>(steps), std::vector<ExactSum>(series.integer ? 0 : steps), {},
-                              ExactSum(), std::vector<std::int64_t>(counts)});
+        arm.totals.series.push_back({std::vector<ExactSum>(steps),
+                                     std::vector<ExactSum>(series.integer ? 0 : steps),
+                                     {},
+                                     ExactSum(),
+                                     std::vector<std::int64_t>(counts)});
     }
-    arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
+    arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     const std::size_t detailed = static_cast<std::size_t>(results.detailed()) * steps;
     arm.errors.assign(detailed * static_cast<std::size_t>(results.state_size()), nan);
     arm.nees.assign(detailed, nan);
     arm.moments.assign(static_cast<std::size_t>(results.detailed() * results.moment_count()), nan);
-    arm.present.resize(steps);
+    arm.totals.present.resize(steps);
     return arm;
 }
 
@@ -131,6 +134,8 @@ Study study_of(Record record) {
     results.columns.erase(results.columns.begin() + RecordColumn::unseen);
     std::vector<std::vector<double>>& columns = results.arms.front().columns;
     columns.erase(columns.begin() + RecordColumn::unseen);
+    std::vector<ExactMoments>& totals = results.arms.front().totals.trials.columns;
+    totals.erase(totals.begin() + RecordColumn::unseen);
     study.trials = results.trials;
     study.scenarios.push_back(std::move(results));
     return study;

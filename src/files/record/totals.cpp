@@ -35,15 +35,15 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
     keeps_nees_ = shape.trials <= most_values / shape.steps;
     keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && !keeps_nees_;
     if (keeps_nees_) nees_.resize(size(shape.steps));
-    if (keeps_cells_) arm().cells.resize(size(shape.steps) * distribution_cells);
+    if (keeps_cells_) arm().totals.cells.resize(size(shape.steps) * distribution_cells);
     for (const ComponentGroup& group : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
     roundings_.resize(size(shape.steps) * (1 + shape.groups.size()));
-    for (SeriesTotals& totals : arm().totals) totals.present.resize(size(shape.steps));
+    for (SeriesTotals& totals : arm().totals.series) totals.present.resize(size(shape.steps));
     if (!shape.has_joint()) return;
     dimensions_.resize(size(shape.steps));
-    arm().totals.front().dimensions.resize(size(shape.steps));
+    arm().totals.series.front().dimensions.resize(size(shape.steps));
     bounds_by_dimension_.resize(size(shape.n + 1) * coverage_level_count);
 }
 
@@ -124,11 +124,11 @@ void RecordTotals::add_rounding(std::size_t k) {
 
 void RecordTotals::finish_rounding() {
     const std::size_t groups = shape_.groups.size();
-    arm().rounding.assign(groups, 0);
+    arm().totals.rounding.assign(groups, 0);
     for (std::size_t k = 0; k < size(shape_.steps); ++k) {
         const double* sums = &roundings_[k * (1 + groups)];
         for (std::size_t b = 0; sums[0] > 0 && b < groups; ++b)
-            arm().rounding[b] = std::max(arm().rounding[b], sums[1 + b] / sums[0]);
+            arm().totals.rounding[b] = std::max(arm().totals.rounding[b], sums[1 + b] / sums[0]);
     }
 }
 
@@ -213,18 +213,17 @@ void RecordTotals::add_columns(std::int64_t trial) {
 }
 
 void RecordTotals::add_totals() {
-    ++arm().counted;
     for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
     add_distribution();
     for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
-        arm().products.sum[lag].add(products_.sum[lag]);
-        arm().products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
-        arm().products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
+        arm().totals.products.sum[lag].add(products_.sum[lag]);
+        arm().totals.products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
+        arm().totals.products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
     }
 }
 
 void RecordTotals::add_series(std::size_t f) {
-    SeriesTotals& totals = arm().totals[f];
+    SeriesTotals& totals = arm().totals.series[f];
     const Series& declared = all_series_.list[f];
     const bool of_innovations = declared.role == SeriesRole::nis || declared.role == SeriesRole::rows;
     double run = 0, count = 0;
@@ -249,7 +248,7 @@ void RecordTotals::add_series(std::size_t f) {
 void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
     const double* bound = bounds(f, k);
     for (std::size_t l = 0; l < coverage_level_count; ++l)
-        arm().totals[f].covered[k * coverage_level_count + l] += value < bound[l];
+        arm().totals.series[f].covered[k * coverage_level_count + l] += value < bound[l];
 }
 
 /// The bounds [levels] of a group's NEES at a step.
@@ -265,12 +264,12 @@ const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
 /// The values of `nees_` are their probabilities, so that those of states of any dimension are together.
 void RecordTotals::add_distribution() {
     for (const std::size_t k : present_) {
-        ++arm().present[k];
+        ++arm().totals.present[k];
         const double nees = nees_at(k);
         if (std::isnan(nees)) continue;
         const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
         if (keeps_cells_)
-            ++arm().cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
+            ++arm().totals.cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
         if (keeps_nees_) nees_[k].push_back(1 - chi_square_p(nees, dimension));
     }
 }
@@ -278,12 +277,15 @@ void RecordTotals::add_distribution() {
 Record RecordTotals::finish() {
     finish_rounding();
     record_.gaps = gaps_.finish();
+    arm().totals.trials = trial_totals(record_.results.columns, 1, size(shape_.trials),
+                                       [&](std::size_t, std::size_t c) { return arm().columns[c].data(); })
+                              .front();
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");
-    if (keeps_nees_ || !keeps_cells_) arm().distribution_distance.assign(size(shape_.steps), nan);
+    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(size(shape_.steps), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
-        arm().distribution_distance[k] = uniform_distance(std::move(nees_[k]));
+        arm().totals.distribution_distance[k] = uniform_distance(std::move(nees_[k]));
     return std::move(record_);
 }
 

@@ -47,6 +47,7 @@ std::optional<Column> column_of(const Handle& arm, const std::string& name) {
     const Handle& object = dataset.object();
     const bool status = hdf5::has_attribute(object, "flag_meanings");
     if (!names_something(name) || (!status && !hdf5::has_attribute(object, "_FillValue"))) return std::nullopt;
+    if (hdf5::has_attribute(object, "CLASS")) return std::nullopt;  // a coordinate
     if (dataset.extents() != hdf5::Dataset(arm, "trial").extents()) return std::nullopt;
     const std::string long_name = printable(hdf5::read_text(object, "long_name")),
                       unit = printable(hdf5::read_text(object, "units"));

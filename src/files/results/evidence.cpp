@@ -45,7 +45,7 @@ void write_coverage(const Handle& group, const hdf5::Dimension& step, const Scen
         hdf5::new_dimension(group, "level", levels, {"share of chi-square below the coverage bound", "1"});
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
         if (const Series& series = results.all_series[f]; series.role == SeriesRole::nees)
-            hdf5::new_variable(group, coverage_name(series), arm.totals[f].covered, {&step, &level},
+            hdf5::new_variable(group, coverage_name(series), arm.totals.series[f].covered, {&step, &level},
                                {series.long_name + ": counted trials below that quantile of chi-square", "1"});
     level.close();
 }
@@ -55,11 +55,11 @@ void write_products(const Handle& group, const hdf5::Dimension& part, const Scen
     if (lags(results) == 0) return;
     auto lag = numbered<std::int32_t>(group, "lag", 1, lags(results), "steps between two whitened innovations");
     const std::string what = "products of whitened innovations, over the detailed trials, their steps and rows";
-    hdf5::new_variable(group, "whiteness_total", parts_of(arm.products.sum, part.size), {&lag, &part},
+    hdf5::new_variable(group, "whiteness_total", parts_of(arm.totals.products.sum, part.size), {&lag, &part},
                        {"total of " + what, "1"});
-    hdf5::new_variable(group, "whiteness_square_total", parts_of(arm.products.square_sum, part.size), {&lag, &part},
-                       {"total over the trials of the square of each one's sum of " + what, "1"});
-    hdf5::new_variable(group, "whiteness_count", arm.products.count, {&lag}, {"number of " + what, "1"});
+    hdf5::new_variable(group, "whiteness_square_total", parts_of(arm.totals.products.square_sum, part.size),
+                       {&lag, &part}, {"total over the trials of the square of each one's sum of " + what, "1"});
+    hdf5::new_variable(group, "whiteness_count", arm.totals.products.count, {&lag}, {"number of " + what, "1"});
     lag.close();
 }
 
@@ -102,19 +102,19 @@ void read_coverage(const Handle& group, const ScenarioResults& results, ArmResul
     for (std::size_t f = 0; f < results.all_series.size(); ++f) {
         if (results.all_series[f].role != SeriesRole::nees) continue;
         const std::string name = coverage_name(results.all_series[f]);
-        auto& covered = arm.totals[f].covered;
+        auto& covered = arm.totals.series[f].covered;
         covered = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), levels.size()});
         for (std::size_t i = 0; i < covered.size(); ++i)
-            if (covered[i] < (i % levels.size() == 0 ? 0 : covered[i - 1]) || covered[i] > arm.counted)
+            if (covered[i] < (i % levels.size() == 0 ? 0 : covered[i - 1]) || covered[i] > arm.totals.trials.counted())
                 throw Error(hdf5::place_of(group, name), "its counts do not rise from 0 to the counted trials");
     }
 }
 
 void read_cells(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const std::string name = cells_name(results);
-    arm.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), distribution_cells});
-    for (auto row = arm.cells.begin(); row != arm.cells.end(); row += distribution_cells) {
-        std::int64_t left = arm.counted;
+    arm.totals.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), distribution_cells});
+    for (auto row = arm.totals.cells.begin(); row != arm.totals.cells.end(); row += distribution_cells) {
+        std::int64_t left = arm.totals.trials.counted();
         for (auto count = row; count != row + distribution_cells; ++count) {
             if (*count < 0 || *count > left) throw Error(hdf5::place_of(group, name), "its counts do not add up");
             left -= *count;
@@ -126,10 +126,10 @@ void read_cells(const Handle& group, const ScenarioResults& results, ArmResults&
 void read_products(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm) {
     const hsize_t count = lags(results);
     if (count == 0) return;
-    arm.products = {read_sums(group, "whiteness_total", {count, parts}),
+    arm.totals.products = {read_sums(group, "whiteness_total", {count, parts}),
                     read_sums(group, "whiteness_square_total", {count, parts}),
                     read_as<std::int64_t>(group, "whiteness_count", {count})};
-    for (const std::int64_t products : arm.products.count)
+    for (const std::int64_t products : arm.totals.products.count)
         if (products < 0) throw Error(hdf5::place_of(group, "whiteness_count"), "is negative");
 }
 
@@ -152,7 +152,7 @@ void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, c
     if (distribution_counted(results.steps())) {
         auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
                                            "cell of chi-square; every one is as probable as any other");
-        hdf5::new_variable(group, cells_name(results), arm.cells, {&dimensions.step, &cell},
+        hdf5::new_variable(group, cells_name(results), arm.totals.cells, {&dimensions.step, &cell},
                            {results.all_series.front().long_name + ": counted trials by cell", "1"});
         cell.close();
     }

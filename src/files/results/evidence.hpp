@@ -23,7 +23,8 @@ std::vector<std::string> evidence_links(const ScenarioResults& results);
 void write_evidence(const hdf5::Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm);
 
-/// Reads what `write_evidence` wrote; results.trials and arm.counted are known. Throws Error where it is damaged.
+/// Reads what `write_evidence` wrote; results.trials and arm.totals.trials.counted() are known. Throws Error where it
+/// is damaged.
 void read_evidence(const hdf5::Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm);
 
 }  // namespace credence

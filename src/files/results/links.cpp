@@ -2,7 +2,7 @@
 
 #include <credence/error.hpp>
 
-#include "files/results/aggregates.hpp"
+#include "files/results/trial_totals.hpp"
 #include "files/results/evidence.hpp"
 
 #include <algorithm>
@@ -15,9 +15,10 @@ std::vector<std::string> arm_links(const ScenarioResults& results) {
         names.push_back("trial");
         for (const Column& column : results.columns) names.push_back(column.name);
     } else {
-        const std::vector<std::string> aggregates = aggregates_links(results.arms.size());
-        names.insert(names.end(), aggregates.begin(), aggregates.end());
+        names.insert(names.end(), {"first_block", "last_block"});
     }
+    const std::vector<std::string> totals = trial_totals_links(results.arms.size());
+    names.insert(names.end(), totals.begin(), totals.end());
     for (const Series& series : results.all_series) {
         names.push_back(series.name + "_total");
         if (!series.integer) names.push_back(series.name + "_square_total");

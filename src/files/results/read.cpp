@@ -3,13 +3,13 @@
 #include <credence/text.hpp>
 
 #include "files/hdf5/read.hpp"
-#include "files/results/aggregates.hpp"
 #include "files/results/columns.hpp"
 #include "files/results/declared.hpp"
 #include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
 #include "files/results/links.hpp"
 #include "files/results/sums.hpp"
+#include "files/results/trial_totals.hpp"
 #include "study/releases.hpp"
 
 #include <algorithm>
@@ -48,11 +48,11 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
-/// Throws where the totals are not of all trials that did not fail.
-void check_counted(const Handle& group, const ArmResults& arm, std::int64_t counted) {
-    if (counted != arm.counted)
-        throw Error(hdf5::attribute_place(group, "counted_trials"),
-                    "is " + std::to_string(arm.counted) + ", but " + std::to_string(counted) + " trials did not fail");
+/// Throws unless the totals are of all trials that did not fail.
+void check_counted(const std::string& place, std::int64_t counted, const ArmResults& arm) {
+    if (counted != arm.totals.trials.counted())
+        throw Error(place, "counts " + std::to_string(counted) + " trials that did not fail, but the totals are of " +
+                               std::to_string(arm.totals.trials.counted()));
 }
 
 /// A study that is being read, and its file.
@@ -71,7 +71,7 @@ std::shared_ptr<const KeptColumns> read_columns(const Handle& group, const Scena
     std::vector<std::vector<std::uint32_t>> sums;
     for (const Column& column : results.columns) {
         CheckedColumn checked = check_column(group, column, results.trials);
-        if (checked.counted) check_counted(group, arm, *checked.counted);
+        if (checked.counted) check_counted(hdf5::place_of(group, column.name), *checked.counted, arm);
         sums.push_back(std::move(checked.sums));
     }
     return columns_of_file(source.file, source.path, results.scenario.name + "/" + arm.name, results.columns,
@@ -98,7 +98,7 @@ hsize_t read_parts(const Handle& group) {
 void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const hsize_t parts = read_parts(group);
     for (const Series& series : results.all_series)
-        arm.totals.push_back(read_series(group, series, static_cast<hsize_t>(results.steps()), parts));
+        arm.totals.series.push_back(read_series(group, series, static_cast<hsize_t>(results.steps()), parts));
     read_evidence(group, results, parts, arm);
 }
 
@@ -106,10 +106,7 @@ void read_totals(const Handle& group, const ScenarioResults& results, ArmResults
 class TotalsOfFile : public KeptTotals {
 public:
     TotalsOfFile(const Opened& source, const ScenarioResults& results) : source_(source), blocks_(results.blocks) {
-        for (const ArmResults& arm : results.arms) {
-            counted_.push_back(arm.counted);
-            aggregates_.push_back(arm.aggregates);
-        }
+        for (const ArmResults& arm : results.arms) of_trials_.push_back(arm.totals.trials);
     }
 
     void load(ScenarioResults& results) const override {
@@ -118,9 +115,8 @@ public:
             const Handle scenario = hdf5::open_group(*source_.file, results.scenario.name);
             for (std::size_t a = 0; a < results.arms.size(); ++a) {
                 ArmResults& arm = results.arms[a];
-                arm.counted = counted_[a];
-                arm.aggregates = aggregates_[a];
-                arm.totals.clear();
+                arm.totals.trials = of_trials_[a];
+                arm.totals.series.clear();
                 read_totals(hdf5::open_group(scenario, arm.name), results, arm);
             }
         });
@@ -129,8 +125,7 @@ public:
 private:
     Opened source_;
     BlockRanges blocks_;
-    std::vector<std::int64_t> counted_;       ///< by arm
-    std::vector<ArmAggregates> aggregates_;  ///< likewise
+    std::vector<TrialTotals> of_trials_;  ///< by arm
 };
 
 /// Reads from the first arm which trials are present; the others must agree.
@@ -148,13 +143,10 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
 
     ArmResults arm;
     arm.name = name;
-    arm.counted = hdf5::read_number<std::int64_t>(group, "counted_trials");
-    if (trials) {
-        arm.kept = read_columns(group, results, arm, source);
-    } else {
-        arm.aggregates = read_aggregates(group, results, read_parts(group));
-        check_counted(group, arm, arm.aggregates.counted());
-    }
+    arm.totals.trials = read_trial_totals(group, results, read_parts(group));
+    check_counted(hdf5::attribute_place(group, "counted_trials"),
+                  hdf5::read_number<std::int64_t>(group, "counted_trials"), arm);
+    if (trials) arm.kept = read_columns(group, results, arm, source);
     if (source.most_totals) read_totals(group, results, arm);
     return arm;
 }

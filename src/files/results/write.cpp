@@ -2,10 +2,10 @@
 
 #include <credence/text.hpp>
 
-#include "files/results/aggregates.hpp"
 #include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
 #include "files/results/sums.hpp"
+#include "files/results/trial_totals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,15 +81,15 @@ void write_role(const Handle& variable, const Series& series) {
 }
 
 std::size_t largest_part_count(const ArmResults& arm) {
-    std::size_t largest = largest_part_count(arm.aggregates);
+    std::size_t largest = largest_part_count(arm.totals.trials);
     const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
-    for (const SeriesTotals& totals : arm.totals) {
+    for (const SeriesTotals& totals : arm.totals.series) {
         std::for_each(totals.sum.begin(), totals.sum.end(), note);
         std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
         note(totals.run_square_sum);
     }
-    std::for_each(arm.products.sum.begin(), arm.products.sum.end(), note);
-    std::for_each(arm.products.square_sum.begin(), arm.products.square_sum.end(), note);
+    std::for_each(arm.totals.products.sum.begin(), arm.totals.products.sum.end(), note);
+    std::for_each(arm.totals.products.square_sum.begin(), arm.totals.products.square_sum.end(), note);
     return largest;
 }
 
@@ -124,7 +124,7 @@ Dimension new_trial_dimension(const Handle& group, const ScenarioResults& result
 
 void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
     const Handle group = hdf5::new_group(scenario_group, arm.name);
-    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.counted);
+    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.totals.trials.counted());
     std::optional<Dimension> trial;  // the first link, if trials are kept
     if (results.keep == Keep::trials)
         trial.emplace(new_trial_dimension(group, results));
@@ -136,10 +136,9 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
                                             "part of an exact total: 0 the total, the others what rounding left");
     if (trial)
         for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
-    else
-        write_aggregates(group, part, results, arm);
+    write_trial_totals(group, part, results, arm);
     for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        write_series(group, step, part, results.all_series[f], arm.totals[f]);
+        write_series(group, step, part, results.all_series[f], arm.totals.series[f]);
     write_evidence(group, {step, part}, results, arm);
     if (trial) trial->close();
     step.close();

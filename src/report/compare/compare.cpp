@@ -10,44 +10,20 @@ namespace credence {
 
 namespace {
 
-/// Counts of the arm; `statuses`: of the trials that are compared.
-ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<double>& statuses) {
+/// Trials by how they ended.
+std::vector<std::int64_t> counted(const std::vector<double>& statuses) {
+    std::vector<std::int64_t> counts(status_names().size());
+    for (const double status : statuses) ++counts[static_cast<std::size_t>(status)];
+    return counts;
+}
+
+/// Counts of the arm; `statuses`: of the trials that are compared, by how they ended.
+ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<std::int64_t>& statuses) {
     ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
-    for (const double value : statuses) {
-        const auto status = static_cast<Status>(static_cast<int>(value));
-        side.failed += failed(status);
-        side.diverged += status == Status::diverged;
-    }
+    for (std::size_t status = 0; status < statuses.size(); ++status)
+        if (failed(static_cast<Status>(status))) side.failed += statuses[status];
+    side.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
     return side;
-}
-
-/// The same where no trial is kept; all trials are compared.
-ComparedSide side_of_aggregates(const ComparedArm& compared, const StudyFile& file, const Comparison& comparison) {
-    const ArmAggregates& aggregates = compared.arm.aggregates;
-    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials,
-                      aggregates.trials() - aggregates.counted(),
-                      aggregates.statuses[static_cast<std::size_t>(Status::diverged)], {}};
-    std::size_t f = 0;
-    for (std::size_t c = 0; c < compared.results.columns.size(); ++c) {
-        if (!is_reported(compared.results.columns[c])) continue;
-        const bool all_paired = aggregates.columns[c].count == comparison.columns[f++].paired.pairs;
-        side.mean.push_back(all_paired ? moments_of(aggregates.columns[c]).mean : std::nan(""));
-    }
-    return side;
-}
-
-/// The arms' own means of every column, over the pairs of its difference.
-void add_means(ComparedPair& pair, const ChosenPair& chosen, const CommonTrials& common) {
-    const std::vector<Column>& columns = chosen.a.results.columns;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (!is_reported(columns[c])) continue;
-        std::vector<double> a = common.of_a(figure_values(chosen.a.results, chosen.a.arm, c)),
-                            b = common.of_b(figure_values(chosen.b.results, chosen.b.arm, c));
-        for (std::size_t i = 0; i < a.size(); ++i)
-            if (std::isnan(a[i]) || std::isnan(b[i])) a[i] = b[i] = std::nan("");
-        pair.a.mean.push_back(summarise(std::move(a)).mean);
-        pair.b.mean.push_back(summarise(std::move(b)).mean);
-    }
 }
 
 /// Arms of different files. Two shards of one study, for example, have no trial in common.
@@ -58,33 +34,32 @@ void require_common_trials(const ChosenPair& chosen, const CommonTrials& common)
                      " in common. Merge the shards of each study, or compare the same shard of both.");
 }
 
-/// Two arms of one file that keeps no trials.
-ComparedPair compared_aggregates(const ChosenPair& chosen, std::uint64_t root_seed) {
-    ComparedPair pair;
-    pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
-    pair.title = chosen.a.results.scenario.title;
-    pair.trials = chosen.a.results.trials;
-    pair.a = side_of_aggregates(chosen.a, chosen.file_a, pair.comparison);
-    pair.b = side_of_aggregates(chosen.b, chosen.file_b, pair.comparison);
-    pair.complete = chosen.file_a.study.complete;
-    pair.keep = Keep::aggregates;
-    return pair;
-}
-
 ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
-    if (chosen.a.results.keep == Keep::aggregates) return compared_aggregates(chosen, root_seed);
     const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
-    const CommonTrials common(a, b);
-    require_common_trials(chosen, common);
     ComparedPair pair;
     pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
     pair.title = a.scenario.title;
-    pair.trials = common.count();
-    pair.a = side_of(chosen.a, chosen.file_a, common.of_a(column_values(a, chosen.a.arm, status_column(a.columns))));
-    pair.b = side_of(chosen.b, chosen.file_b, common.of_b(column_values(b, chosen.b.arm, status_column(b.columns))));
     pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
-    pair.differences = shown_differences(a.scenario, b.scenario);
-    add_means(pair, chosen, common);
+    pair.keep = a.keep;
+    if (&a == &b) {
+        pair.trials = a.trials;
+        pair.a = side_of(chosen.a, chosen.file_a, chosen.a.arm.totals.trials.statuses);
+        pair.b = side_of(chosen.b, chosen.file_b, chosen.b.arm.totals.trials.statuses);
+    } else {
+        const CommonTrials common(a, b);
+        require_common_trials(chosen, common);
+        pair.trials = common.count();
+        const auto statuses = [](const ComparedArm& one) {
+            return column_values(one.results, one.arm, status_column(one.results.columns));
+        };
+        pair.a = side_of(chosen.a, chosen.file_a, counted(common.of_a(statuses(chosen.a))));
+        pair.b = side_of(chosen.b, chosen.file_b, counted(common.of_b(statuses(chosen.b))));
+        pair.differences = shown_differences(a.scenario, b.scenario);
+    }
+    for (const ComparedColumn& column : pair.comparison.columns) {
+        pair.a.mean.push_back(column.paired.mean_a);
+        pair.b.mean.push_back(column.paired.mean_b);
+    }
     return pair;
 }
 

@@ -4,6 +4,7 @@
 // [docs/statistics.md, Comparison]
 
 #include <credence/detail/comparison.hpp>
+#include <credence/study.hpp>
 #include <credence/consistency.hpp>
 #include <optional>
 #include <string>

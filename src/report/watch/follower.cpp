@@ -9,24 +9,30 @@
 
 namespace credence {
 
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
+    std::vector<std::size_t> watched;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+    return watched;
+}
+
 WatchedScenario described(const ScenarioResults& results) {
     WatchedScenario scenario;
     scenario.name = results.scenario.name;
-    for (const std::size_t index : watched_columns(results.columns)) scenario.columns.push_back(results.columns[index]);
-    return scenario;
-}
-
-std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const WatchedSums& sums) {
-    std::vector<WatchedArm> arms;
-    for (std::size_t a = 0; a < results.arms.size(); ++a) {
-        const ArmSums nothing{std::vector<RunningMoments>(watched_columns(results.columns).size()), {}, 0, 0};
-        const ArmSums& of_arm = a < sums.arms.size() ? sums.arms[a] : nothing;
-        WatchedArm arm{results.arms[a].name, of_arm.failed, of_arm.diverged, {}, {}, of_arm.difference.moments()};
-        for (const RunningMoments& column : of_arm.columns) arm.columns.push_back(column.moments());
-        if (const ArmResults* fixed = baseline_of(results, results.arms[a])) arm.other = fixed->name;
-        arms.push_back(std::move(arm));
+    const std::vector<std::size_t> watched = watched_columns(results.columns);
+    for (const std::size_t column : watched) scenario.columns.push_back(results.columns[column]);
+    for (const ArmResults& of_arm : results.arms) {
+        const TrialTotals& totals = of_arm.totals.trials;
+        WatchedArm arm{of_arm.name, totals.trials() - totals.counted(),
+                       totals.statuses[static_cast<std::size_t>(Status::diverged)], {}, {}, {}};
+        for (const std::size_t column : watched) arm.columns.push_back(column_moments(of_arm, column));
+        if (const ArmResults* other = baseline_of(results, of_arm)) {
+            arm.other = other->name;
+            arm.difference = moments_of(column_differences(results, of_arm, *other, watched.front()).difference);
+        }
+        scenario.arms.push_back(std::move(arm));
     }
-    return arms;
+    return scenario;
 }
 
 JournalFollower::JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results)
@@ -50,8 +56,8 @@ void JournalFollower::read_file(const std::string& path) {
                          "). Put that back, or remove the journal.");
     for (std::size_t s = 0; s < followed_.size(); ++s) {
         followed_[s].in_file = blocks_of(stored.scenarios[s]);
-        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has other counts
-            study_.scenarios[s].arms[a].aggregates = stored.scenarios[s].arms[a].aggregates;
+        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has others
+            study_.scenarios[s].arms[a].totals.trials = stored.scenarios[s].arms[a].totals.trials;
     }
 }
 
@@ -68,20 +74,10 @@ bool JournalFollower::goes_on_with(const JournalBytes& journal) const {
 
 void JournalFollower::take(const JournalBytes& journal, const FoundCommit& record) {
     Followed& followed = followed_[record.scenario];
-    const ScenarioResults& results = study_.scenarios[record.scenario];
-    const BlockLayout& layout = layouts_[record.scenario];
     for (const BlockRange& range : record.start.ranges) followed.in_journal.add(range, record.start.trials);
-    for (std::size_t b = 0; b < record.places.size() && layout.keep() == Keep::trials; ++b) {
-        const JournalBlock& block = record.start.blocks[b];
-        const std::string bytes = journal.read(record.places[b], layout.details_offset(0, block.trials));
-        followed.in_journal.add(block.index, sums_of(results, block.trials, [&](std::size_t arm, std::size_t column) {
-            const auto at = static_cast<std::size_t>(layout.column_offset(arm, column, block.trials));
-            std::vector<double> values(static_cast<std::size_t>(block.trials));
-            ByteReader from(bytes.data() + at, bytes.size() - at);
-            get_values(from, results.columns[column].type, values.data(), values.size());
-            return values;
-        }));
-    }
+    if (header_.study.keep == Keep::trials)
+        for (const JournalBlock& block : record.start.blocks)
+            followed.in_journal.add({block.index, block.index}, record.start.trials);
     followed.in_file.asked(record.start.trials);
     followed.in_journal.asked(record.start.trials);
     followed.counted = record.start.counted;
@@ -90,16 +86,7 @@ void JournalFollower::take(const JournalBytes& journal, const FoundCommit& recor
     shard_ = record.start.shard;
 }
 
-WatchedSums JournalFollower::sums(std::size_t scenario) const {
-    if (header_.study.keep == Keep::aggregates) return sums_of_aggregates(study_.scenarios[scenario]);
-    const Followed& followed = followed_[scenario];
-    WatchedSums sums;
-    followed.in_file.add_to(sums);
-    if (!followed.already_in_file()) followed.in_journal.add_to(sums);
-    return sums;
-}
-
-/// Checks that the study is the one that a resumed run would ask for, and that totals and columns agree.
+/// Takes the last totals of a scenario, and checks that they are of the blocks that are there.
 void JournalFollower::check(std::size_t scenario) {
     Followed& followed = followed_[scenario];
     if (!followed.totals) return;
@@ -107,13 +94,12 @@ void JournalFollower::check(std::size_t scenario) {
     ByteReader from(followed.totals->data(), followed.totals->size());
     load_totals(results);
     get_totals(from, results);
-    drop_totals(results);  // counted and aggregates are kept
+    drop_totals(results);  // those of trials are kept
     followed.totals.reset();
     if (followed.already_in_file()) return;
     if (followed.trials() != followed.counted) throw BadBytes("totals and blocks do not agree");
-    const WatchedSums of_trials = sums(scenario);
-    for (std::size_t a = 0; a < of_trials.arms.size(); ++a)
-        if (results.arms[a].counted != followed.counted - of_trials.arms[a].failed)
+    for (const ArmResults& arm : results.arms)
+        if (arm.totals.trials.trials() != followed.counted)
             throw BadBytes("totals of an impossible number of trials");
 }
 
@@ -141,7 +127,6 @@ void JournalFollower::tell(Snapshot& snapshot) const {
                                 over_both([&](const WatchedBlocks& part) { return part.trials_of(shard_); });
         scenario.blocks_asked = scenario.blocks + blocks_of_shard(shard_, asked_) -
                                 over_both([&](const WatchedBlocks& part) { return part.blocks_of(shard_); });
-        scenario.arms = watched_arms(study_.scenarios[s], sums(s));
         snapshot.scenarios.push_back(std::move(scenario));
     }
 }

@@ -4,15 +4,12 @@
 #include "report/watch/watch.hpp"
 
 #include "files/journal/scan.hpp"
-#include "report/watch/sums.hpp"
+#include "report/watch/blocks.hpp"
 
 namespace credence {
 
-/// A scenario's part of a snapshot, without the values of its columns.
+/// A scenario's part of a snapshot, from its totals of trials; how many there are, and shall be, is not set.
 WatchedScenario described(const ScenarioResults& results);
-
-/// The arms of the snapshot, with the columns' values from these sums.
-std::vector<WatchedArm> watched_arms(const ScenarioResults& results, const WatchedSums& sums);
 
 /// The content that has been read of one journal.
 class JournalFollower {
@@ -41,7 +38,6 @@ private:
     void read_file(const std::string& path);
     void take(const JournalBytes& journal, const FoundCommit& record);
     void check(std::size_t scenario);
-    WatchedSums sums(std::size_t scenario) const;
     /// The checksum of the last commit that was read.
     std::string seal_of(const JournalBytes& journal) const;
 

@@ -94,9 +94,6 @@ Snapshot RunWatch::results_snapshot() const {
         WatchedScenario scenario = described(results);
         scenario.trials = results.trials;
         scenario.blocks = results.blocks.count();
-        scenario.arms = watched_arms(results, results.keep == Keep::aggregates
-                                                  ? sums_of_aggregates(results)
-                                                  : sums_of_rows(results, 0, results.trials));
         snapshot.scenarios.push_back(std::move(scenario));
     }
     for (WatchedScenario& scenario : snapshot.scenarios) {

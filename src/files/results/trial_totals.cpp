@@ -1,4 +1,4 @@
-#include "files/results/aggregates.hpp"
+#include "files/results/trial_totals.hpp"
 
 #include <credence/text.hpp>
 
@@ -44,11 +44,11 @@ Dimension new_column_dimension(const Handle& group, const ScenarioResults& resul
     return column;
 }
 
-void write_statuses(const Handle& group, const ArmAggregates& aggregates) {
+void write_statuses(const Handle& group, const TrialTotals& totals) {
     Dimension code =
-        numbered<std::int8_t>(group, "status_code", 0, aggregates.statuses.size(), "how a trial ended");
+        numbered<std::int8_t>(group, "status_code", 0, totals.statuses.size(), "how a trial ended");
     write_status_flags(code.scale);
-    hdf5::new_variable(group, "status_count", aggregates.statuses, {&code}, {"trials by how they ended", "1"});
+    hdf5::new_variable(group, "status_count", totals.statuses, {&code}, {"trials by how they ended", "1"});
     code.close();
 }
 
@@ -68,21 +68,21 @@ void write_moments(const Handle& group, const std::string& name, hdf5::Dimension
 }
 
 void write_differences(const Handle& group, const Dimension& column, const Dimension& part,
-                       const ScenarioResults& results, const ArmAggregates& aggregates) {
-    std::vector<DifferenceTotals> totals;
+                       const ScenarioResults& results, const TrialTotals& totals) {
+    std::vector<DifferenceTotals> pairs;
     std::vector<std::string> names;
-    for (std::size_t b = 0; b < aggregates.differences.size(); ++b) {
+    for (std::size_t b = 0; b < totals.differences.size(); ++b) {
         names.push_back(results.arms[b].name);
-        for (const std::size_t c : reported_columns(results)) totals.push_back(aggregates.differences[b][c]);
+        for (const std::size_t c : reported_columns(results)) pairs.push_back(totals.differences[b][c]);
     }
     Dimension other = numbered<std::int32_t>(group, "subtracted_arm", 0, names.size(), "arm that is subtracted");
     hdf5::write_text(other.scale, "arm_names", joined(names, " "));
     const std::string what = "differences, this arm minus the other, over the trials that failed in neither";
-    write_moments(group, "difference", {&other, &column}, part, what, totals,
+    write_moments(group, "difference", {&other, &column}, part, what, pairs,
                   [](const DifferenceTotals& one) { return one.difference; });
     const auto write_trials = [&](const std::string& name, std::int64_t DifferenceTotals::* member,
                                   const std::string& long_name) {
-        hdf5::new_variable(group, name, each<std::int64_t>(totals, [&](auto& one) { return one.*member; }),
+        hdf5::new_variable(group, name, each<std::int64_t>(pairs, [&](auto& one) { return one.*member; }),
                            {&other, &column}, {long_name, "1"});
     };
     write_trials("difference_below", &DifferenceTotals::below, "trials in which this arm's column is lower");
@@ -101,35 +101,35 @@ std::vector<ExactMoments> read_moments(const Handle& group, const std::string& n
     return moments;
 }
 
-void read_differences(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmAggregates& aggregates) {
+void read_differences(const Handle& group, const ScenarioResults& results, hsize_t parts, TrialTotals& totals) {
     const std::vector<std::size_t> reported = reported_columns(results);
-    const Extents extents{aggregates.differences.size(), reported.size()};
+    const Extents extents{totals.differences.size(), reported.size()};
     check_numbered<std::int32_t>(group, "subtracted_arm", 0, extents[0]);
     const std::vector<ExactMoments> moments = read_moments(group, "difference", extents, parts);
     const auto below = read_as<std::int64_t>(group, "difference_below", extents),
                above = read_as<std::int64_t>(group, "difference_above", extents);
     for (std::size_t i = 0; i < moments.size(); ++i)
-        aggregates.differences[i / reported.size()][reported[i % reported.size()]] = {moments[i], below[i], above[i]};
+        totals.differences[i / reported.size()][reported[i % reported.size()]] = {moments[i], below[i], above[i]};
 }
 
 }  // namespace
 
-std::vector<std::string> aggregates_links(std::size_t place) {
-    std::vector<std::string> names{"first_block", "last_block", "status_code", "status_count", "column", "column_count",
-                                   "column_total", "column_square_total"};
+std::vector<std::string> trial_totals_links(std::size_t place) {
+    std::vector<std::string> names{"status_code",  "status_count", "column",
+                                   "column_count", "column_total", "column_square_total"};
     if (place > 0)
         names.insert(names.end(), {"subtracted_arm", "difference_count", "difference_total", "difference_square_total",
                                    "difference_below", "difference_above"});
     return names;
 }
 
-std::size_t largest_part_count(const ArmAggregates& aggregates) {
+std::size_t largest_part_count(const TrialTotals& totals) {
     std::size_t largest = 1;
     const auto note = [&](const ExactMoments& moments) {
         largest = std::max({largest, moments.sum.parts().size(), moments.square_sum.parts().size()});
     };
-    std::for_each(aggregates.columns.begin(), aggregates.columns.end(), note);
-    for (const std::vector<DifferenceTotals>& arm : aggregates.differences)
+    std::for_each(totals.columns.begin(), totals.columns.end(), note);
+    for (const std::vector<DifferenceTotals>& arm : totals.differences)
         for (const DifferenceTotals& totals : arm) note(totals.difference);
     return largest;
 }
@@ -159,31 +159,31 @@ BlockRanges read_block_ranges(const Handle& group, std::int64_t asked) {
     return blocks;
 }
 
-void write_aggregates(const Handle& group, const Dimension& part, const ScenarioResults& results,
+void write_trial_totals(const Handle& group, const Dimension& part, const ScenarioResults& results,
                       const ArmResults& arm) {
-    write_statuses(group, arm.aggregates);
+    write_statuses(group, arm.totals.trials);
     Dimension column = new_column_dimension(group, results);
     write_moments(group, "column", {&column}, part, "columns of the trials that did not fail, where they have them",
-                  reported_columns(results), [&](std::size_t c) { return arm.aggregates.columns[c]; });
-    if (!arm.aggregates.differences.empty()) write_differences(group, column, part, results, arm.aggregates);
+                  reported_columns(results), [&](std::size_t c) { return arm.totals.trials.columns[c]; });
+    if (!arm.totals.trials.differences.empty()) write_differences(group, column, part, results, arm.totals.trials);
     column.close();
 }
 
-ArmAggregates read_aggregates(const Handle& group, const ScenarioResults& results, hsize_t parts) {
+TrialTotals read_trial_totals(const Handle& group, const ScenarioResults& results, hsize_t parts) {
     const std::vector<std::size_t> reported = reported_columns(results);
-    ArmAggregates aggregates = empty_aggregates(results.columns, results.arms.size() + 1).back();
-    check_numbered<std::int8_t>(group, "status_code", 0, aggregates.statuses.size());
-    aggregates.statuses = read_as<std::int64_t>(group, "status_count", {aggregates.statuses.size()});
+    TrialTotals totals = empty_trial_totals(results.columns, results.arms.size() + 1).back();
+    check_numbered<std::int8_t>(group, "status_code", 0, totals.statuses.size());
+    totals.statuses = read_as<std::int64_t>(group, "status_count", {totals.statuses.size()});
     check_numbered<std::int32_t>(group, "column", 0, reported.size());
     const std::vector<ExactMoments> columns = read_moments(group, "column", {reported.size()}, parts);
-    for (std::size_t i = 0; i < reported.size(); ++i) aggregates.columns[reported[i]] = columns[i];
-    if (!aggregates.differences.empty()) read_differences(group, results, parts, aggregates);
-    if (const char* problem = problem_of(aggregates)) throw Error(hdf5::place_of(group, "status_count"), problem);
-    if (aggregates.trials() != results.trials)
+    for (std::size_t i = 0; i < reported.size(); ++i) totals.columns[reported[i]] = columns[i];
+    if (!totals.differences.empty()) read_differences(group, results, parts, totals);
+    if (const char* problem = problem_of(totals)) throw Error(hdf5::place_of(group, "status_count"), problem);
+    if (totals.trials() != results.trials)
         throw Error(hdf5::place_of(group, "status_count"),
-                    "adds up to " + std::to_string(aggregates.trials()) + " trials, but the blocks have " +
+                    "adds up to " + std::to_string(totals.trials()) + " trials, but the blocks have " +
                         std::to_string(results.trials));
-    return aggregates;
+    return totals;
 }
 
 }  // namespace credence

@@ -2,7 +2,7 @@
 
 #include <credence/detail/results.hpp>
 
-#include "study/visit_totals.hpp"
+#include "totals/visit_totals.hpp"
 
 #include "base/nan.hpp"
 
@@ -11,17 +11,6 @@
 namespace credence {
 
 namespace {
-
-/// Detailed trials of a block, from a row on.
-void store_details(const ArmBlock& from, std::int64_t row, std::size_t trials, ArmResults& to) {
-    const auto put = [&](const auto& values, std::vector<double>& all) {
-        const auto width = static_cast<std::int64_t>(values.size() / trials);
-        std::copy(values.begin(), values.end(), all.begin() + row * width);
-    };
-    put(from.errors, to.errors);
-    put(from.nees, to.nees);
-    put(from.moments, to.moments);
-}
 
 /// A block that is kept: its old rows, its new rows, and their number.
 struct Move {
@@ -49,14 +38,6 @@ std::vector<double> column_values(const ArmResults& arm, std::size_t column, std
 
 std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
     return column_values(arm, column, 0, results.trials);
-}
-
-std::vector<std::int64_t> status_counts(const ScenarioResults& results, const ArmResults& arm) {
-    if (results.keep == Keep::aggregates) return arm.aggregates.statuses;
-    std::vector<std::int64_t> counts(status_names().size());
-    for (const double status : column_values(results, arm, status_column(results.columns)))
-        ++counts[static_cast<std::size_t>(status)];
-    return counts;
 }
 
 std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
@@ -135,19 +116,6 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
 void extend(ScenarioResults& results, std::int64_t trials) {
     load_totals(results);
     set_blocks(results, BlockRanges::below(block_count(trials)), trials);
-}
-
-void store_columns(ScenarioResults& results, const Block& block) {
-    const std::int64_t row = first_row(results, block.index).value();
-    const auto trials = static_cast<std::size_t>(block.trials);
-    for (std::size_t a = 0; a < results.arms.size(); ++a) {
-        ArmResults& arm = results.arms[a];
-        if (!block.arms[a].nees.empty()) store_details(block.arms[a], row, trials, arm);
-        if (arm.kept || arm.columns.empty()) continue;
-        for (std::size_t c = 0; c < results.columns.size(); ++c)
-            std::copy_n(block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c * trials), trials,
-                        arm.columns[c].begin() + row);
-    }
 }
 
 bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block) {

@@ -2,8 +2,7 @@
 
 #include "numeric/chi_square.hpp"
 #include <credence/detail/results.hpp>
-#include <credence/detail/worlds.hpp>
-#include "study/visit_totals.hpp"
+#include "totals/visit_totals.hpp"
 
 #include <type_traits>
 
@@ -20,31 +19,25 @@ SeriesTotals no_totals(const Series& series, std::size_t steps) {
             std::vector<std::int64_t>(series.role == SeriesRole::nees ? steps * coverage_level_count : 0)};
 }
 
+}  // namespace
+
 void clear_totals(ScenarioResults& results) {
     const auto steps = static_cast<std::size_t>(results.steps()), lags = lags_of(results);
     for (ArmResults& arm : results.arms) {
-        arm.counted = 0;
-        arm.totals.clear();
-        for (const Series& series : results.all_series) arm.totals.push_back(no_totals(series, steps));
-        if (distribution_counted(results.steps())) arm.cells.assign(steps * distribution_cells, 0);
-        arm.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
+        arm.totals.series.clear();
+        for (const Series& series : results.all_series) arm.totals.series.push_back(no_totals(series, steps));
+        if (distribution_counted(results.steps())) arm.totals.cells.assign(steps * distribution_cells, 0);
+        arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags),
+                               std::vector<std::int64_t>(lags)};
     }
 }
 
-void name_arms(ScenarioResults& results, const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-        results.arms.emplace_back();
-        results.arms.back().name = name;
-    }
-    if (results.keep == Keep::trials) return;
-    std::vector<ArmAggregates> aggregates = empty_aggregates(results.columns, results.arms.size());
-    for (std::size_t a = 0; a < results.arms.size(); ++a) results.arms[a].aggregates = std::move(aggregates[a]);
-}
+namespace {
 
 /// The same scenario without any block, and without memory for columns.
 ScenarioResults without_blocks(const ScenarioResults& results) {
     ScenarioResults empty{results.scenario, results.columns, results.all_series, {}, 0, {}, results.keep};
-    name_arms(empty, results.scenario.arms);
+    name_arms(empty);
     clear_totals(empty);
     return empty;
 }
@@ -57,22 +50,18 @@ std::int64_t trials_up_to(const ScenarioResults& results) {
 
 }  // namespace
 
-ScenarioResults results_without_totals(const Scenario& scenario, Keep keep) {
-    const World& world = world_of(scenario);
-    ScenarioResults results{scenario, world.columns(scenario), world.all_series(scenario), {}, 0, {}, keep};
-    name_arms(results, scenario.arms);
-    for (ArmResults& arm : results.arms)
-        if (keep == Keep::trials) arm.columns.resize(results.columns.size());
-    return results;
+void name_arms(ScenarioResults& results) {
+    std::vector<TrialTotals> none = empty_trial_totals(results.columns, results.scenario.arms.size());
+    for (std::size_t a = 0; a < none.size(); ++a) {
+        results.arms.emplace_back();
+        results.arms.back().name = results.scenario.arms[a];
+        results.arms.back().totals.trials = std::move(none[a]);
+    }
 }
 
-ScenarioResults empty_results(const Scenario& scenario, Keep keep) {
-    ScenarioResults results = results_without_totals(scenario, keep);
-    clear_totals(results);
-    return results;
+bool has_totals(const ScenarioResults& results) {
+    return results.arms.empty() || !results.arms.front().totals.series.empty();
 }
-
-bool has_totals(const ScenarioResults& results) { return results.arms.empty() || !results.arms.front().totals.empty(); }
 
 std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) {
     constexpr std::int64_t sum_size = sizeof(ExactSum) + 48;  // with the capacity of a few parts
@@ -94,20 +83,16 @@ void load_totals(ScenarioResults& results) {
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmResults &to = results.arms[a], &from = there.arms[a];
         to.totals = std::move(from.totals);
-        to.cells = std::move(from.cells);
-        to.products = std::move(from.products);
         visit_details(results, [](auto& values, auto& loaded, std::int64_t) { values = std::move(loaded); }, to, from);
-        to.aggregates = std::move(from.aggregates);
-        to.counted = from.counted;
     }
 }
 
 void drop_totals(ScenarioResults& results) {
     const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} would not
     for (ArmResults& arm : results.arms) {
-        free(arm.totals);
-        free(arm.cells);
-        free(arm.products);
+        free(arm.totals.series);
+        free(arm.totals.cells);
+        free(arm.totals.products);
         visit_details(results, [&](auto& values, std::int64_t) { free(values); }, arm);
     }
 }
