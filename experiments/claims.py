@@ -1,12 +1,12 @@
-"""Whether the sentences of a page are true of the tables that a script prints:
+"""Whether the sentences of a page, or of several, are true of the tables that a script prints:
 
-    ... | python3 claims.py CLAIMS.py [-] [REPORT.csv...] [PAGE.md]
+    ... | python3 claims.py CLAIMS.py [-] [REPORT.csv...] [PAGE.md...]
 
 CLAIMS.py has the dictionary CLAIMS, of sentences and their conditions, and TABLES, which gives the tables' cells names.
 Conditions are checked on the tables of the standard input (-, which is passed on), of the reports of `credence report
---format csv`, and of the page. With a page every table must be there, every sentence must stand in the page, and every
-number of its bullets and pictures must stand in one of the sentences. Without one, what needs another script's table is
-left out.
+--format csv`, and of the pages. With pages every table must be there, no two may differ in a row that both have, every
+sentence must stand in one of the pages, and every number of their bullets and pictures must stand in one of the
+sentences. Without a page, what needs another script's table is left out.
 """
 
 import csv
@@ -54,7 +54,8 @@ class Table(dict):
                 setattr(row, name, Number(text))
             except ValueError:
                 setattr(row, name, text)
-        self[tuple(cells[:key_count]) if key_count > 1 else cells[0]] = row
+        if self.setdefault(tuple(cells[:key_count]) if key_count > 1 else cells[0], row) != row:
+            yield f"two tables differ in the row {' | '.join(cells[:key_count])}"
 
 
 def rows_of(text):
@@ -68,22 +69,24 @@ def rows_of(text):
 
 
 def add_row(tables, described, head, cells):
+    """What is wrong with the row."""
     for name, (begin, key_count, names) in described.items():
         if " | ".join(head).startswith(begin) and len(head) == key_count + len(names.split()):
-            tables[name].add(key_count, names.split(), cells)
+            yield from tables[name].add(key_count, names.split(), cells)
 
 
 def in_one_line(text):
     return " ".join(text.split())
 
 
-def check_page(page, claims):
-    """What is wrong between the page and the sentences."""
-    bullets = re.findall(r"^(?:- |!\[).*(?:\n  .*)*", page.partition("\n## References\n")[0], re.M)
+def check_pages(pages, claims):
+    """What is wrong between the pages and the sentences."""
+    bullets = [bullet for page in pages for bullet in
+               re.findall(r"^(?:- |!\[).*(?:\n  .*)*", page.partition("\n## References\n")[0], re.M)]
     rest = "\n".join(map(in_one_line, bullets))
     for sentence in sorted(claims, key=len, reverse=True):
-        if sentence not in in_one_line(page):
-            yield f"this does not stand in the page: {sentence}"
+        if not any(sentence in in_one_line(page) for page in pages):
+            yield f"this stands in no page: {sentence}"
         rest = rest.replace(sentence, "")
     for line in rest.splitlines():
         if re.search(r"\d", line):
@@ -95,22 +98,22 @@ def main(claims_file, *sources):
     described = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(described)
     tables = {name: Table() for name in described.TABLES}
-    wrong, page = [], None
+    wrong, pages = [], []
     for source in sources:
         if source.endswith(".csv"):
             with open(source, newline="") as file:
                 for row in csv.DictReader(file):
-                    add_row(tables, described.TABLES, REPORT.split(), [row[name] for name in REPORT.split()])
+                    wrong += add_row(tables, described.TABLES, REPORT.split(), [row[name] for name in REPORT.split()])
             continue
         text = sys.stdin.read() if source == "-" else Path(source).read_text()
         if source == "-":
             print(text, end="", flush=True)
         else:
-            page = text
+            pages.append(text)
         for head, cells in rows_of(text):
-            add_row(tables, described.TABLES, head, cells)
-    if page:
-        wrong += check_page(page, described.CLAIMS)
+            wrong += add_row(tables, described.TABLES, head, cells)
+    if pages:
+        wrong += check_pages(pages, described.CLAIMS)
         wrong += [f"there is no table {name}" for name, table in tables.items() if not table]
     vars(described).update(tables)
     for sentence, holds in described.CLAIMS.items():

@@ -1,6 +1,6 @@
-"""Checks docs/planning.md against tests/oracle/criteria_oracle.py, a second program with draws of its own:
+"""Checks docs/theory/planning.md against tests/oracle/criteria_oracle.py, a second program with draws of its own:
 
-    python3 planning_claims.py docs/planning.md
+    python3 planning_claims.py docs/theory/planning.md
 
 Every mean of the cells below lies where the page has it, up to 4.5 standard errors of the difference; and three claims
 that the page makes of them hold by as much.

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tables and pictures of docs/estimators.md, "Landmarks on a loop", from a study of landmarks.ini.
+"""Tables of docs/theory/estimators.md and pictures of docs/estimators.md, "Landmarks on a loop", from a study of
+landmarks.ini.
 
     PYTHONPATH=python python3 experiments/estimators/landmarks.py study.h5 [-o DIR] [--sweep sigma=FILE.h5 ...]
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Which estimators stay consistent among landmarks on a loop? Five estimators on the same 4,000 trials (a minute or two
 # on 2 cores), or as many as the first argument says, and three other heading noises. Writes
-# results/estimators/landmarks*.h5 and docs/figures/landmarks*.png, and prints the tables of docs/estimators.md. Needs
-# python3-h5py, python3-scipy, python3-matplotlib and python3-pil.
+# results/estimators/landmarks*.h5 and docs/figures/landmarks*.png, and prints the tables of docs/theory/estimators.md.
+# Needs python3-h5py, python3-scipy, python3-matplotlib and python3-pil.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

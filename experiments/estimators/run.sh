@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which estimator's covariance can be believed in the document's world, matched to the filter? Heading noise from 0.001
 # to 0.1, straight and circle, five estimators on the same draws; 100,000 trials each (some minutes on 2 cores), or as
-# many as the first argument says. Writes results/estimators/*.h5 and prints the tables of docs/estimators.md.
+# many as the first argument says. Writes results/estimators/*.h5 and prints the tables of docs/theory/estimators.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which estimator keeps a heading that nothing observes? World G: 100 steps on the circle, features that walk but do not
 # drift, no edges; five estimators on the same 2,000 trials, or as many as the first argument says (seconds). Writes
-# results/estimators/world-g.h5 and prints the tables of docs/estimators.md.
+# results/estimators/world-g.h5 and prints the tables of docs/theory/estimators.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

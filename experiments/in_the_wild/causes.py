@@ -1,4 +1,4 @@
-"""Changes the cause that docs/in-the-wild.md gives for a verdict, and prints NEES/n without and with the change."""
+"""Changes the cause that docs/theory/in-the-wild.md gives for a verdict, and prints NEES/n before and after."""
 
 from __future__ import annotations
 

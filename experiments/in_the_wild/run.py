@@ -148,7 +148,7 @@ def print_table(rows: list[Row], page: bool) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--short", action="store_true", help="fewer trials and wider margins, two minutes in all")
-    parser.add_argument("--page", action="store_true", help="print the table as docs/in-the-wild.md has it")
+    parser.add_argument("--page", action="store_true", help="print the table as docs/theory/in-the-wild.md has it")
     parser.add_argument("--reports", type=pathlib.Path, help="write the text reports to this folder")
     parser.add_argument("names", nargs="*", metavar="NAME", help="a part of a study's library or name")
     given = parser.parse_args()

@@ -2,8 +2,8 @@
 # Which criterion buys what? The planner by each of its criteria, and the controllers that do not plan, in the document's
 # world, in the matched one, with more heading noise and among landmarks: 20,000 trials each, or as many as the first
 # argument says; those of a world share their draws. Writes results/planning/criteria-*.h5 and prints the tables of
-# docs/planning.md. Needs numpy and h5py (PYTHON, python3) for the columns of 100 replayed trials; with PICTURE=FILE.png,
-# and matplotlib, it draws the page's picture as well.
+# docs/theory/planning.md. Needs numpy and h5py (PYTHON, python3) for the columns of 100 replayed trials; with
+# PICTURE=FILE.png, and matplotlib, it draws the picture of docs/planning.md as well.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

@@ -2,7 +2,7 @@
 # Does looking further ahead pay? The document's eight cells, and three with more heading noise: fixed path, greedy
 # planner and a horizon of two steps on 20,000 trials each, or as many as the first argument says. Then the eight with
 # three steps: as many trials on the straight path, a fortieth on the circle, where there are two million sequences.
-# Some minutes on 2 cores. Writes results/planning/horizon-*.h5 and prints the tables of docs/planning.md.
+# Some minutes on 2 cores. Writes results/planning/horizon-*.h5 and prints the tables of docs/theory/planning.md.
 #   experiments/planning/horizon.sh [TRIALS] [--no-costs]      --no-costs: leaves out what a step costs
 set -euo pipefail
 cd "$(dirname "$0")/../.."

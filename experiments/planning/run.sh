@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Does planning pay, on which paths and noises, and what does it do to consistency? The document's eight cells, larger
 # heading noise, and a world that the filter assumes, planned and fixed; 100,000 trials each (some minutes on 2 cores),
-# or as many as the first argument says. Writes results/planning/*.h5 and prints the tables of docs/planning.md.
+# or as many as the first argument says. Writes results/planning/*.h5 and prints the tables of docs/theory/planning.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

@@ -23,8 +23,8 @@ credibility() {
   printf '| %s | %s ' "$(verdict "$1" "$2")" "$(verdict "$1" "$3")"
 }
 
-# check_claims TRIALS: prints the tables of the standard input, and checks what docs/planning.md says of them, which is of
-# a study of so many trials.
+# check_claims TRIALS: prints the tables of the standard input, and checks what docs/planning.md and its page of
+# docs/theory say of them, which is of a study of so many trials.
 check_claims() {
   if [ "$trials" -eq "$1" ]; then "${PYTHON:-python3}" experiments/claims.py experiments/planning/claims.py -; else cat; fi
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What rounding does to NEES: the exact linear filter with ever smaller noise of its sensor, the same draws in each row.
-# 20,000 trials each, or as many as the first argument says: some seconds. Prints a table of docs/statistics.md.
+# 20,000 trials each, or as many as the first argument says: some seconds. Prints a table of docs/theory/statistics.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/study.sh

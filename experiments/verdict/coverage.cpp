@@ -1,5 +1,5 @@
 // How often the 95 % interval of NEES/n covers the truth in the worlds of the studies, and how often a verdict on few
-// trials claims what that on many denies [docs/statistics.md, Calibration and power].
+// trials claims what that on many denies [docs/theory/statistics.md, Calibration and power].
 //
 //   verdict_coverage [SHARE]      SHARE of the studies and of the trials, 1 by default
 //

@@ -1,6 +1,6 @@
-// The operating characteristics of the verdict [docs/statistics.md, Calibration and power]: how often it is wrong about
-// a filter that is right, how often it finds what is wrong, and how long a right filter stays undecided. Each cell is a
-// number of studies, each of which goes through the code of `credence judge` with its default limits.
+// The operating characteristics of the verdict [docs/theory/statistics.md, Calibration and power]: how often it is
+// wrong about a filter that is right, how often it finds what is wrong, and how long a right filter stays undecided.
+// Each cell is a number of studies, each of which goes through the code of `credence judge` with its default limits.
 //
 //   verdict_rates [SHARE]      SHARE of the studies, 1 by default
 

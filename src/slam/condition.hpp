@@ -4,9 +4,9 @@
 //   H  rows of a measurement, N  its noise variance, nu  innovation, W = P H', S = H W + N, K = W S^-1
 // Every measurement comes as two rows with isotropic noise:
 //   a sighting, rotated into the world by R(theta^), which leaves its noise as it is: rows [-J d, -I, +I] at
-//   (theta, r, f_j), d = f_j - r [docs/model.md, Rotated sightings];
+//   (theta, r, f_j), d = f_j - r [docs/theory/model.md, Rotated sightings];
 //   a contrast, one of the M - 1 combinations of features (or fewer) that say all that the edges do
-//   [docs/model.md, Contrasts].
+//   [docs/theory/model.md, Contrasts].
 // Updating with the rows two by two, each innovation corrected for the change of the mean by the rows before it (the
 // running correction), gives the joint update of model.md, and the contributions to nu' S^-1 nu add up to the joint
 // one.

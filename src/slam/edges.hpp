@@ -1,5 +1,5 @@
 #pragma once
-// What the edges measure, as contrasts of features [docs/model.md, Contrasts]. Letters as in condition.hpp.
+// What the edges measure, as contrasts of features [docs/theory/model.md, Contrasts]. Letters as in condition.hpp.
 
 #include "slam/condition.hpp"
 
@@ -7,7 +7,8 @@ namespace credence {
 inline namespace CREDENCE_TARGET {
 
 /// The edge measurements as innovations of the contrasts, about the predicted mean. `unexplained` is the part of them
-/// that no state can explain, the residual of the graph's cycles; it enters the NIS alone [docs/model.md, Contrasts].
+/// that no state can explain, the residual of the graph's cycles; it enters the NIS alone [docs/theory/model.md,
+/// Contrasts].
 template <class Layout, class Real>
 struct ContrastInnovations {
     Vector2<Real> nu[Layout::feature_capacity];  ///< [M - 1]

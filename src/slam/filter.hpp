@@ -13,7 +13,7 @@
 namespace credence {
 
 /// One column of the factored Laplacian B'B = C D C' of the edge graph: the combination sum_j coefficient[j] f_j, which
-/// the edges together measure with noise scale * sigma_edge^2 [docs/model.md, Contrasts].
+/// the edges together measure with noise scale * sigma_edge^2 [docs/theory/model.md, Contrasts].
 struct Contrast {
     const double* coefficient = nullptr;     ///< [M]; 0 before the contrast's own feature, 1 at it
     double scale = 0;                        ///< 1/D; 0 where the graph has no such contrast

@@ -1,6 +1,6 @@
 #pragma once
 // Bounds on the mean of positive numbers, such as NEES/dimension, that hold for heavy tails too
-// [docs/statistics.md, Verdict]. Every level is one-sided.
+// [docs/theory/statistics.md, Verdict]. Every level is one-sided.
 
 #include <credence/statistics.hpp>
 

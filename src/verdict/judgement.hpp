@@ -59,7 +59,7 @@ void judge_directions(const Evidence& evidence, Judgement& judgement);
 /// Mean errors against the margin of the bias, in sigmas.
 void judge_bias(const Evidence& evidence, Judgement& judgement);
 
-/// How many trials would do [docs/statistics.md, Advice], to two digits; 0 below 30 trials.
+/// How many trials would do [docs/theory/statistics.md, Advice], to two digits; 0 below 30 trials.
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);
 
 }  // namespace credence

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# check.sh [--slow] [--update] [PAGE...]: whether README.md and docs/*.md, or these pages, show what their commands print.
-# With --update the pages are rewritten; with --slow what takes minutes is run as well. CREDENCE is the program
-# (build/credence); FURTHER_PROGRAMS, parted by spaces, are others that a page calls as build/NAME.
+# check.sh [--slow] [--update] [PAGE...]: whether README.md, docs/theory/*.md and docs/*.md, or these pages, show what
+# their commands print. With --update the pages are rewritten; with --slow what takes minutes is run as well. CREDENCE
+# is the program (build/credence); FURTHER_PROGRAMS, parted by spaces, are others that a page calls as build/NAME.
 #
-# What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis, python
-# and counts.txt in it:
+# What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis,
+# python, docs/theory and counts.txt in it:
 #
 #   ```console                   A block whose lines begin with `$ ` shows commands, each with its standard output below.
 #   $ credence report a.h5       A line `…` stands for any lines, and `…` in a line for anything there.
@@ -32,7 +32,7 @@ while [[ ${1:-} == --* ]]; do
   shift
 done
 pages=("$@")
-[ $# -gt 0 ] || pages=(README.md docs/*.md)
+[ $# -gt 0 ] || pages=(README.md docs/theory/*.md docs/*.md)  # pages of docs show rows of those of docs/theory
 CREDENCE=$(realpath "${CREDENCE:-build/credence}")
 export CREDENCE
 folder=$(mktemp -d)
@@ -40,9 +40,10 @@ trap 'rm -rf "$folder"' EXIT
 
 status=0
 for page in "${pages[@]}"; do
-  scratch=$folder/$(basename "$page" .md) complaints=$folder/complaints renewed=$folder/renewed
+  scratch=$folder/$(tr / _ <<<"${page%.md}") complaints=$folder/complaints renewed=$folder/renewed
   mkdir -p "$scratch/build" "$scratch/docs/figures" "$scratch/tests/durability"
   cp -r experiments analysis python "$scratch"
+  cp -r docs/theory "$scratch/docs"
   cp tests/durability/counts.txt "$scratch/tests/durability"
   ln -s "$CREDENCE" "$scratch/build/credence"
   for program in ${FURTHER_PROGRAMS:-}; do ln -s "$(realpath "$program")" "$scratch/build"; done

@@ -6,7 +6,7 @@
 #   full     every chain of 8 callers of an allocation, every byte of two small results files, every change of a file:
 #            hours
 # As many harnesses run at a time as there are processors. The last two depths keep the lines in counts.txt, which
-# docs/durability.md shows.
+# README.md shows.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")

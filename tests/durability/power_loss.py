@@ -19,7 +19,7 @@ BLOCKS, PRESENT = 6, 2  # of the study; of less.h5 that it keeps
 
 
 def commits_in(journal):
-    """Whole commits (docs/durability.md, The journal), by their lengths."""
+    """Whole commits (docs/theory/durability.md, The journal), by their lengths."""
     if len(journal) < 24:
         return 0
     position, count = 28 + struct.unpack_from("<I", journal, 20)[0], 0

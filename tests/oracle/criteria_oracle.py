@@ -1,5 +1,5 @@
-"""A second program for the claims of docs/planning.md: the deformable world of the document, its EKF and its controllers in
-numpy, written from docs/model.md alone, with draws of its own.
+"""A second program for the claims of docs/theory/planning.md: the deformable world of the document, its EKF and its
+controllers in numpy, written from docs/model.md alone, with draws of its own.
 
     python3 criteria_oracle.py TRIALS [SIGMA_HEAD:CONTROLLER...]
 

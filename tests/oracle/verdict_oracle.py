@@ -1,5 +1,5 @@
 """The statistics of the verdict in their slow, obvious version: the oracle of src/statistics/{mean_bounds, directions,
-bias, advice}.cpp. docs/statistics.md says what the rules are and why.
+bias, advice}.cpp. docs/statistics.md says what the rules are, and docs/theory/statistics.md why.
 
 numbers(e, P, groups)          what a study keeps of each trial: a few numbers per trial, and sums by step
 judge(numbers, limits, advise) the verdict, without failed trials: word, findings, what is missing, advice

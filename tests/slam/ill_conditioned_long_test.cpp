@@ -192,10 +192,11 @@ DeformableSettings drawn_scenario(std::mt19937_64& random, Process process) {
     return scenario_with(settings);
 }
 
-/// Runs `count` scenarios with one estimator. Of each step three things are bounded [docs/statistics.md, Conditioning]:
-/// what the rounding of P and e makes of NEES (rounding_bound), what each update so far has lost of P (the rows times n
-/// epsilon times the largest factor by which it reduces a variance), and the spacing of the state's numbers beside its
-/// smallest standard deviation. Where they add up to less than a tenth of the margin, the number must be as exact.
+/// Runs `count` scenarios with one estimator. Of each step three things are bounded [docs/theory/statistics.md,
+/// Conditioning]: what the rounding of P and e makes of NEES (rounding_bound), what each update so far has lost of P
+/// (the rows times n epsilon times the largest factor by which it reduces a variance), and the spacing of the state's
+/// numbers beside its smallest standard deviation. Where they add up to less than a tenth of the margin, the number
+/// must be as exact.
 template <Process process, template <class, class> class Estimating>
 void compare_with_fifty_digits(int count) {
     using Of = Layout<process, features>;

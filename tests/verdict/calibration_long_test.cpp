@@ -1,5 +1,5 @@
 // The levels of the tests: where the filter is exact, every test rejects as often as its level, over replications with
-// fixed seeds [docs/statistics.md, Calibration and power]. Each count must lie within the central 99.9 % of its
+// fixed seeds [docs/theory/statistics.md, Calibration and power]. Each count must lie within the central 99.9 % of its
 // binomial: another set of seeds fails a count with 1e-3, of 90 here. 2,000 replications distinguish 5 % from 3.5 % and
 // from 6.7 %.
 

@@ -1,6 +1,6 @@
 // Filters whose trouble is known are called what they are, over 50 root seeds each, at a number of trials that
-// the test names, and with the figures of model.md [docs/statistics.md, Calibration and power; docs/model.md, Truth
-// against filter].
+// the test names, and with the figures of model.md [docs/theory/statistics.md, Calibration and power; docs/model.md,
+// Truth against filter].
 
 #include <credence/consistency.hpp>
 

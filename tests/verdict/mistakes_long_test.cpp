@@ -1,4 +1,4 @@
-// Mistakes that were found in well-known tools [docs/statistics.md, Calibration and power], as far as no
+// Mistakes that were found in well-known tools [docs/theory/statistics.md, Calibration and power], as far as no
 // other test would catch them. The others: alpha in each tail (statistics_reference_test, goodness_test,
 // calibration_test), the 99th percentile itself (statistics_reference_test), N m degrees (calibration_reference_test),
 // seeds that share trials (study_test, draws_test), resumed runs that restart at 0 (study_test, store_test, cli_test).

@@ -1,5 +1,5 @@
 // The world of landmarks over a thousand trials, against the tables of an independent implementation (batched numpy,
-// its own draws, N = 1000; docs/estimators.md, Landmarks on a loop).
+// its own draws, N = 1000; docs/theory/estimators.md, Landmarks on a loop).
 
 #include <credence/detail/block.hpp>
 #include "worlds/landmarks/landmarks.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 // The format of a journal: a header, then commits, each with blocks of one scenario and the scenario's totals after
-// them [docs/durability.md, The journal].
+// them [docs/theory/durability.md, The journal].
 
 #include <credence/detail/store.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-// NEES with the error in the invariant chart, beside that of the Euclidean one [docs/estimators.md, NEES].
+// NEES with the error in the invariant chart, beside that of the Euclidean one [docs/theory/estimators.md, NEES].
 //
 //   e = x^ - x [n], Euclidean, heading wrapped; the error of the right-invariant filter's chart, mapped to the space in
 //   which P is kept, is (e_theta, V(-e_theta)^-1 e_p for every point p), V as in right_invariant.hpp

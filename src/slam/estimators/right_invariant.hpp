@@ -1,7 +1,8 @@
 #pragma once
 // The right-invariant extended Kalman filter [Barrau, Bonnabel 2017; Zhang, Wu, Song, Huang, Dissanayake 2017]: its
 // error is an element of the group of rigid motions, eta = chi chi^^-1. In the Euclidean chart, which this program uses
-// for every belief, it is the extended Kalman filter with two further lines after the update [docs/estimators.md].
+// for every belief, it is the extended Kalman filter with two further lines after the update
+// [docs/theory/estimators.md, Equations].
 
 #include <credence/detail/elementary.hpp>
 #include "slam/estimators/estimator.hpp"

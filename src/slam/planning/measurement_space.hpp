@@ -1,5 +1,5 @@
 #pragma once
-// A candidate's cost in the space of the measurements [docs/model.md, Measurement space].
+// A candidate's cost in the space of the measurements [docs/theory/model.md, Measurement space].
 //
 //   P, u, a, d0, H0, W as in screening.hpp; M sightings of two rows; g_j = (d_y, -d_x), d = d0_j - u: the effect of the
 //   fresh heading noise on sighting j; sigma^2 its variance
@@ -79,7 +79,8 @@ Matrix2<Real> halved(const Matrix2<Real>& m) {
 template <class Real>
 Matrix2<Real> add_noise(const Matrix2<Real>& m, Real N) { return {m.xx + N, m.xy, m.yx, m.yy + N}; }
 
-// In the translation model every 2 x 2 block is a multiple of the identity [docs/model.md, Translation]: one number.
+// In the translation model every 2 x 2 block is a multiple of the identity [docs/theory/model.md, Translation]: one
+// number.
 template <class Real>
 Real less_product(Real m, Real a, Real b) { return fnma(a, b, m); }
 template <class Real>

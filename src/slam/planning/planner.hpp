@@ -100,9 +100,9 @@ FastChoice<Real> choose_fast(const ControlParameters& control, const FilterParam
     return choose_by_screening<false>(control, filter, sensor, layout, limit, work);
 }
 
-/// T (1 + s v): the error of a fast form's costs is at most about 50 * 2^-53 times this [docs/model.md, Rounding]. T is
-/// at least the trace before the sightings, s at least the sum of the terms of S without the noise, v at least the
-/// inverse of any eigenvalue of S.
+/// T (1 + s v): the error of a fast form's costs is at most about 50 * 2^-53 times this [docs/theory/model.md,
+/// Rounding]. T is at least the trace before the sightings, s at least the sum of the terms of S without the noise, v
+/// at least the inverse of any eigenvalue of S.
 template <class Layout, class Real>
 CREDENCE_FLAT Real lost_to_rounding(const ControlParameters& control, const FilterParameters& filter,
                                     const SensorParameters& sensor, const Layout& layout,

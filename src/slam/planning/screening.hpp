@@ -1,5 +1,5 @@
 #pragma once
-// The planner where the noise depends on the range: screen, then decide [docs/model.md, Screening].
+// The planner where the noise depends on the range: screen, then decide [docs/theory/model.md, Screening].
 //
 //   P   covariance before the robot moves, all but the fresh heading noise added, edges taken in; heading, position, f
 //   u   a candidate's move in the world, a = J u; d0 = f_j - r before the move; rows H0_j = [-J d0_j, -I, I]

@@ -1,5 +1,5 @@
 #pragma once
-// How many trials a verdict needs [docs/statistics.md, Verdict].
+// How many trials a verdict needs [docs/theory/statistics.md, Verdict].
 
 #include <cstdint>
 #include <optional>

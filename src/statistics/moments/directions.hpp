@@ -1,6 +1,6 @@
 #pragma once
 // Directions: the linear combinations of the state whose squared error is largest and smallest against what P predicts
-// [docs/statistics.md, Verdict]. NEES alone sees only the trace of P^-1 E[e e'].
+// [docs/theory/statistics.md, Verdict]. NEES alone sees only the trace of P^-1 E[e e'].
 //
 // A direction is a generalised eigenvector, sum S v = lambda sum C v. For a finding, the one for the trials of a part
 // (index mod 3) is found on the other parts: it has no bias of selection, whatever the distribution. For an acceptance
