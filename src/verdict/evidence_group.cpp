@@ -5,6 +5,7 @@
 #include "verdict/evidence_parts.hpp"
 #include "base/nan.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace credence {

@@ -18,7 +18,7 @@ awk -v folder="$work" '
   /^```/ { out = "" }
   out != "" { print >out }
   out == "" && /^#/ { heading = $0; sub(/^#+ (An? )?/, "", heading); gsub(/[^A-Za-z]+/, "_", heading) }' CONTRIBUTING.md
-checked="column estimator world report_format scenario_key"
+checked="column statistic estimator world adapter report_format scenario_key"
 found=$(cd "$work" && ls *.diff | sed -e 's/^[0-9]*-//' -e 's/\.diff$//' | xargs)
 [ "$found" = "$checked" ] || fail "diffs: there are \"$found\", and this script checks \"$checked\""
 for diff in "$work"/*.diff; do
@@ -55,6 +55,12 @@ run two --set scenario.poses=2
 run twenty
 below "$(mean twenty.h5 fixed.ekf last_pose_error)" "$(mean twenty.h5 fixed.ekf pose_error)" || fail "A column: last_pose_error is wrong"
 
+# A statistic: it is the largest of the ratios by step.
+"$credence" report twenty.h5 --format json | /usr/bin/python3 -c '
+import json, sys
+for group in json.load(sys.stdin)[0]["groups"]:
+    assert group["largest_ratio"] == max(group["anees"]["ratio"]) > 0, group["group"]' || fail "A statistic: it is not the largest ratio"
+
 # An estimator: it runs beside another one, and its covariance is larger.
 run both --set arms.estimators=ekf,fading
 below "$(mean both.h5 fixed.ekf mean_trace_P)" "$(mean both.h5 fixed.fading mean_trace_P)" || fail "An estimator: fading does not fade"
@@ -62,6 +68,21 @@ below "$(mean both.h5 fixed.ekf mean_trace_P)" "$(mean both.h5 fixed.fading mean
 # A world: the filter that knows its model is consistent.
 "$build/tests/tracker" run "$tree/experiments/own_filter/drift.ini" --trials 10000 --quiet -o drift.h5
 "$credence" report drift.h5 --require consistent >drift || { cat drift; fail "A world: its filter is not consistent"; }
+
+# An adapter: the shapes that judge takes, from objects with columns as FilterPy's.
+/usr/bin/python3 - "$tree/python/credence/adapters/filterpy.py" <<'PY' || fail "An adapter: it does not give what judge takes"
+import importlib.util, sys, types
+import numpy as np
+spec = importlib.util.spec_from_file_location("filterpy_adapter", sys.argv[1])
+adapter = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(adapter)
+saver = types.SimpleNamespace(x=np.ones((4, 2, 1)), P=[np.eye(2)] * 4, y=np.zeros((4, 1, 1)), S=[np.eye(1)] * 4)
+given = adapter.from_filterpy([saver] * 3, np.zeros((3, 4, 2)))
+shapes = {name: array.shape for name, array in given.items()}
+assert shapes == {"error": (3, 4, 2), "covariance": (3, 4, 2, 2), "innovation": (3, 4, 1),
+                  "innovation_covariance": (3, 4, 1, 1)}, shapes
+assert (given["error"] == 1).all()
+PY
 
 # A report format: a table with the verdict of each arm, of results and of records.
 "$credence" report both.h5 --format markdown >both.md
@@ -82,4 +103,4 @@ run refused --set filter.initial=0 2>refusal || status=$?
 
 cd "$tree"
 CREDENCE=$credence bash tests/docs/check.sh CONTRIBUTING.md
-echo "five diffs apply, build and do what CONTRIBUTING.md says"
+echo "seven diffs apply, build and do what CONTRIBUTING.md says"
