@@ -63,7 +63,7 @@ grep -q 'exit code 1, as it should be' example/said || { cat example/said; exit 
   for target in $targets; do
     others=$(nm --defined-only --extern-only "build/tracker_$target.o" | grep -v "8lanes_ofI7TrackerE" || true)
     [ -z "$others" ] || { printf 'tracker_%s.o shows others\n%s\n' "$target" "$others"; exit 1; }
-    CREDENCE_FORCE_UNIT=$target build/tracker run tracker.ini --trials 1000 --quiet -o "$target.h5" 2>refused ||
+    CREDENCE_FORCE_TARGET=$target build/tracker run tracker.ini --trials 1000 --quiet -o "$target.h5" 2>refused ||
       { grep -q 'cannot run it' refused || { cat refused; exit 1; }; continue; }
     build/tracker report "$target.h5" >"$target.said"
     cmp portable.said "$target.said"

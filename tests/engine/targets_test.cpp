@@ -17,7 +17,7 @@ namespace {
 
 /// Runs the program with the environment variable set to `unit`.
 Outcome forced(const Workplace& here, const std::string& target, const std::string& arguments) {
-    return here.shell("CREDENCE_FORCE_UNIT='" + target + "' " CREDENCE_PROGRAM " " + arguments);
+    return here.shell("CREDENCE_FORCE_TARGET='" + target + "' " CREDENCE_PROGRAM " " + arguments);
 }
 
 std::string source_file(const std::string& name) {
@@ -37,7 +37,7 @@ bool runs_here(const std::string& name) {
 
 TEST_CASE("targets: --version says which one runs, and the variable chooses it") {
     const Workplace here;
-    CHECK_THAT(here.shell("env -u CREDENCE_FORCE_UNIT " CREDENCE_PROGRAM " --version").out,
+    CHECK_THAT(here.shell("env -u CREDENCE_FORCE_TARGET " CREDENCE_PROGRAM " --version").out,
                Contains("instruction_set: " + runnable_targets().front().name + "\n"));
     for (const Target& target : runnable_targets()) {
         const Outcome version = forced(here, target.name, "--version");
@@ -58,7 +58,7 @@ TEST_CASE("targets: one that is unknown or that the processor cannot run is refu
             INFO(refused.err);
             CHECK(refused.exit_code == 2);
             CHECK(refused.out.empty());
-            CHECK_THAT(refused.err, Contains("invalid CREDENCE_FORCE_UNIT=" + name + " ("));
+            CHECK_THAT(refused.err, Contains("invalid CREDENCE_FORCE_TARGET=" + name + " ("));
             CHECK_THAT(refused.err, Contains("portable.\n"));
             CHECK(refused.err.find('\n') == refused.err.size() - 1);
         }

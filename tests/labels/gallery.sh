@@ -19,10 +19,10 @@ for scenario in experiments/worlds/*.ini; do
   run() {
     "$work/$2/gallery" run "$scenario" --trials 20 --set scenario.poses=12 --threads "$3" --quiet --overwrite -o "$work/$1.h5"
   }
-  CREDENCE_FORCE_UNIT=portable run expected c++ 1
+  CREDENCE_FORCE_TARGET=portable run expected c++ 1
   for compiler in $compilers; do
     for target in portable v3 v4; do
-      CREDENCE_FORCE_UNIT=$target run other "$compiler" 3 2>"$work/refused" ||
+      CREDENCE_FORCE_TARGET=$target run other "$compiler" 3 2>"$work/refused" ||
         { grep -q 'cannot run it' "$work/refused" || { cat "$work/refused"; exit 1; }; continue; }
       h5diff --exclude-path /run "$work/expected.h5" "$work/other.h5" ||
         { echo "$scenario: $compiler and $target give other bits than g++ and portable"; exit 1; }

@@ -49,8 +49,6 @@ Html difference_spread_table(const Comparison& pair);
 /// Component groups, coverage, NIS, whiteness, distribution and credibility.
 Html evidence_tables(const Part& part);
 
-/// Everything by step, collapsed by arm.
-Html step_tables(const Part& part);
 
 /// All charts of a scenario.
 Html charts(const Part& part);

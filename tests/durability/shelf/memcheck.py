@@ -32,7 +32,7 @@ def checked(command, bench, expected=(0,)):
     log.unlink(missing_ok=True)
     done = subprocess.run(["valgrind", "-q", f"--log-file={log}", *command], cwd=bench.at, capture_output=True,
                           text=True, errors="replace", timeout=600, check=False,
-                          env={**os.environ, "CREDENCE_FORCE_UNIT": "v3"})
+                          env={**os.environ, "CREDENCE_FORCE_TARGET": "v3"})
     ended = "" if done.returncode in expected else f"ended with {done.returncode}: {done.stderr[:200]}"
     return (log.read_text() if log.exists() else "there is no log; ") + ended
 
