@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "$1"
 cxx=$2 eigen=$3
-modules="base numeric scenario statistics totals slam engine worlds verdict study files report cli"
+modules="base numeric scenario statistics totals slam engine worlds verdict record study files report cli"
 status=0
 
 public=$(find include/credence -name '*.hpp')
@@ -48,6 +48,6 @@ long=$(find src include -name '*.[ch]pp' -exec awk '
 [ -z "$long" ] || { echo "$long"; status=1; }
 promised=$(find include/credence -maxdepth 1 -name '*.hpp')
 [ "$(echo "$promised" | wc -l)" -le 15 ] || { echo "more than 15 public headers"; status=1; }
-[ "$(find src -mindepth 1 -maxdepth 1 -type d | wc -l)" -eq 13 ] || { echo "src does not have thirteen folders"; status=1; }
+[ "$(find src -mindepth 1 -maxdepth 1 -type d | wc -l)" -eq 14 ] || { echo "src does not have fourteen folders"; status=1; }
 echo "$promised" | xargs -P 2 -I{} "$cxx" -std=c++20 -fsyntax-only -Iinclude -isystem "$eigen" -include {} -x c++ /dev/null || status=1
 exit $status

@@ -1,9 +1,11 @@
 #pragma once
-// Module files: the record that `credence judge` reads: errors and covariances written by any program
+// Module record: the record that `credence judge` reads: errors and covariances written by any program
 // [docs/statistics.md]. It is converted to the same results as those of a run, so that report and verdict treat both
 // alike.
 
-#include <credence/study.hpp>
+#include <credence/detail/progress.hpp>
+#include <credence/detail/results.hpp>
+
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -12,8 +14,6 @@
 #include <vector>
 
 namespace credence {
-
-struct Study;
 
 /// Why a trial of a record failed; both counted from 0, as in the file.
 struct RecordTrouble {
@@ -111,9 +111,5 @@ struct RecordArrays {
 /// scenario, as a file's path does. Throws InputError `PLACE: PROBLEM. REMEDY.`, its places those of a file.
 Record read_record(const RecordArrays& arrays, const std::string& name,
                    const std::function<void(const Progress&)>& progress = {});
-
-/// A record as a study of one scenario, to be compared with others of the same runs: its columns, without those that a
-/// record does not have.
-Study study_of(Record record);
 
 }  // namespace credence

@@ -2,6 +2,7 @@
 // Module study: the study: scenarios with their arms, which blocks to run, and how.
 
 #include <credence/detail/block.hpp>
+#include <credence/detail/progress.hpp>
 #include <credence/detail/results.hpp>
 
 #include <cstdint>
@@ -37,6 +38,12 @@ struct StudyDefinition {
 };
 StudyDefinition definition_of(const Study& study);
 
+struct Record;
+
+/// A record as a study of one scenario, to be compared with others of the same runs: its columns, without those that a
+/// record does not have.
+Study study_of(Record record);
+
 /// How the study keeps its columns: the same in every scenario.
 Keep keep_of(const Study& study);
 
@@ -48,12 +55,6 @@ std::string study_hash(const Study& study);
 /// Describes the first difference between two studies, such as `its root seed is 2, not 1`; empty where they are the
 /// same.
 std::string difference_of(const StudyDefinition& there, const StudyDefinition& here);
-
-/// Progress of a run: a trial under all its arms counts once.
-struct Progress {
-    std::int64_t done = 0, total = 0;
-    double seconds = 0;
-};
 
 /// The part of a study's blocks that one of several runs computes: block b where b mod count = index.
 struct Shard {

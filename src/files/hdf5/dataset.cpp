@@ -2,6 +2,7 @@
 
 #include "files/hdf5/read.hpp"
 
+#include "base/extents.hpp"
 #include "files/hdf5/write.hpp"
 
 #include <algorithm>
@@ -96,12 +97,6 @@ void Dataset::read_some_into(hid_t memory_type, hsize_t first, hsize_t count, vo
         memory(H5Screate_simple(1, &count, nullptr), H5Sclose, place_, problem);
     check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr), place_, problem);
     check(H5Dread(dataset_.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, values), place_, problem);
-}
-
-std::string extents_text(const Extents& extents) {
-    std::string text;
-    for (const hsize_t extent : extents) text += (text.empty() ? "[" : ", ") + std::to_string(extent);
-    return text + "]";
 }
 
 }  // namespace credence::hdf5

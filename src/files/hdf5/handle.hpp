@@ -2,28 +2,21 @@
 // RAII wrappers for HDF5's C API. (HighFive is not in every distribution, and HDF5's own C++ API has no dimension
 // scales.) Make all HDF5 calls on one thread. Writing: write.hpp; reading: read.hpp.
 
+#include "base/placed_error.hpp"
+
 #include <hdf5.h>
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace credence::hdf5 {
 
-/// An error of HDF5 or of a file's content, as `place: problem`. The store translates it to an InputError or a Failure.
-class Error : public std::runtime_error {
+/// An error of HDF5 or of a file's content.
+class Error : public PlacedError {
 public:
-    Error(const std::string& place, const std::string& problem, std::string remedy = {}, std::string of_arrays = {})
-        : std::runtime_error(place + ": " + problem), remedy_(std::move(remedy)), of_arrays_(std::move(of_arrays)) {}
-    /// The remedy; empty where only the usual one helps.
-    const std::string& remedy() const { return remedy_; }
-    /// The remedy of a caller in Python, who gives arrays in memory.
-    const std::string& remedy_of_arrays() const { return of_arrays_.empty() ? remedy_ : of_arrays_; }
-
-private:
-    std::string remedy_, of_arrays_;
+    using PlacedError::PlacedError;
 };
 
 /// Stops HDF5 from printing its error stack while the object exists; if the scope is left by an exception, for good,

@@ -120,16 +120,13 @@ private:
     std::size_t count_ = 1;
 };
 
-/// `[3, 2]`
-std::string extents_text(const Extents& extents);
-
-/// The result of `read` on a file. Throws its Error as InputError `FILE: PLACE: PROBLEM. REMEDY.`
+/// The result of `read` on a file. Throws its PlacedError as InputError `FILE: PLACE: PROBLEM. REMEDY.`
 template <class Read>
 auto translated(const std::string& path, const std::string& usual_remedy, Read read) {
     try {
         const QuietErrors quiet;
         return read();
-    } catch (const Error& error) {
+    } catch (const PlacedError& error) {
         const std::string& remedy = error.remedy().empty() ? usual_remedy : error.remedy();
         throw InputError(path + ": " + error.what() + ". " + remedy + ".");
     }

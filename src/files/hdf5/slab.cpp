@@ -58,13 +58,13 @@ void require_bits(const Handle& type, const std::string& place) {
         throw Error(place, "is damaged: its integers lie beyond their bytes");
 }
 
-RealDataset::RealDataset(const Handle& group, const std::string& name, Numbers numbers)
+RealDataset::RealDataset(const Handle& group, const std::string& name, bool integers)
     : checked_(group, name),
       dataset_(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, checked_.place(), "is no readable dataset"),
       chunk_(checked_.extents().size(), 1) {
     const Handle type(H5Dget_type(dataset_.id()), H5Tclose, place(), "HDF5 cannot read its type");
     const H5T_class_t kind = H5Tget_class(type.id());
-    if (kind != H5T_FLOAT && numbers == Numbers::floating)
+    if (kind != H5T_FLOAT && !integers)
         throw Error(place(), "does not hold floating-point numbers", "Write it as doubles, or as singles");
     if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(place(), "does not hold numbers", "Write it as integers");
     if (kind == H5T_FLOAT) epsilon_ = epsilon_of(type);

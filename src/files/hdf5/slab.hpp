@@ -6,13 +6,11 @@
 
 namespace credence::hdf5 {
 
-/// The numbers that a dataset may contain.
-enum class Numbers { floating, any };
-
 /// A dataset of numbers of any size that is read in parts, as doubles.
 class RealDataset {
 public:
-    RealDataset(const Handle& group, const std::string& name, Numbers numbers = Numbers::floating);
+    /// Throws where it holds anything but floating-point numbers or, if `integers` may be there, integers.
+    RealDataset(const Handle& group, const std::string& name, bool integers);
 
     const std::string& place() const { return checked_.place(); }
     const Extents& extents() const { return checked_.extents(); }

@@ -7,7 +7,7 @@
 #include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
-#include "files/record/layout/groups.hpp"
+#include "record/layout/groups.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -4,6 +4,7 @@
 
 #include <credence/detail/deformable_settings.hpp>
 
+#include "base/extents.hpp"
 #include "files/hdf5/read.hpp"
 
 #include <cmath>
@@ -26,7 +27,7 @@ std::string position_text(std::size_t index, Extents extents) {
         extents[axis] = index % extent;
         index /= extent;
     }
-    return hdf5::extents_text(extents);
+    return extents_text(extents);
 }
 
 /// A dataset of finite numbers, [poses, components] or [poses, width, components].
@@ -39,9 +40,9 @@ public:
         const Extents& extents = dataset_.extents();
         if (extents.size() != rank)
             throw Error(dataset_.place(),
-                        "has extents " + hdf5::extents_text(extents) + ", not " + std::to_string(rank) + " of them");
+                        "has extents " + extents_text(extents) + ", not " + std::to_string(rank) + " of them");
         if (extents[axis] < 1 || extents[axis] > static_cast<hsize_t>(largest))
-            throw Error(dataset_.place(), "has extents " + hdf5::extents_text(extents) + ", of which number " +
+            throw Error(dataset_.place(), "has extents " + extents_text(extents) + ", of which number " +
                                               std::to_string(axis) + " must be 1 to " + std::to_string(largest));
         return static_cast<int>(extents[axis]);
     }

@@ -1,0 +1,122 @@
+// A record in an HDF5 file.
+
+#include <credence/record.hpp>
+
+#include "files/hdf5/slab.hpp"
+#include "record/read.hpp"
+
+namespace credence {
+
+namespace {
+
+using hdf5::Handle;
+
+/// Calls `use` with the group that holds the last name of a path, and with that name. Every group on the way is opened
+/// by itself, because none of them may be a link to somewhere else.
+template <class Use>
+auto at_path(const Handle& group, const std::string& path, const Use& use) {
+    const std::size_t slash = path.find('/');
+    if (slash == std::string::npos) return use(group, path);
+    return at_path(hdf5::open_group(group, path.substr(0, slash)), path.substr(slash + 1), use);
+}
+
+class FileDataset : public RecordDataset {
+public:
+    explicit FileDataset(hdf5::RealDataset dataset)
+        : RecordDataset(dataset.place(), Extents(dataset.extents().begin(), dataset.extents().end()), dataset.epsilon(),
+                        dataset.chunk().front()),
+          dataset_(std::move(dataset)) {}
+    void read(const Extents& first, const Extents& count, std::vector<double>& values) const override {
+        dataset_.read(first, count, values);
+    }
+
+private:
+    hdf5::RealDataset dataset_;
+};
+
+/// Throws where `name` is a group, as Octave's own `save -hdf5` writes variables.
+void refuse_group(const Handle& parent, const std::string& name) {
+    const std::string place = hdf5::place_of(parent, name);
+    const Handle object(H5Oopen(parent.id(), hdf5::hard(parent, name).c_str(), H5P_DEFAULT), H5Oclose, place,
+                        "cannot be opened");
+    if (H5Iget_type(object.id()) == H5I_GROUP)
+        throw RecordError(place, "is a group, not a dataset, as Octave's save makes it",
+                    "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
+}
+
+/// The name by which HDF5 finds an object from the root.
+const char* object_name(const std::string& path) { return path.empty() ? "." : path.c_str(); }
+
+/// A record in a file, as long as its root is open.
+class FileSource : public RecordSource {
+public:
+    explicit FileSource(const Handle& root) : root_(root) {}
+    bool has(const std::string& path) const override;
+    DatasetPointer open(const std::string& path, Numbers numbers) const override;
+    std::vector<std::string> names_in(const std::string& group) const override;
+    bool has_attribute(const std::string& name, const std::string& path) const override;
+    std::string text(const std::string& name) const override { return hdf5::read_any_text(root_, name); }
+    std::optional<double> number(const std::string& name, const std::string& path) const override;
+
+private:
+    const Handle& root_;
+};
+
+bool FileSource::has(const std::string& path) const {
+    return at_path(root_, path,
+                   [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
+}
+
+DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
+    return at_path(root_, path, [&](const Handle& group, const std::string& name) -> DatasetPointer {
+        refuse_group(group, name);
+        return std::make_unique<FileDataset>(hdf5::RealDataset(group, name, numbers == Numbers::any));
+    });
+}
+
+std::vector<std::string> FileSource::names_in(const std::string& group) const {
+    if (!has(group)) return {};
+    return at_path(root_, group, [](const Handle& parent, const std::string& name) {
+        return hdf5::sorted_link_names(hdf5::open_group(parent, name));
+    });
+}
+
+bool FileSource::has_attribute(const std::string& name, const std::string& path) const {
+    const htri_t answer = H5Aexists_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT);
+    hdf5::check(answer, record_attribute_place(name, path), "cannot be looked up");
+    return answer > 0;
+}
+
+std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
+    const std::string place = record_attribute_place(name, path);
+    const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, place, "HDF5 cannot open it");
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
+    const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
+    const H5T_class_t kind = H5Tget_class(type.id());
+    if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
+        return std::nullopt;
+    if (kind == H5T_INTEGER) hdf5::require_bits(type, place);
+    double number = 0;
+    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
+    return number;
+}
+
+Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, bool other) {
+    return hdf5::read_file(path,
+                           "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
+                           "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
+                           "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
+                           [&](const Handle& root) {
+                               return read_in_chart(RecordReader(FileSource(root)), path, progress, other,
+                                                    [path](bool again) { return read_in_chart(path, {}, again); });
+                           });
+}
+
+}  // namespace
+
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
+    return read_in_chart(path, progress, false);
+}
+
+}  // namespace credence

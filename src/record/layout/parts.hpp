@@ -1,0 +1,36 @@
+#pragma once
+// The parts of open_record. All functions throw RecordError.
+
+#include <string>
+#include <vector>
+
+#include "record/layout/extents.hpp"
+#include "record/layout/layout.hpp"
+
+namespace credence {
+
+/// Sets trials and steps by extents [..., size], `rank` of them with trials; `written` is how to write it.
+void set_extents(const PlacedExtents& leading, std::size_t rank, const std::string& written, RecordLayout& layout);
+/// The same of an error [..., n], and sets n.
+void set_state(const PlacedExtents& error, RecordLayout& layout);
+
+/// The dataset `steps` [trial], if it is there: the number of steps of each run.
+void add_steps(const RecordSource& source, RecordShape& shape);
+/// Checks the dataset `time` [step] or [trial, step], if it is there: it increases from step to step, and only a step
+/// that does not exist may be without one. The errors are read of trials with such steps.
+void check_time(const RecordSource& source, const RecordLayout& layout);
+
+/// Gives every group the same source; none has a dataset of its own yet.
+void set_sources(GroupSource source, RecordLayout& layout);
+/// Opens a NEES as that of a group, and returns the attribute `dimension`.
+int open_nees(const RecordSource& source, const std::string& path, std::size_t b, RecordLayout& layout);
+
+/// Opens `error`, or `truth` and `estimate`. Returns its extents [..., n], empty without errors.
+PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data);
+/// A record with errors.
+void open_states(const RecordSource& source, const PlacedExtents& error, RecordLayout& layout);
+/// One of NEES alone: /nees, and /group/NAME/nees of groups that need not be named elsewhere. Returns the extents that
+/// an error of one component would have.
+PlacedExtents open_nees_alone(const RecordSource& source, RecordLayout& layout);
+
+}  // namespace credence

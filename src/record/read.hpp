@@ -1,0 +1,18 @@
+#pragma once
+// Reading a record from any source.
+
+#include "record/reader.hpp"
+
+#include <functional>
+#include <string>
+
+namespace credence {
+
+using ReportProgress = std::function<void(const Progress&)>;
+
+/// Reads the record in its own chart or, of states on a manifold with charts, in the other one. `name` names the
+/// scenario; `read_again(other)` does the same once more. Throws PlacedError.
+Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, bool other,
+                     const std::function<Record(bool)>& read_again);
+
+}  // namespace credence

@@ -1,0 +1,292 @@
+#include "record/totals.hpp"
+
+#include "numeric/chi_square.hpp"
+#include "statistics/goodness.hpp"
+
+#include "record/results.hpp"
+#include "base/nan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< limit on the NEES values, and on the cells
+constexpr std::size_t most_troubles = 20;
+constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: where rounding may do more, NIS is left out
+
+std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
+
+}  // namespace
+
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
+    : shape_(shape),
+      all_series_(record_series(shape_)),
+      alike_(shape_),
+      judge_(shape_, all_series_),
+      presence_(shape_),
+      gaps_(size(shape_.steps)),
+      products_(size(lag_count(shape_.steps + 1)), size(shape_.m)),
+      moments_(shape_.n, shape_.groups.size()) {
+    record_.results = empty_record_results(shape_, all_series_.list, path);
+    record_.has_innovations = shape.has_innovations();
+    keeps_nees_ = shape.trials <= most_values / shape.steps;
+    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && !keeps_nees_;
+    if (keeps_nees_) nees_.resize(size(shape.steps));
+    if (keeps_cells_) arm().totals.cells.resize(size(shape.steps) * distribution_cells);
+    for (const ComponentGroup& group : shape.groups)
+        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
+    values_.resize(size(shape.steps) * all_series_.list.size());
+    roundings_.resize(size(shape.steps) * (1 + shape.groups.size()));
+    for (SeriesTotals& totals : arm().totals.series) totals.present.resize(size(shape.steps));
+    if (!shape.has_joint()) return;
+    dimensions_.resize(size(shape.steps));
+    arm().totals.series.front().dimensions.resize(size(shape.steps));
+    bounds_by_dimension_.resize(size(shape.n + 1) * coverage_level_count);
+}
+
+void RecordTotals::add(const RecordStep& step) {
+    if (step.step == 0) start_trial();
+    if (!failed(status_)) add_covered(step);  // the filter's values after a failure are ignored
+    if (step.step + 1 < shape_.steps) return;
+    if (!failed(status_)) check_end(step.trial);
+    end_trial(step.trial);
+}
+
+void RecordTotals::add_covered(const RecordStep& step) {
+    const bool covered = shape_.covers(step.trial, step.step);
+    switch (covered ? presence_.check(step, checked_) : Presence::absent) {
+        case Presence::there: return add_figures(step, checked_);
+        case Presence::broken: return note(step, Status::non_finite, checked_.broken);
+        case Presence::absent: break;
+    }
+    products_.leave_out();
+}
+
+/// Ends a trial. One that has fewer steps than it should has failed, unless the record declares a lower number.
+void RecordTotals::check_end(std::int64_t trial) {
+    if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);
+    if (end == asked) return;
+    const std::string of = "the trial ends after " + std::to_string(end) + " of ";
+    const bool declared = !shape_.declared.empty();
+    note({trial, end}, Status::non_finite,
+         of + (declared ? "the " : "") + std::to_string(asked) + " steps" +
+             (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
+}
+
+void RecordTotals::start_trial() {
+    status_ = Status::completed;
+    presence_.start_trial();
+    present_.clear();
+    products_.start_trial();
+    moments_.start_trial();
+}
+
+void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
+    const std::size_t k = size(step.step);
+    double* values = &series(0, k);
+    const std::string trouble = judge_.evaluate(checked, values, products_.now.data());
+    if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
+    if (!figures_add_up(values, all_series_.list.size()))
+        return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
+    if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
+        note(step, Status::diverged, beyond);
+    if (judge_.innovation_rounding() > accuracy_of_nis) {
+        judge_.leave_out_innovation(values, products_.now.data());
+        ++innovations_left_out_;
+    }
+    add_rounding(k);
+    judge_.forget_unknown(values);
+    alike_.keep(k, checked);
+    set_dimension(k);
+    present_.push_back(k);
+    keep_details(step.trial, k, checked);
+    if (record_.has_innovations) products_.correlate();
+}
+
+/// Notes the dimension that the state has at this step, and scales its NEES to that of the whole state.
+void RecordTotals::set_dimension(std::size_t k) {
+    if (dimensions_.empty()) return;
+    dimensions_[k] = static_cast<int>(std::ranges::count(checked_.here, 1));
+    if (dimensions_[k] < shape_.n) series(0, k) *= static_cast<double>(shape_.n) / dimensions_[k];
+}
+
+/// What rounding may have done to each group's NEES at this step: the mean of many covariances may hide it.
+void RecordTotals::add_rounding(std::size_t k) {
+    const std::vector<double>& bounds = judge_.rounding();
+    double* sums = &roundings_[k * (1 + bounds.size())];
+    ++sums[0];
+    for (std::size_t b = 0; b < bounds.size(); ++b) sums[1 + b] += bounds[b];
+}
+
+void RecordTotals::finish_rounding() {
+    const std::size_t groups = shape_.groups.size();
+    arm().totals.rounding.assign(groups, 0);
+    for (std::size_t k = 0; k < size(shape_.steps); ++k) {
+        const double* sums = &roundings_[k * (1 + groups)];
+        for (std::size_t b = 0; sums[0] > 0 && b < groups; ++b)
+            arm().totals.rounding[b] = std::max(arm().totals.rounding[b], sums[1 + b] / sums[0]);
+    }
+}
+
+/// The NEES of the state as it is at this step.
+double RecordTotals::nees_at(std::size_t k) {
+    const bool partial = !dimensions_.empty() && dimensions_[k] < shape_.n;
+    return partial ? series(0, k) * dimensions_[k] / shape_.n : series(0, k);
+}
+
+void RecordTotals::note(const RecordStep& step, Status status, const std::string& what) {
+    status_ = status;
+    trouble_ = {step.trial, step.step, what, status};
+}
+
+void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
+    if (trial >= record_.results.detailed()) return;
+    const std::size_t at = size(trial) * size(shape_.steps) + k;
+    arm().nees[at] = !dimensions_.empty() && dimensions_[k] < shape_.n ? nan : series(0, k);
+    for (Eigen::Index j = 0; j < checked.e.size(); ++j)
+        arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
+            checked.here.empty() || checked.here[static_cast<std::size_t>(j)] ? checked.e(j) : nan;
+    if (shape_.has_errors) moments_.add(&series(0, k), &series(all_series_.standardised_error, k), checked.P);
+}
+
+void RecordTotals::end_trial(std::int64_t trial) {
+    add_columns(trial);
+    if (status_ != Status::completed) {
+        ++record_.trouble_count;
+        if (record_.troubles.size() < most_troubles) record_.troubles.push_back(trouble_);
+    }
+    if (trial < record_.results.detailed() && !failed(status_)) {
+        const std::vector<double> moments = moments_.moments();
+        std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
+    }
+    if (!failed(status_)) {
+        gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
+        add_totals();
+    }
+    if (!failed(status_)) return;
+    if (trial >= record_.results.detailed()) return;
+    const auto forget = [&](std::vector<double>& values, std::size_t row) {
+        const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
+        std::fill(first, first + static_cast<std::ptrdiff_t>(row), nan);
+    };
+    forget(arm().nees, size(shape_.steps));
+    forget(arm().errors, size(shape_.steps) * size(shape_.n));
+}
+
+void RecordTotals::add_columns(std::int64_t trial) {
+    double row[record_column_count];
+    std::fill(std::begin(row), std::end(row), nan);
+    // Sums and means are over the steps at which the series has a value; NaN where it has none.
+    const auto at = [&](std::size_t f, std::size_t k) {
+        const double all = series(f, k);
+        return f == all_series_.variance                             ? alike_.variance(k, all)
+               : f == all_series_.squared_error + pose_group(shape_) ? alike_.error(k, all)
+                                                                     : all;
+    };
+    const auto count = [&](std::size_t f) {
+        return static_cast<double>(
+            std::ranges::count_if(present_, [&](std::size_t k) { return !std::isnan(at(f, k)); }));
+    };
+    const auto over_steps = [&](std::size_t f) {
+        double sum = 0;
+        for (const std::size_t k : present_)
+            if (const double value = at(f, k); !std::isnan(value)) sum += value;
+        return count(f) > 0 ? sum : nan;
+    };
+    row[RecordColumn::status] = static_cast<double>(status_);
+    row[RecordColumn::status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
+    if (!fill_failed(record_.results.columns, row)) {
+        if (shape_.has_errors) {
+            row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
+            row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
+            row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
+        }
+        row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
+        row[RecordColumn::nis_ratio] =
+            record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
+    }
+    for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
+}
+
+void RecordTotals::add_totals() {
+    for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
+    add_distribution();
+    for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
+        arm().totals.products.sum[lag].add(products_.sum[lag]);
+        arm().totals.products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
+        arm().totals.products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
+    }
+}
+
+void RecordTotals::add_series(std::size_t f) {
+    SeriesTotals& totals = arm().totals.series[f];
+    const Series& declared = all_series_.list[f];
+    const bool of_innovations = declared.role == SeriesRole::nis || declared.role == SeriesRole::rows;
+    double run = 0, count = 0;
+    for (const std::size_t k : present_) {
+        const double value = series(f, k);
+        if (std::isnan(value)) continue;
+        run += value;
+        ++count;
+        totals.sum[k].add(value);
+        if (!declared.integer) totals.square_sum[k].add(value * value);
+        if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value);
+        if (!totals.present.empty()) ++totals.present[k];
+        if (f == 0 && !dimensions_.empty()) totals.dimensions[k] += dimensions_[k];
+    }
+    if (count == 0) return;
+    if (!of_innovations) run *= shape_.steps / count;
+    totals.run_sum->add(run);
+    totals.run_square_sum.add(run * run);
+    ++totals.runs;
+}
+
+void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
+    const double* bound = bounds(f, k);
+    for (std::size_t l = 0; l < coverage_level_count; ++l)
+        arm().totals.series[f].covered[k * coverage_level_count + l] += value < bound[l];
+}
+
+/// The bounds [levels] of a group's NEES at a step.
+const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
+    if (f != 0 || dimensions_.empty() || dimensions_[k] == shape_.n) return &bounds_[f * coverage_level_count];
+    double* all = &bounds_by_dimension_[size(dimensions_[k]) * coverage_level_count];
+    for (std::size_t l = 0; all[0] == 0 && l < coverage_level_count; ++l)
+        all[coverage_level_count - 1 - l] =
+            stable_chi_square_quantile(coverage_levels[coverage_level_count - 1 - l], dimensions_[k]);
+    return all;
+}
+
+/// The values of `nees_` are their probabilities, so that those of states of any dimension are together.
+void RecordTotals::add_distribution() {
+    for (const std::size_t k : present_) {
+        ++arm().totals.present[k];
+        const double nees = nees_at(k);
+        if (std::isnan(nees)) continue;
+        const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
+        if (keeps_cells_)
+            ++arm().totals.cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
+        if (keeps_nees_) nees_[k].push_back(1 - chi_square_p(nees, dimension));
+    }
+}
+
+Record RecordTotals::finish() {
+    finish_rounding();
+    record_.gaps = gaps_.finish();
+    arm().totals.trials = trial_totals(record_.results.columns, 1, size(shape_.trials),
+                                       [&](std::size_t, std::size_t c) { return arm().columns[c].data(); })
+                              .front();
+    if (innovations_left_out_ > 0)
+        record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
+                                             " steps are left out: their covariance cannot be inverted to 0.5 %.");
+    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(size(shape_.steps), nan);
+    for (std::size_t k = 0; k < nees_.size(); ++k)
+        arm().totals.distribution_distance[k] = uniform_distance(std::move(nees_[k]));
+    return std::move(record_);
+}
+
+}  // namespace credence

@@ -1,0 +1,88 @@
+#pragma once
+// The totals over the trials of a record.
+
+#include <credence/record.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "record/alike.hpp"
+#include "record/gaps.hpp"
+#include "record/presence.hpp"
+#include "record/reader.hpp"
+#include "record/row_products.hpp"
+#include "worlds/own/moments.hpp"
+#include "worlds/own/step.hpp"
+
+namespace credence {
+
+/// Receives a record's steps one after the other, and makes results of them.
+class RecordTotals {
+public:
+    /// `path` names the scenario.
+    RecordTotals(const RecordShape& shape, const std::string& path);
+    RecordTotals(const RecordTotals&) = delete;
+    RecordTotals& operator=(const RecordTotals&) = delete;
+
+    /// Adds a step; every step of every trial comes once, in order. Throws RecordError for bad input.
+    void add(const RecordStep& step);
+
+    /// The results, after the last step.
+    Record finish();
+
+private:
+    ArmResults& arm() { return record_.results.arms.front(); }
+    double& series(std::size_t f, std::size_t k) { return values_[k * all_series_.list.size() + f]; }
+
+    void start_trial();
+    void add_covered(const RecordStep& step);
+    void add_figures(const RecordStep& step, const CheckedStep& checked);
+    void note(const RecordStep& step, Status status, const std::string& what);
+    void check_end(std::int64_t trial);
+    void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
+    void end_trial(std::int64_t trial);
+    void add_columns(std::int64_t trial);
+    void add_totals();
+    void add_series(std::size_t f);
+    void add_coverage(std::size_t f, std::size_t k, double value);
+    void add_distribution();
+    void set_dimension(std::size_t k);
+    void add_rounding(std::size_t k);
+    void finish_rounding();
+    double nees_at(std::size_t k);
+    const double* bounds(std::size_t f, std::size_t k);
+
+    RecordShape shape_;
+    StateSeries all_series_;
+    AlikeSums alike_;
+    StepEvaluator judge_;
+    PresenceChecker presence_;
+    GapCounter gaps_;
+    Record record_;
+    bool keeps_nees_ = false, keeps_cells_ = false;
+    std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
+    /// [steps, 1 + groups] trials with the step, sums over them of the bounds.
+    std::vector<double> roundings_;
+    std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
+    std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
+    /// [n + 1, levels] the same of a state of that dimension; 0: not known yet.
+    std::vector<double> bounds_by_dimension_;
+
+    // State of the current trial.
+    CheckedStep checked_;
+    Status status_ = Status::completed;
+    RecordTrouble trouble_;                      ///< why the trial failed, if it did
+    std::vector<std::size_t> present_;           ///< steps that exist, in order
+    std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
+    /// [steps] of the state, if there is a joint covariance; else empty.
+    std::vector<int> dimensions_;
+    RowProducts products_;
+    TrialMomentSums moments_;
+};
+
+/// Reads a whole record, part by part. The result does not depend on the size of the parts.
+Record read_record(const RecordReader& reader, const std::string& path,
+                   const std::function<void(const Progress&)>& progress = {});
+
+}  // namespace credence
