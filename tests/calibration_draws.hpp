@@ -91,7 +91,7 @@ inline void add_trial(const std::vector<std::vector<double>>& values, const std:
         ++arm.totals
               .cells[k * distribution_cells + static_cast<std::size_t>(equiprobable_cells(n)->cell(values[k][0]))];
     }
-    ++arm.totals.trials.counted();
+    ++arm.totals.trials.statuses[static_cast<std::size_t>(Status::completed)];
 }
 
 inline void add_products(const double* innovations, ProductTotals& products) {

@@ -26,7 +26,7 @@ bool is_small(const ScenarioResults& results) {
 void judge_file(const std::string& path, bool with_report) {
     Record record = read_record(path);
     const ArmResults& arm = record.results.arms.at(0);
-    const std::vector<std::int64_t> statuses = status_counts(record.results, arm);
+    const std::vector<std::int64_t>& statuses = arm.totals.trials.statuses;
     const std::int64_t completed = statuses[static_cast<std::size_t>(Status::completed)],
                        diverged = statuses[static_cast<std::size_t>(Status::diverged)];
     require(completed + record.trouble_count == record.results.trials, "every trial completes or is in trouble");

@@ -30,7 +30,7 @@ std::vector<Ratio> ratios(const Problem& problem, int blocks, int figure, int di
         const Block block = run_block(problem, 7, b, block_size);
         trials += block_size;
         for (std::size_t a = 0; a < arms; ++a) {
-            REQUIRE(block.arms[a].totals.trials.counted() == block_size);
+            REQUIRE(block.arms[a].counted == block_size);
             for (int k = 0; k < steps; ++k) sum[a] += block.arms[a].sums[static_cast<std::size_t>(figure * steps + k)];
             square[a] += block.arms[a].run_square_sums[static_cast<std::size_t>(figure)];
         }

@@ -28,7 +28,7 @@ Verdicts verdicts(const DeformableSettings& scenario, std::int64_t trials) {
         const Consistency judged = judge(evidence, 0.05);
         ++result.count[verdict_name(judged.verdict)];
         std::map<std::string, int> found;
-        for (const Finding& finding : judged.findings) found[finding.what + " " + finding.where] = 1;
+        for (const Finding& finding : judged.findings) found[fault_name(finding.what) + " " + finding.where] = 1;
         for (const auto& [finding, one] : found) result.found[finding] += one;
         for (const GroupEvidence& group : evidence.groups) {
             sums[group.name].first += group.run.mean;

@@ -32,7 +32,7 @@ public:
             const Block block = run_block(simulation, trial_columns(state_of(scenario)), arms, 3, b, block_size);
             trials_ += block_size;
             for (std::size_t a = 0; a < arms; ++a) {
-                REQUIRE(block.arms[a].totals.trials.counted() == block_size);
+                REQUIRE(block.arms[a].counted == block_size);
                 add(block.arms[a].sums, sums_[a]);
                 add(block.arms[a].square_sums, squares_[a]);
                 add(block.arms[a].run_square_sums, run_squares_[a]);
