@@ -52,7 +52,7 @@ const Words& words_of(FileKind kind) {
         {"the trajectory file of a replay", "`python -m credence.pictures` and whatever opens HDF5 read it"},
         {"a record", command("judge") + " reads it"},
         {"a noise record", command("replay SCENARIO.ini --noise") + " reads it"},
-        {"the journal of a run", command("watch") + " follows it, and " + command("run --resume") + " goes on with it"},
+        {"the journal of a run", command("watch") + " follows it, and " + command("run --resume") + " resumes it"},
     };
     return words[static_cast<std::size_t>(kind)];
 }

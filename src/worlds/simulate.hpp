@@ -48,8 +48,8 @@ inline constexpr const char* force_target_variable = "CREDENCE_FORCE_TARGET";
 /// Every target that was built and that this processor can run, the best one first.
 std::vector<Target> runnable_targets();
 
-/// The target that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_TARGET names. Throws
-/// InputError where that is not one of runnable_targets; programs that compute call this before anything else.
+/// The target that runs where none is named: the first runnable one, or the one that CREDENCE_FORCE_TARGET names.
+/// Throws InputError where that is not one of runnable_targets; programs that compute call this before anything else.
 Target best_target();
 
 }  // namespace credence

@@ -158,7 +158,7 @@ class Failing:
         return self.made.get(name) == data
 
     def check_kept(self, before):
-        """Files are what they were, or whole, but for those of a run that is to be gone on with."""
+        """Files are what they were, or whole, but for those of a run that is to be resumed."""
         now = self.bench.files()
         missing = [name for name in before if name not in now and name in self.made]
         changed = [name for name, data in now.items() if before.get(name) != data and not self.is_whole(name, data) and

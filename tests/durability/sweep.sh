@@ -65,14 +65,14 @@ kill_at() {
   if [ -e x.h5 ] && ! { [ -n "$before" ] && cmp -s "$before" x.h5; }; then
     "$credence" report x.h5 >../said 2>&1 || fail "$what: the file is neither the old one nor readable"
   fi
-  # What goes on is killed too, a commit or so later: a journal is gone on with that was gone on with.
+  # What goes on is killed too, a commit or so later: a journal is resumed that was resumed before.
   if [ "$blocks" -gt 0 ]; then crashing "CRASH_AT=6 CRASH_HALF=$2 CRASH_LOG=../log" "${again[@]}"; fi
   go_on "$what"
   check_kept "$what"
   check_whole "$what"
 }
 
-# sweep NAME BEFORE BLOCKS [ENVIRONMENT]: `command` on the file BEFORE computes BLOCKS blocks; `again` goes on with it.
+# sweep NAME BEFORE BLOCKS [ENVIRONMENT]: `command` on the file BEFORE computes BLOCKS blocks; `again` resumes it.
 sweep() {
   local name=$1 before=$2 blocks=$3 environment=${4:-} kills=0 ended=0 kept=0 refused=0 total n
   count_changes "$environment"

@@ -148,7 +148,7 @@ TEST_CASE("aggregates: the journal lists blocks as ranges") {
     CHECK(start.ranges.back() == BlockRange{16, 39});
 }
 
-TEST_CASE("aggregates: a study of the other kind is not gone on with, not merged, and said to be so") {
+TEST_CASE("aggregates: a study of the other kind is not resumed, not merged, and said to be so") {
     const TemporaryFolder folder;
     const Asked asked = small(300), other = small(300, Keep::trials);
     run_to_end(folder / "aggregates.h5", asked);

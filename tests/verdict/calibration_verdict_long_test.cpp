@@ -96,7 +96,7 @@ TEST_CASE("calibration: sigma_head = 0.042 is mixed for 4000 trials, whatever th
     CHECK(v.count["mixed"] == seeds);  // at 2000 trials 48, the rest pessimistic: the pose's NEES is heavy-tailed
     CHECK(v.found["optimistic position"] == seeds);
     CHECK(v.found["pessimistic features"] == seeds);
-    // statistics.md has 0.97, 1.20 and 0.70, without an error. One average hides it all: it is near 1.
+    // An earlier measurement: 0.97, 1.20 and 0.70, without an error. One average hides it all: it is near 1.
     CHECK(v.ratio["all"].mean == Approx(0.97).margin(0.03));
     CHECK(v.ratio["pose"].mean == Approx(1.20).margin(0.06));
     CHECK(v.ratio["features"].mean == Approx(0.70).margin(0.02));

@@ -101,8 +101,8 @@ TEST_CASE("consistency: a reported covariance 1.1 times too large is pessimistic
 }
 
 TEST_CASE("consistency: errors that cancel in one average are mixed", "[long]") {
-    // statistics.md: the reference study's EKF with sigma_head = 0.042: 0.97 over all, 1.20 for the pose, 0.70 for the
-    // features.
+    // Measured before: the reference study's EKF with sigma_head = 0.042: 0.97 over all, 1.20 for the pose, 0.70 for
+    // the features.
     DeformableSettings s;
     s.noise.heading = 0.042;
     s.arms.controllers = {Controller::fixed};

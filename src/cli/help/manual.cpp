@@ -83,7 +83,7 @@ std::string described_keys() {
 std::string files_text() {
     return roff::tagged(roff::italic("FILE.h5"), "A results file: HDF5, readable as netCDF-4 by any tool.") +
            roff::tagged(roff::italic("FILE.h5.journal"),
-                        "Beside it while a run goes on: all that is finished. --resume goes on with it.") +
+                        "Beside it while a run goes on: all that is finished. --resume resumes it.") +
            roff::tagged(roff::italic("FILE.h5.credence-partial"), "The results file while it is being written.");
 }
 

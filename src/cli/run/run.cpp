@@ -147,7 +147,7 @@ Work keep(StoredRun& stored, const RunRequest& request, const std::string& comma
         return work;
     } catch (const Failure& failure) {
         if (!stored.keeps_something()) throw Failure(failure.what() + std::string(" Nothing had been committed."));
-        throw Failure(failure.what() + std::string(" What was committed is kept, and this goes on with it: ") +
+        throw Failure(failure.what() + std::string(" What was committed is kept, and this resumes the run: ") +
                       resuming(command_line, request.options.shard));
     }
 }

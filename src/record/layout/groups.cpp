@@ -128,7 +128,8 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
     const std::string name = "groups", place = record_attribute_place(name);
     if (source.has_attribute(name)) return parse_groups(source.list(name), n, place);
     if (source.has(name))
-        throw RecordError(place, "is missing, but there is a `groups` elsewhere", "Make it an attribute of the root, `/`");
+        throw RecordError(place, "is missing, but there is a `groups` elsewhere",
+                          "Make it an attribute of the root, `/`");
     if (source.has_attribute("blocks"))
         throw RecordError(record_attribute_place("blocks"), "is of a record of release 0.2 or earlier",
                     "Write it as the attribute `groups`");
@@ -152,8 +153,9 @@ std::vector<Component> read_components(const RecordSource& source, int n, const 
                         "Write one word for each component, such as m/s, and 1 where it has no unit");
         for (std::size_t i = 0; i < j; ++i)
             if (components[i].name == component.name)
-                throw RecordError(record_attribute_place("component_names"), "names two components " + quoted(component.name),
-                            "Give each component a name of its own");
+                throw RecordError(record_attribute_place("component_names"),
+                                  "names two components " + quoted(component.name),
+                                  "Give each component a name of its own");
     }
     return components;
 }

@@ -47,7 +47,8 @@ void check_version(const RecordSource& source) {
     const std::optional<double> version = source.number(name);
     if (!version) throw RecordError(place, "is not one number", "Write 2");
     if (*version != 2)
-        throw RecordError(place, "is " + to_text(*version), "Write 2, or use a newer credence if there is such a version");
+        throw RecordError(place, "is " + to_text(*version),
+                          "Write 2, or use a newer credence if there is such a version");
 }
 
 void open_innovations(const RecordSource& source, RecordDatasets& data) {

@@ -86,7 +86,8 @@ void check_time(const RecordSource& source, const RecordLayout& layout) {
     if (!source.has("time")) return;
     const DatasetPointer dataset = source.open("time", Numbers::any);
     const Extents& extents = dataset->extents();
-    const std::uint64_t trials = static_cast<std::uint64_t>(shape.trials), steps = static_cast<std::uint64_t>(shape.steps);
+    const std::uint64_t trials = static_cast<std::uint64_t>(shape.trials),
+                        steps = static_cast<std::uint64_t>(shape.steps);
     const bool common = extents == Extents{steps};
     if (!common && extents != Extents{trials, steps})
         throw RecordError(dataset->place(),

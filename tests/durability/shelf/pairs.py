@@ -69,7 +69,7 @@ def pairs(bench):
 
 
 def pairs_of_inputs(bench, shards):
-    """The first shard is gone on with, or replaced by one of another study, while all are merged: what is merged is of
+    """The first shard is resumed, or replaced by one of another study, while all are merged: what is merged is of
     one study, and lacks nothing."""
     part = bench.root / "part.h5"
     shard = ["--shard", "0/3"]
