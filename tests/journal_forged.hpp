@@ -10,7 +10,7 @@
 namespace credence::test {
 
 /// A commit in its parts, each of which can be forged.
-struct Record {
+struct ForgedCommit {
     std::uint32_t scenario = 0;
     CommitStart start;
     std::string values, totals;
@@ -40,7 +40,7 @@ struct Made {
     TemporaryFolder folder;
     std::string path = folder / "x.h5", header;
     Study study;
-    Record record;
+    ForgedCommit record;
 
     explicit Made(Keep keep = Keep::trials) : asked{3, 1, {}, {tiny("a")}, 1, keep}, study(undisturbed(asked)) {
         run_and_die(path, asked);
@@ -57,9 +57,9 @@ struct Made {
         REQUIRE(record.bytes() == bytes.substr(ends[0]));
     }
     /// The message with which a run refuses to continue a journal of these commits.
-    std::string said(const std::vector<Record>& records) const {
+    std::string said(const std::vector<ForgedCommit>& records) const {
         std::string bytes = header;
-        for (const Record& one : records) bytes += one.bytes();
+        for (const ForgedCommit& one : records) bytes += one.bytes();
         put_bytes(path + ".journal", bytes);
         const std::string watched = refusal<InputError>([&] { RunWatch(path).snapshot(); }),
                           text = refused(path, asked);

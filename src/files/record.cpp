@@ -23,11 +23,11 @@ auto at_path(const Handle& group, const std::string& path, const Use& use) {
 class FileDataset : public RecordDataset {
 public:
     explicit FileDataset(hdf5::RealDataset dataset)
-        : RecordDataset(dataset.place(), Extents(dataset.extents().begin(), dataset.extents().end()), dataset.epsilon(),
+        : RecordDataset(dataset.place(), {dataset.extents().begin(), dataset.extents().end()}, dataset.epsilon(),
                         dataset.chunk().front()),
           dataset_(std::move(dataset)) {}
-    void read(const Extents& first, const Extents& count, std::vector<double>& values) const override {
-        dataset_.read(first, count, values);
+    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
+        dataset_.read({first.begin(), first.end()}, {count.begin(), count.end()}, values);
     }
 
 private:

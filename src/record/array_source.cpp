@@ -21,11 +21,10 @@ double* copy(const T* from, const std::int64_t* strides, const std::uint64_t* co
 class ArrayDataset : public RecordDataset {
 public:
     explicit ArrayDataset(const RecordArray& array)
-        : RecordDataset(record_place(array.path), Extents(array.extents.begin(), array.extents.end()), array.epsilon,
-                        1),
+        : RecordDataset(record_place(array.path), {array.extents.begin(), array.extents.end()}, array.epsilon, 1),
           array_(array) {}
 
-    void read(const Extents& first, const Extents& count, std::vector<double>& values) const override {
+    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
         std::int64_t start = 0;
         for (std::size_t axis = 0; axis < first.size(); ++axis)
             start += static_cast<std::int64_t>(first[axis]) * array_.strides[axis];
@@ -38,7 +37,7 @@ public:
 private:
     /// Axes of which the later one lies within the earlier one without gaps are copied as one.
     template <class T>
-    void read_from(const T* from, Extents count, std::vector<double>& values) const {
+    void read_from(const T* from, RecordExtents count, std::vector<double>& values) const {
         std::vector<std::int64_t> strides = array_.strides;
         for (std::size_t axis = count.size() - 1; axis > 0; --axis) {
             if (strides[axis - 1] != strides[axis] * static_cast<std::int64_t>(count[axis])) continue;

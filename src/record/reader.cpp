@@ -121,7 +121,7 @@ RecordPart RecordReader::part_at(std::int64_t trial, int step) const {
 }
 
 void RecordReader::read(const RecordDataset& dataset, const RecordPart& part, std::vector<double>& values) const {
-    Extents first(dataset.extents().size(), 0), count = dataset.extents();
+    RecordExtents first(dataset.extents().size(), 0), count = dataset.extents();
     const std::size_t axis = layout_.single ? 0 : 1;
     first[axis] = static_cast<std::uint64_t>(part.first_step);
     count[axis] = static_cast<std::uint64_t>(part.steps);

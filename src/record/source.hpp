@@ -28,7 +28,7 @@ private:
     std::string of_arrays_;
 };
 
-using Extents = std::vector<std::uint64_t>;
+using RecordExtents = std::vector<std::uint64_t>;
 
 /// The numbers that a dataset may contain.
 enum class Numbers { floating, any };
@@ -36,25 +36,25 @@ enum class Numbers { floating, any };
 /// A dataset of a record, read in parts as doubles.
 class RecordDataset {
 public:
-    RecordDataset(std::string place, Extents extents, double epsilon, std::uint64_t chunk)
+    RecordDataset(std::string place, RecordExtents extents, double epsilon, std::uint64_t chunk)
         : place_(std::move(place)), extents_(std::move(extents)), epsilon_(epsilon), chunk_(chunk) {}
     virtual ~RecordDataset() = default;
     RecordDataset(const RecordDataset&) = delete;
     RecordDataset& operator=(const RecordDataset&) = delete;
 
     const std::string& place() const { return place_; }
-    const Extents& extents() const { return extents_; }
+    const RecordExtents& extents() const { return extents_; }
     /// Distance of 1 from the next number of the type, at least 2^-52.
     double epsilon() const { return epsilon_; }
     /// How many entries of the first dimension are stored together.
     std::uint64_t chunk() const { return chunk_; }
 
     /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
-    virtual void read(const Extents& first, const Extents& count, std::vector<double>& values) const = 0;
+    virtual void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const = 0;
 
 private:
     std::string place_;
-    Extents extents_;
+    RecordExtents extents_;
     double epsilon_;
     std::uint64_t chunk_;
 };

@@ -152,18 +152,18 @@ TEST_CASE("aggregates: a journal's ranges of blocks that cannot be are refused, 
         {{most_trials, most_trials, {}, {}, {{0, far}}}, "a record has fewer values than its blocks"},
         {{most_trials, 3, {}, {}, {{100, far}}}, "is damaged"}};
     for (const auto& [start, why] : starts) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.start = start;
         const std::string text = made.said({bad});
         CAPTURE(start.trials, start.counted, text);
         CHECK(says(text, why));
     }
     for (const std::uint32_t ranges : {2u, 1000u, 0xffffffffu}) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.blocks = ranges;
         CHECK(says(made.said({bad}), "is damaged"));
     }
-    Record twice = made.record;
+    ForgedCommit twice = made.record;
     twice.start.ranges.assign(20, {0, 0});
     twice.values.append(20 * made.record.values.size(), '\0');
     CHECK(says(made.said({twice}), "a block is there twice"));
@@ -171,7 +171,7 @@ TEST_CASE("aggregates: a journal's ranges of blocks that cannot be are refused, 
 
 TEST_CASE("aggregates: totals in a journal that no trials could give are refused, and cut ones") {
     const Made made(Keep::aggregates);
-    Record bad = made.record;
+    ForgedCommit bad = made.record;
     for (std::size_t size = 0; size < made.record.totals.size(); ++size) {
         bad.totals = made.record.totals.substr(0, size);
         REQUIRE(says(made.said({bad}), "is damaged"));

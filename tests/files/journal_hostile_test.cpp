@@ -34,7 +34,7 @@ TEST_CASE("journal: commits with invalid heads end it as torn ones do") {
     for (const std::int64_t payload :
          {std::int64_t{0}, std::int64_t{-1}, std::int64_t{19}, std::int64_t{1} << 40,
           std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::min()}) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.payload = payload;
         CAPTURE(payload);
         CHECK(made.said({bad}).empty());
@@ -59,33 +59,33 @@ TEST_CASE("journal: blocks and trials that cannot be are refused") {
         {{300, 0, {{1, 44}}}, "is damaged"},
         {{3, 2, {{0, 3}}}, "totals and blocks do not agree"}};
     for (const auto& [start, why] : starts) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.start = start;
         const std::string text = made.said({bad});
         CAPTURE(start.trials, start.counted, text);
         CHECK(text.starts_with(made.path + ".journal: is damaged: "));
         CHECK(says(text, why));
     }
-    Record other = made.record;
+    ForgedCommit other = made.record;
     other.scenario = 1;
     CHECK(says(made.said({other}), "a scenario that the study does not have"));
     for (const std::uint32_t blocks : {2u, 1000u, 0xffffffffu}) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.blocks = blocks;
         CHECK(says(made.said({bad}), "is damaged"));
     }
     for (const Shard shard : {Shard{0, 0}, Shard{-1, 2}, Shard{2, 2}, Shard{0, -1}}) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.start.shard = shard;
         CHECK(says(made.said({bad}), "an impossible shard"));
     }
-    Record longer{0, {300, 47, {{1, 44}}}, std::string(8000, '\0'), made.record.totals, {}, {}};
+    ForgedCommit longer{0, {300, 47, {{1, 44}}}, std::string(8000, '\0'), made.record.totals, {}, {}};
     CHECK(says(made.said({made.record, longer}), "is damaged"));
 }
 
 TEST_CASE("journal: values and totals that are not the commit's are refused") {
     const Made made;
-    Record bad = made.record;
+    ForgedCommit bad = made.record;
     bad.values.pop_back();
     CHECK(says(made.said({bad}), "is damaged"));
     bad = made.record;
@@ -116,7 +116,7 @@ TEST_CASE("journal: values and totals that are not the commit's are refused") {
 TEST_CASE("journal: any byte of the totals changed under a right checksum is refused or harmless") {
     const Made made;
     for (std::size_t at = 0; at < made.record.totals.size(); ++at) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.totals[at] = static_cast<char>(bad.totals[at] ^ 0x81);
         put_bytes(made.path + ".journal", made.header + bad.bytes());
         CAPTURE(at);
@@ -129,7 +129,7 @@ TEST_CASE("journal: an invalid status is refused when it is read") {
     const ScenarioResults& results = made.study.scenarios.front();
     const auto at = static_cast<std::size_t>(BlockLayout(results).column_offset(0, column_status, 3));
     for (const char status : {'\x09', '\xff', '\x80'}) {
-        Record bad = made.record;
+        ForgedCommit bad = made.record;
         bad.values[at + 1] = status;
         CHECK(says(made.said({bad}), "holds an unknown status"));
     }
@@ -148,7 +148,7 @@ TEST_CASE("journal: numbers of trials that no memory holds take none") {
     set_blocks(study.scenarios.front(), {far}, most_trials);
     add_totals(study.scenarios.front(), block);
     const auto size = BlockLayout(study.scenarios.front()).size({far, block_size});
-    const Record record{0,
+    const ForgedCommit record{0,
                         {most_trials, block_size, {{far, block_size}}},
                         std::string(static_cast<std::size_t>(size), '\0'),
                         totals_of(study.scenarios.front()),

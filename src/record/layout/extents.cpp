@@ -7,12 +7,12 @@ namespace credence {
 namespace {
 
 /// Whether `matrices` are square ones of the `vectors`.
-bool are_squares(const Extents& matrices, Extents vectors) {
+bool are_squares(const RecordExtents& matrices, RecordExtents vectors) {
     vectors.push_back(vectors.empty() ? 0 : vectors.back());
     return matrices == vectors;
 }
 
-bool are_reversed_squares(Extents matrices, Extents vectors) {
+bool are_reversed_squares(RecordExtents matrices, RecordExtents vectors) {
     std::reverse(matrices.begin(), matrices.end());
     std::reverse(vectors.begin(), vectors.end());
     return are_squares(matrices, vectors);
@@ -29,7 +29,7 @@ std::string permuted(const std::string& name, std::size_t rank) {
 
 void require_squares(const PlacedExtents& vectors, const RecordDataset& matrices, const std::string& vector_name,
                      const std::string& matrix_name) {
-    const Extents &v = vectors.extents, &M = matrices.extents();
+    const RecordExtents &v = vectors.extents, &M = matrices.extents();
     if (are_squares(M, v)) return;
     const std::string both = extents_text(M) + " and " + vectors.place + " " + extents_text(v);
     if (are_reversed_squares(M, v))
@@ -56,7 +56,7 @@ void require_between(const PlacedExtents& dataset, std::size_t axis, std::uint64
 
 void require_same_steps(const PlacedExtents& vectors, const RecordDataset& dataset, std::size_t rank,
                         const std::string& written) {
-    const Extents &e = vectors.extents, &v = dataset.extents();
+    const RecordExtents &e = vectors.extents, &v = dataset.extents();
     if (v.size() == rank && v.size() + 1 >= e.size() && std::equal(e.begin(), e.end() - 1, v.begin())) return;
     throw RecordError(dataset.place(),
                 "does not fit: it is " + extents_text(v) + " and " + vectors.place + " " + extents_text(e), written);

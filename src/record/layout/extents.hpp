@@ -11,7 +11,7 @@ inline constexpr std::uint64_t largest_record_state = 1000, largest_record_rows 
 
 /// A dataset's extents with its place in the file; or those that follow from another.
 struct PlacedExtents {
-    Extents extents;
+    RecordExtents extents;
     std::string place;
 };
 inline PlacedExtents placed(const RecordDataset& dataset) { return {dataset.extents(), dataset.place()}; }

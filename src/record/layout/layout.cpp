@@ -21,7 +21,7 @@ std::vector<const RecordDataset*> RecordDatasets::leading() const {
 }
 
 void set_extents(const PlacedExtents& leading, std::size_t rank, const std::string& written, RecordLayout& layout) {
-    const Extents& extents = leading.extents;
+    const RecordExtents& extents = leading.extents;
     if (extents.size() != rank && extents.size() + 1 != rank)
         throw RecordError(leading.place, "is " + extents_text(extents), "Write it as " + written);
     layout.single = extents.size() + 1 == rank;

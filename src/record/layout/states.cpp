@@ -9,7 +9,7 @@ namespace credence {
 
 namespace {
 
-void require_coordinates(const RecordDataset& dataset, const Extents& extents, std::uint64_t coordinates) {
+void require_coordinates(const RecordDataset& dataset, const RecordExtents& extents, std::uint64_t coordinates) {
     if (dataset.extents() == extents && !extents.empty() && extents.back() == coordinates) return;
     throw RecordError(dataset.place(),
                 "does not fit: it is " + extents_text(dataset.extents()) + ", and the manifold has " +

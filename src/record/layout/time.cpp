@@ -12,8 +12,8 @@ namespace credence {
 void add_steps(const RecordSource& source, RecordShape& shape) {
     if (!source.has("steps")) return;
     const DatasetPointer dataset = source.open("steps", Numbers::any);
-    const Extents& extents = dataset->extents();
-    const Extents all{static_cast<std::uint64_t>(shape.trials)};
+    const RecordExtents& extents = dataset->extents();
+    const RecordExtents all{static_cast<std::uint64_t>(shape.trials)};
     if (extents != all)
         throw RecordError(dataset->place(),
                     "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(shape.trials) +
@@ -39,7 +39,7 @@ const std::string how_times_are = "Write times that increase from step to step, 
 std::vector<char> steps_there(const RecordLayout& layout, std::int64_t trial) {
     std::vector<char> there(static_cast<std::size_t>(layout.shape.steps), 0);
     for (const RecordDataset* dataset : layout.data.leading()) {
-        Extents first(dataset->extents().size(), 0), count = dataset->extents();
+        RecordExtents first(dataset->extents().size(), 0), count = dataset->extents();
         if (!layout.single) first[0] = static_cast<std::uint64_t>(trial), count[0] = 1;
         std::size_t size = 1;
         for (const std::uint64_t extent : count) size *= extent;
@@ -85,18 +85,19 @@ void check_time(const RecordSource& source, const RecordLayout& layout) {
     const RecordShape& shape = layout.shape;
     if (!source.has("time")) return;
     const DatasetPointer dataset = source.open("time", Numbers::any);
-    const Extents& extents = dataset->extents();
+    const RecordExtents& extents = dataset->extents();
     const std::uint64_t trials = static_cast<std::uint64_t>(shape.trials),
                         steps = static_cast<std::uint64_t>(shape.steps);
-    const bool common = extents == Extents{steps};
-    if (!common && extents != Extents{trials, steps})
+    const bool common = extents == RecordExtents{steps};
+    if (!common && extents != RecordExtents{trials, steps})
         throw RecordError(dataset->place(),
                     "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(trials) +
                         " trials and " + std::to_string(steps) + " steps",
                     "Write it as [step], or as [trial, step]");
     std::vector<double> times(steps);
     for (std::uint64_t trial = 0; trial < (common ? 1 : trials); ++trial) {
-        dataset->read(common ? Extents{0} : Extents{trial, 0}, common ? Extents{steps} : Extents{1, steps}, times);
+        dataset->read(common ? RecordExtents{0} : RecordExtents{trial, 0},
+                      common ? RecordExtents{steps} : RecordExtents{1, steps}, times);
         require_increasing(times, static_cast<std::int64_t>(trial), shape, dataset->place(),
                            common ? "" : "trial " + std::to_string(trial) + ", ");
         for (std::uint64_t of = trial; of < (common ? trials : trial + 1); ++of)
