@@ -6,7 +6,7 @@
 
 #include "filters.hpp"
 
-#include "files/record/totals.hpp"
+#include "record/totals.hpp"
 
 #include <credence/consistency.hpp>
 #include <credence/evidence.hpp>

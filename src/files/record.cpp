@@ -1,6 +1,6 @@
 // A record in an HDF5 file.
 
-#include <credence/record.hpp>
+#include "files/record.hpp"
 
 #include "files/hdf5/slab.hpp"
 #include "record/read.hpp"
@@ -41,26 +41,13 @@ void refuse_group(const Handle& parent, const std::string& name) {
                         "cannot be opened");
     if (H5Iget_type(object.id()) == H5I_GROUP)
         throw RecordError(place, "is a group, not a dataset, as Octave's save makes it",
-                    "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
+                          "Write a dataset of that name, in Octave with nccreate and ncwrite of the package netcdf");
 }
 
 /// The name by which HDF5 finds an object from the root.
 const char* object_name(const std::string& path) { return path.empty() ? "." : path.c_str(); }
 
-/// A record in a file, as long as its root is open.
-class FileSource : public RecordSource {
-public:
-    explicit FileSource(const Handle& root) : root_(root) {}
-    bool has(const std::string& path) const override;
-    DatasetPointer open(const std::string& path, Numbers numbers) const override;
-    std::vector<std::string> names_in(const std::string& group) const override;
-    bool has_attribute(const std::string& name, const std::string& path) const override;
-    std::string text(const std::string& name) const override { return hdf5::read_any_text(root_, name); }
-    std::optional<double> number(const std::string& name, const std::string& path) const override;
-
-private:
-    const Handle& root_;
-};
+}  // namespace
 
 bool FileSource::has(const std::string& path) const {
     return at_path(root_, path,
@@ -87,6 +74,8 @@ bool FileSource::has_attribute(const std::string& name, const std::string& path)
     return answer > 0;
 }
 
+std::string FileSource::text(const std::string& name) const { return hdf5::read_any_text(root_, name); }
+
 std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
     const std::string place = record_attribute_place(name, path);
     const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
@@ -101,6 +90,8 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
     hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
     return number;
 }
+
+namespace {
 
 Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, bool other) {
     return hdf5::read_file(path,

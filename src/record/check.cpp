@@ -18,11 +18,11 @@ constexpr double largest_asymmetry = 1e-9;
 
 void refuse_asymmetry(const std::string& dataset, const RecordStep& step, int i, int j, double above, double below) {
     throw RecordError(dataset,
-                "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
-                    " (both counted from 0) is not symmetric: [" + std::to_string(i) + ", " + std::to_string(j) +
-                    "] is " + to_text(above) + ", [" + std::to_string(j) + ", " + std::to_string(i) + "] is " +
-                    to_text(below),
-                "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
+                      "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
+                          " (both counted from 0) is not symmetric: [" + std::to_string(i) + ", " + std::to_string(j) +
+                          "] is " + to_text(above) + ", [" + std::to_string(j) + ", " + std::to_string(i) + "] is " +
+                          to_text(below),
+                      "Write (P + P') / 2 if it is rounding that grew, and look for a bug in the filter if it is not");
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ Manifold Manifold::read(const RecordSource& source) {
         manifold.dimension_ += factor.dimension;
         if (manifold.dimension_ > largest_dimension)
             throw RecordError(place, "has more than " + std::to_string(largest_dimension) + " dimensions",
-                        "Write a part of the state");
+                              "Write a part of the state");
         quaternions = quaternions || has_quaternion(factor.coordinates, factor.dimension);
     }
     if (manifold.factors_.empty()) throw RecordError(place, "names no manifold", manifold_example);

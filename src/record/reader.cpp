@@ -179,10 +179,10 @@ void RecordReader::require_quaternions(const RecordDataset& dataset, std::int64_
     const int wrong = layout_.data.manifold->wrong_quaternion(coordinates);
     if (wrong < 0) return;
     throw RecordError(dataset.place(),
-                "trial " + std::to_string(trial) + ", step " + std::to_string(step) +
-                    " (both counted from 0) has no unit quaternion at " + std::to_string(wrong) + ":" +
-                    std::to_string(wrong + 4),
-                "Write quaternions of length 1, in the order of the attribute `quaternion`");
+                      "trial " + std::to_string(trial) + ", step " + std::to_string(step) +
+                          " (both counted from 0) has no unit quaternion at " + std::to_string(wrong) + ":" +
+                          std::to_string(wrong + 4),
+                      "Write quaternions of length 1, in the order of the attribute `quaternion`");
 }
 
 }  // namespace credence

@@ -8,9 +8,7 @@
 
 namespace credence {
 
-namespace {
-
-Record read_all(const RecordReader& reader, const std::string& name, const ReportProgress& progress) {
+Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const RecordShape& shape = reader.shape();
     RecordTotals totals(shape, name);
@@ -31,14 +29,12 @@ Record read_all(const RecordReader& reader, const std::string& name, const Repor
     return totals.finish();
 }
 
-}  // namespace
-
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, bool other,
                      const std::function<Record(bool)>& read_again) {
     std::optional<Manifold>& manifold = reader.manifold();
     const bool has_charts = manifold && manifold->has_charts();
     if (has_charts && other) manifold->take_other_chart();
-    Record record = read_all(reader, name, progress);
+    Record record = read_record(reader, name, progress);
     if (!has_charts) return record;
     record.chart = manifold->chart() == ErrorChart::local ? "local" : "global";
     record.in_other_chart = [read_again, other] { return read_again(!other); };

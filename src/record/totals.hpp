@@ -81,8 +81,4 @@ private:
     TrialMomentSums moments_;
 };
 
-/// Reads a whole record, part by part. The result does not depend on the size of the parts.
-Record read_record(const RecordReader& reader, const std::string& path,
-                   const std::function<void(const Progress&)>& progress = {});
-
 }  // namespace credence

@@ -16,8 +16,8 @@ declare -A readers=(
   [scenario]="worlds/ini worlds/values worlds/deformable/keys worlds/deformable/settings worlds/landmarks/keys
     scenario/scenario scenario/common_keys scenario/sweep base/text"
   [noise]="files/trajectory/noise files/hdf5/read files/hdf5/handle"
-  [arrays]="files/record worlds/own/step"
-  [judge]="files/record worlds/own/step files/hdf5/slab files/hdf5/read files/hdf5/handle"
+  [arrays]="record worlds/own/step"
+  [judge]="record files/record worlds/own/step files/hdf5/slab files/hdf5/read files/hdf5/handle"
   [results]="files/results study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
   [journal]="files/journal report/watch/follower base/bytes"
 )

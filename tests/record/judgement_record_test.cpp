@@ -3,7 +3,9 @@
 
 #include "numeric/chi_square.hpp"
 
-#include "files/record/totals.hpp"
+#include "files/hdf5/read.hpp"
+#include "files/record.hpp"
+#include "record/read.hpp"
 #include "judgement_support.hpp"
 
 using namespace credence;

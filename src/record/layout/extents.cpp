@@ -33,16 +33,17 @@ void require_squares(const PlacedExtents& vectors, const RecordDataset& matrices
     if (are_squares(M, v)) return;
     const std::string both = extents_text(M) + " and " + vectors.place + " " + extents_text(v);
     if (are_reversed_squares(M, v))
-        throw RecordError(matrices.place(),
-                    "has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is " + both,
-                    "h5dump must show the trials first. Before you write them, turn them round: " +
-                        permuted(vector_name, v.size()) + " and " + permuted(matrix_name, M.size()) +
-                        ", and what else the record holds likewise",
-                    "Give the trials first: " + vector_name + ".transpose() and " + matrix_name +
-                        ".transpose(), and the other arrays likewise");
+        throw RecordError(
+            matrices.place(),
+            "has the order of its dimensions reversed, as MATLAB, Octave and Julia write them: it is " + both,
+            "h5dump must show the trials first. Before you write them, turn them round: " +
+                permuted(vector_name, v.size()) + " and " + permuted(matrix_name, M.size()) +
+                ", and what else the record holds likewise",
+            "Give the trials first: " + vector_name + ".transpose() and " + matrix_name +
+                ".transpose(), and the other arrays likewise");
     throw RecordError(matrices.place(), "does not fit: it is " + both,
-                "Write " + vector_name + " as [trial, step, size] and " + matrix_name +
-                    " as [trial, step, size, size], with all four even where one of them is 1");
+                      "Write " + vector_name + " as [trial, step, size] and " + matrix_name +
+                          " as [trial, step, size, size], with all four even where one of them is 1");
 }
 
 void require_between(const PlacedExtents& dataset, std::size_t axis, std::uint64_t most, const std::string& of_what) {
@@ -51,7 +52,7 @@ void require_between(const PlacedExtents& dataset, std::size_t axis, std::uint64
     if (extent == 0) throw RecordError(dataset.place, has + ": no " + of_what, "Write at least one");
     if (extent > most)
         throw RecordError(dataset.place, has + ": more than " + std::to_string(most) + " " + of_what,
-                    "Write fewer of them, such as a part of the state, or every tenth step");
+                          "Write fewer of them, such as a part of the state, or every tenth step");
 }
 
 void require_same_steps(const PlacedExtents& vectors, const RecordDataset& dataset, std::size_t rank,
@@ -59,14 +60,15 @@ void require_same_steps(const PlacedExtents& vectors, const RecordDataset& datas
     const RecordExtents &e = vectors.extents, &v = dataset.extents();
     if (v.size() == rank && v.size() + 1 >= e.size() && std::equal(e.begin(), e.end() - 1, v.begin())) return;
     throw RecordError(dataset.place(),
-                "does not fit: it is " + extents_text(v) + " and " + vectors.place + " " + extents_text(e), written);
+                      "does not fit: it is " + extents_text(v) + " and " + vectors.place + " " + extents_text(e),
+                      written);
 }
 
 DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other) {
     if (source.has(name)) return source.open(name);
     if (source.has(other))
         throw RecordError(record_place(name), "is missing, but " + record_place(other) + " is there",
-                    "Write both, or neither");
+                          "Write both, or neither");
     return nullptr;
 }
 

@@ -44,13 +44,13 @@ void add_members(const std::string& word, const std::string& entry, const Listed
     if (*first < 0 || last < *first)
         throw RecordError(place, quoted(entry) + " has no " + of.one + " " + quoted(word), of.example, of.arrays);
     if (last >= of.size)
-        throw RecordError(place,
-                    quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
-                    of.example, of.arrays);
+        throw RecordError(
+            place, quoted(entry) + " goes beyond the " + std::to_string(of.size) + " " + of.one + "s of " + of.whole,
+            of.example, of.arrays);
     for (std::int64_t member = *first; member <= last; ++member) {
         if (std::ranges::find(members, static_cast<int>(member)) != members.end())
             throw RecordError(place, quoted(entry) + " names " + of.one + " " + std::to_string(member) + " twice",
-                        "Name each one once in a group");
+                              "Name each one once in a group");
         members.push_back(static_cast<int>(member));
     }
 }
@@ -78,11 +78,10 @@ std::vector<std::string> read_list(const RecordSource& source, const std::string
     std::vector<std::string> texts;
     for (const std::vector<std::string>& words : source.list(name)) texts.push_back(joined(words, " "));
     if (texts.size() != static_cast<std::size_t>(n))
-        throw RecordError(record_attribute_place(name),
-                    "has " + std::to_string(texts.size()) + " entries, and the state has " + std::to_string(n) +
-                        " components",
-                    "Write one for each component, with commas between them",
-                    "Give a list with one for each component");
+        throw RecordError(
+            record_attribute_place(name),
+            "has " + std::to_string(texts.size()) + " entries, and the state has " + std::to_string(n) + " components",
+            "Write one for each component, with commas between them", "Give a list with one for each component");
     return texts;
 }
 
@@ -103,7 +102,7 @@ void require_group_name(const std::string& name, const std::string& what, const 
         throw RecordError(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
     if (name == "all")
         throw RecordError(place, "`all` cannot name a " + what + ", because it stands for the whole",
-                    "Leave that " + what + " out: the whole is judged anyway");
+                          "Leave that " + what + " out: the whole is judged anyway");
 }
 
 std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place) {
@@ -118,7 +117,7 @@ std::vector<RowGroup> parse_row_groups(const ListEntries& entries, int m, const 
     for (NamedList& list : parse_lists(entries, {"row", "the innovation", m, row_example, dictionary}, place)) {
         if (list.name == "rows" || list.name.starts_with("rows_"))
             throw RecordError(place, quoted(list.name) + " cannot name a group of rows, because series begin so",
-                        "Use another name");
+                              "Use another name");
         groups.push_back({list.name, std::move(list.members)});
     }
     return groups;
@@ -132,7 +131,7 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n) {
                           "Make it an attribute of the root, `/`");
     if (source.has_attribute("blocks"))
         throw RecordError(record_attribute_place("blocks"), "is of a record of release 0.2 or earlier",
-                    "Write it as the attribute `groups`");
+                          "Write it as the attribute `groups`");
     return parse_groups({}, n, place);
 }
 
@@ -150,7 +149,7 @@ std::vector<Component> read_components(const RecordSource& source, int n, const 
         if (!names.empty()) require_group_name(component.name, "component", record_attribute_place("component_names"));
         if (!units.empty() && (component.unit.empty() || component.unit.find_first_of(" \t\r\n") != std::string::npos))
             throw RecordError(record_attribute_place("component_units"), quoted(component.unit) + " is no unit",
-                        "Write one word for each component, such as m/s, and 1 where it has no unit");
+                              "Write one word for each component, such as m/s, and 1 where it has no unit");
         for (std::size_t i = 0; i < j; ++i)
             if (components[i].name == component.name)
                 throw RecordError(record_attribute_place("component_names"),

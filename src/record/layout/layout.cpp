@@ -93,9 +93,9 @@ void require_room(const RecordShape& shape) {
     const auto groups = static_cast<std::int64_t>(shape.groups.size());
     if (groups * shape.steps > most)
         throw RecordError("/",
-                    "has " + std::to_string(groups) + " component groups at " + std::to_string(shape.steps) +
-                        " steps, together more than " + std::to_string(most),
-                    "Write fewer groups, or every tenth step");
+                          "has " + std::to_string(groups) + " component groups at " + std::to_string(shape.steps) +
+                              " steps, together more than " + std::to_string(most),
+                          "Write fewer groups, or every tenth step");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ int open_nees(const RecordSource& source, const std::string& path, std::size_t b
     const std::string name = "dimension", place = record_attribute_place(name, path);
     if (!source.has_attribute(name, path))
         throw RecordError(place, "is missing", "Write the number of components of " + record_place(path),
-                    "Give dimension, the number of components");
+                          "Give dimension, the number of components");
     const double dimension = source.number(name, path).value_or(0);
     if (!(dimension >= 1 && dimension <= static_cast<double>(largest_record_state) &&
           dimension == std::nearbyint(dimension)))
@@ -34,11 +34,12 @@ void open_named(const RecordSource& source, RecordLayout& layout) {
     RecordShape& shape = layout.shape;
     const std::vector<std::string> names = source.names_in("group");
     if (names.empty() && !source.has("nees"))
-        throw RecordError(record_place("error"), "is missing",
-                    "Write `error` [trial, step, n], `truth` and `estimate` with the attribute `manifold`, or a NEES "
-                    "[trial, step] with the attribute `dimension`, /nees or /group/NAME/nees",
-                    "Give error [trial, step, n], or truth and estimate with their manifold, or nees [trial, step] "
-                    "with its dimension");
+        throw RecordError(
+            record_place("error"), "is missing",
+            "Write `error` [trial, step, n], `truth` and `estimate` with the attribute `manifold`, or a NEES "
+            "[trial, step] with the attribute `dimension`, /nees or /group/NAME/nees",
+            "Give error [trial, step, n], or truth and estimate with their manifold, or nees [trial, step] "
+            "with its dimension");
     shape.groups = {{"all", 0, 0}};
     for (const std::string& name : names) {
         require_group_name(name, "group", record_place("group"));

@@ -12,9 +12,9 @@ namespace {
 void require_coordinates(const RecordDataset& dataset, const RecordExtents& extents, std::uint64_t coordinates) {
     if (dataset.extents() == extents && !extents.empty() && extents.back() == coordinates) return;
     throw RecordError(dataset.place(),
-                "does not fit: it is " + extents_text(dataset.extents()) + ", and the manifold has " +
-                    std::to_string(coordinates) + " coordinates",
-                "Write truth and estimate as [trial, step, " + std::to_string(coordinates) + "]");
+                      "does not fit: it is " + extents_text(dataset.extents()) + ", and the manifold has " +
+                          std::to_string(coordinates) + " coordinates",
+                      "Write truth and estimate as [trial, step, " + std::to_string(coordinates) + "]");
 }
 
 /// `covariance` [..., n, n], or [..., n] variances.
@@ -55,7 +55,7 @@ void add_single_groups(RecordShape& shape) {
         const std::string name = component_name(shape, j);
         if (find_group(shape, name) < shape.groups.size())
             throw RecordError(record_attribute_place("groups"), "`" + name + "` is a component's name as well",
-                        "Use another name for the group");
+                              "Use another name for the group");
         shape.groups.push_back({name, j, 1});
     }
 }
@@ -68,8 +68,8 @@ void open_nees_beside(const RecordSource& source, const std::string& path, const
     require_same_steps(error, *layout.data.own[b], error.extents.size() - 1, "Write it as [trial, step]");
     if (dimension != count)
         throw RecordError(record_place(path),
-                    std::string("has another dimension than ") + (b == 0 ? "the error" : "its group"),
-                    "Write " + std::to_string(count));
+                          std::string("has another dimension than ") + (b == 0 ? "the error" : "its group"),
+                          "Write " + std::to_string(count));
     shape.sources[b] = GroupSource::nees;
 }
 
@@ -89,11 +89,11 @@ void open_group(const RecordSource& source, const PlacedExtents& error, const st
     const std::size_t b = find_group(layout.shape, name);
     if (b == 0 || b == layout.shape.groups.size())
         throw RecordError(place, "is no group of components", "Name its components in the root's attribute `groups`",
-                    "Name its components in groups");
+                          "Name its components in groups");
     const bool covariance = source.has(path + "/covariance"), nees = source.has(path + "/nees");
     if (covariance == nees)
         throw RecordError(place, covariance ? "has a covariance and a NEES" : "has neither `covariance` nor `nees`",
-                    "Write one of them");
+                          "Write one of them");
     if (nees)
         open_nees_beside(source, path + "/nees", error, b, layout);
     else
@@ -104,14 +104,15 @@ void require_something(const RecordShape& shape) {
     for (std::size_t b = 1; b < shape.groups.size(); ++b)
         if (shape.sources[b] == GroupSource::nothing)
             throw RecordError(record_attribute_place("groups"), "nothing to judge `" + shape.groups[b].name + "` by",
-                        "Write /covariance, or /group/" + shape.groups[b].name + "/covariance or nees",
-                        "Give covariance, or the group's own in group_covariance or group_nees");
+                              "Write /covariance, or /group/" + shape.groups[b].name + "/covariance or nees",
+                              "Give covariance, or the group's own in group_covariance or group_nees");
     if (shape.groups.size() == 1 && shape.sources[0] == GroupSource::nothing)
-        throw RecordError(record_place("covariance"), "is missing",
-                    "Write it as [trial, step, n, n], or as [trial, step, n] where there are variances only, or write "
-                    "covariances of groups, /group/NAME/covariance",
-                    "Give it as [trial, step, n, n], or as [trial, step, n] if there are variances only, or give "
-                    "group_covariance, the covariances of groups by their names");
+        throw RecordError(
+            record_place("covariance"), "is missing",
+            "Write it as [trial, step, n, n], or as [trial, step, n] where there are variances only, or write "
+            "covariances of groups, /group/NAME/covariance",
+            "Give it as [trial, step, n, n], or as [trial, step, n] if there are variances only, or give "
+            "group_covariance, the covariances of groups by their names");
 }
 
 }  // namespace
@@ -120,7 +121,7 @@ PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data) {
     if (source.has("error")) {
         if (source.has("estimate"))
             throw RecordError(record_place("estimate"), "is there, and `error` too",
-                        "Write `error`, or `truth` and `estimate`");
+                              "Write `error`, or `truth` and `estimate`");
         data.error = source.open("error");
         return placed(*data.error);
     }

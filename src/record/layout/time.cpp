@@ -16,9 +16,9 @@ void add_steps(const RecordSource& source, RecordShape& shape) {
     const RecordExtents all{static_cast<std::uint64_t>(shape.trials)};
     if (extents != all)
         throw RecordError(dataset->place(),
-                    "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(shape.trials) +
-                        " trials",
-                    "Write it as [trial], the number of steps of each");
+                          "does not fit: it is " + extents_text(extents) + ", and there are " +
+                              std::to_string(shape.trials) + " trials",
+                          "Write it as [trial], the number of steps of each");
     std::vector<double> values(static_cast<std::size_t>(shape.trials));
     dataset->read({0}, all, values);
     for (const double value : values) {
@@ -59,9 +59,9 @@ void require_times(const std::vector<double>& times, std::int64_t trial, const R
     for (std::size_t k = 0; k < times.size() && layout.shape.covers(trial, static_cast<int>(k)); ++k)
         if (std::isnan(times[k]) && there[k])
             throw RecordError(place,
-                        "trial " + std::to_string(trial) + ", step " + std::to_string(k) +
-                            " (both counted from 0) is there and has no time: it is NaN",
-                        how_times_are);
+                              "trial " + std::to_string(trial) + ", step " + std::to_string(k) +
+                                  " (both counted from 0) is there and has no time: it is NaN",
+                              how_times_are);
 }
 
 /// The times of a trial's steps; `which` begins the message where they do not increase.
@@ -72,9 +72,9 @@ void require_increasing(const std::vector<double>& times, std::int64_t trial, co
         if (std::isnan(times[k])) continue;
         if (!(times[k] > before) || std::isinf(times[k]))
             throw RecordError(place,
-                        which + "step " + std::to_string(k) + " (counted from 0) has " + to_text(times[k]) +
-                            ", and the time before is " + to_text(before),
-                        how_times_are);
+                              which + "step " + std::to_string(k) + " (counted from 0) has " + to_text(times[k]) +
+                                  ", and the time before is " + to_text(before),
+                              how_times_are);
         before = times[k];
     }
 }
@@ -91,9 +91,9 @@ void check_time(const RecordSource& source, const RecordLayout& layout) {
     const bool common = extents == RecordExtents{steps};
     if (!common && extents != RecordExtents{trials, steps})
         throw RecordError(dataset->place(),
-                    "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(trials) +
-                        " trials and " + std::to_string(steps) + " steps",
-                    "Write it as [step], or as [trial, step]");
+                          "does not fit: it is " + extents_text(extents) + ", and there are " + std::to_string(trials) +
+                              " trials and " + std::to_string(steps) + " steps",
+                          "Write it as [step], or as [trial, step]");
     std::vector<double> times(steps);
     for (std::uint64_t trial = 0; trial < (common ? 1 : trials); ++trial) {
         dataset->read(common ? RecordExtents{0} : RecordExtents{trial, 0},

@@ -1,0 +1,28 @@
+#pragma once
+// A record in an HDF5 file.
+
+#include "files/hdf5/handle.hpp"
+#include "record/source.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace credence {
+
+/// A record in a file, as long as its root is open.
+class FileSource : public RecordSource {
+public:
+    explicit FileSource(const hdf5::Handle& root) : root_(root) {}
+    bool has(const std::string& path) const override;
+    DatasetPointer open(const std::string& path, Numbers numbers) const override;
+    std::vector<std::string> names_in(const std::string& group) const override;
+    bool has_attribute(const std::string& name, const std::string& path) const override;
+    std::string text(const std::string& name) const override;
+    std::optional<double> number(const std::string& name, const std::string& path) const override;
+
+private:
+    const hdf5::Handle& root_;
+};
+
+}  // namespace credence
