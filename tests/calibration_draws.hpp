@@ -119,6 +119,7 @@ inline ScenarioResults results(double claimed) {
              {},
              {},
              std::vector<std::int64_t>(figure.role == SeriesRole::nees ? steps * coverage_level_count : 0)});
+    arm.totals.trials = empty_trial_totals(results.columns, 1).front();
     arm.totals.cells.resize(steps * distribution_cells);
     arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
     for (std::size_t i = 0; i < trials; ++i) {
