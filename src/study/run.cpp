@@ -2,6 +2,8 @@
 
 #include "base/idle_threads.hpp"
 #include "study/block_results.hpp"
+#include "study/commits.hpp"
+#include "study/schedule.hpp"
 
 #include <credence/error.hpp>
 #include <credence/study.hpp>
@@ -21,24 +23,20 @@ namespace credence {
 
 namespace {
 
-/// One block to run: which scenario, which block.
-struct Task {
-    std::size_t scenario = 0;
-    std::int64_t block = 0;
-};
-
 /// Runs tasks on threads and adds their results to the study. Totals are exact, so the order does not matter.
 class Runner {
 public:
-    Runner(Study& study, const RunOptions& options) : study_(study), options_(options) {
-        for (const ScenarioResults& results : study.scenarios) work_.emplace_back(results.scenario);
+    Runner(Study& study, const RunOptions& options)
+        : study_(study), options_(options), commits_(study, options), schedule_(study, options) {
+        for (const ScenarioResults& results : study.scenarios)
+            runners_.emplace_back(world_of(results.scenario), results.scenario);
+        begun_.resize(study.scenarios.size());
     }
 
     void run() {
-        for (std::size_t s = 0; s < study_.scenarios.size(); ++s) prepare(s);
         study_.trials = options_.trials;
         run_tasks();
-        if (progress_.done < progress_.total) leave_out_missing();
+        if (schedule_.progress().done < schedule_.progress().total) schedule_.leave_out_missing(study_);
         study_.complete = true;
         for (const ScenarioResults& results : study_.scenarios)
             study_.complete = study_.complete && missing_blocks(results, study_.trials).empty();
@@ -46,49 +44,11 @@ public:
     }
 
 private:
-    /// The tasks of a run for one scenario.
-    struct Work {
-        explicit Work(const Scenario& scenario) : runner(world_of(scenario), scenario) {}
-
-        BlockRunner runner;
-        BlockRanges done;      ///< blocks that are present
-        BlockRanges missing;   ///< blocks that this run computes
-        std::size_t left = 0;  ///< the number of these that are not finished
-        Task partial;          ///< the last block, where it is present with fewer trials than it will have
-        int partial_trials = 0;///< that it has; 0: there is none
-        bool begun = false;
-    };
-
-    /// Allocates the rows, and lists the missing blocks.
-    void prepare(std::size_t s) {
-        ScenarioResults& results = study_.scenarios[s];
-        Work& work = work_[s];
-        work.missing = missing_blocks(results, options_.trials, options_.shard);
-        work.done = results.blocks;
-        if (last_would_grow(results, options_.trials)) {
-            work.partial = {s, results.blocks.back()};
-            work.partial_trials = static_cast<int>(block_rows(results, results.blocks.size() - 1));
-            work.done.remove(work.partial.block);
-        }
-        if (has_totals(results)) held_ += size_of(results);
-        BlockRanges planned = work.missing;
-        planned.add(work.done);
-        progress_.total += trials_in(work.missing, options_.trials);
-        task_count_ += work.left = work.missing.size();
-        set_blocks(results, std::move(planned), options_.trials);
-    }
-
-    static std::int64_t size_of(const ScenarioResults& results) { return totals_size(results, results.detailed()); }
-
     /// Called before a block is computed: waits while too many others wait to be committed, and prepares its scenario.
     void begin(std::size_t s) {
         std::unique_lock lock(mutex_);
-        if (options_.keeper != nullptr && options_.keeper->full()) {
-            lock.unlock();
-            { const std::lock_guard until_committed(committing_); }
-            lock.lock();
-        }
-        if (work_[s].begun) return;
+        commits_.wait_for_room(lock);
+        if (begun_[s]) return;
         const bool before = std::exchange(at_odds_, true);
         begin_scenario(s);
         at_odds_ = before;
@@ -97,16 +57,15 @@ private:
     /// Loads totals into memory, and removes a partial last block from them.
     void begin_scenario(std::size_t s) {
         ScenarioResults& results = study_.scenarios[s];
-        Work& work = work_[s];
         if (!has_totals(results)) {
             load_totals(results);
-            held_ += size_of(results);
+            commits_.loaded(results);
         }
-        if (work.partial_trials > 0) {
-            remove_totals(results, work.runner.run(study_.root_seed, work.partial.block, work.partial_trials));
-            if (options_.keeper != nullptr) options_.keeper->take_back(s, work.partial.block);
+        if (const auto& partial = schedule_.partial(s)) {
+            remove_totals(results, runners_[s].run(study_.root_seed, partial->task.block, partial->trials));
+            commits_.take_back(s, partial->task.block);
         }
-        work.begun = true;
+        begun_[s] = true;
     }
 
     void run_tasks() {
@@ -116,13 +75,16 @@ private:
         while (const std::optional<Task> task = next_task()) guarded(*task);
         end_idle_threads();
         if (trouble_) std::rethrow_exception(trouble_);
-        for (const Work& work : work_)  // blocks that were present are kept when a run is stopped
-            if (work.partial_trials > 0 && !work.done.contains(work.partial.block)) run_task(work.partial);
+        for (std::size_t s = 0; s < study_.scenarios.size(); ++s) {
+            const auto& partial = schedule_.partial(s);  // blocks that were present are kept when a run is stopped
+            if (partial && !schedule_.is_done(partial->task)) run_task(partial->task);
+        }
         free_workspaces();
-        if (options_.keeper == nullptr) return;
-        prepare_all();
-        commit();
+        commits_.prepare(study_);
+        commits_.commit();
     }
+
+    std::optional<Task> next_task() { return stopped() ? std::nullopt : schedule_.next(); }
 
     /// An exception must not leave the parallel region (nor an omp critical one): it is stored, and thrown after the
     /// region.
@@ -136,21 +98,13 @@ private:
         }
     }
 
-    std::optional<Task> next_task() {
-        if (next_ >= task_count_ || stopped()) return std::nullopt;
-        std::size_t place = next_++;
-        for (std::size_t s = 0; s < work_.size(); place -= work_[s++].missing.size())
-            if (place < work_[s].missing.size()) return Task{s, work_[s].missing[place]};
-        return std::nullopt;
-    }
-
     void run_task(const Task& task) {
         begin(task.scenario);
         const int trials = trials_in_block(options_.trials, task.block);
-        const Block block = work_[task.scenario].runner.run(study_.root_seed, task.block, trials);
+        const Block block = runners_[task.scenario].run(study_.root_seed, task.block, trials);
         ScenarioResults& results = study_.scenarios[task.scenario];
         store_columns(results, block);
-        if (finish_task(task, block, trial_totals_of(results, block))) commit();
+        if (finish_task(task, block, trial_totals_of(results, block))) commits_.commit();
     }
 
     /// Adds the block's totals; returns whether a commit was prepared. Where that throws, such as for want of memory,
@@ -161,45 +115,12 @@ private:
         if (at_odds_) return false;
         at_odds_ = true;
         add_totals(study_.scenarios[task.scenario], block, of_trials);
-        if (options_.keeper != nullptr) options_.keeper->take(task.scenario, block);
-        finished(task);
+        commits_.take(task.scenario, block);
+        if (schedule_.finish(task)) commits_.finished(study_, task.scenario);
         report();
-        const bool prepared = prepare_commit();
+        const bool prepared = commits_.prepare_if_due(study_);
         at_odds_ = false;
         return prepared;
-    }
-
-    void finished(const Task& task) {
-        Work& work = work_[task.scenario];
-        work.done.add(task.block);
-        progress_.done += trials_in_block(options_.trials, task.block);
-        if (--work.left > 0) return;
-        finished_.push_back(task.scenario);
-        finished_size_ += size_of(study_.scenarios[task.scenario]);
-    }
-
-    bool prepare_commit() {
-        if (options_.keeper == nullptr || !options_.keeper->due(too_much_held() ? finished_size_ : 0)) return false;
-        prepare_all();
-        return true;
-    }
-
-    bool too_much_held() const { return held_ > options_.most_totals; }
-
-    /// Prepares a commit of all blocks taken so far. The keeper then has the totals of the finished scenarios.
-    void prepare_all() {
-        options_.keeper->prepare(study_);
-        if (!too_much_held()) return;
-        for (const std::size_t s : finished_)
-            if (study_.scenarios[s].kept_totals) drop_totals(study_.scenarios[s]);
-        finished_.clear();
-        held_ -= finished_size_;
-        finished_size_ = 0;
-    }
-
-    void commit() {
-        const std::lock_guard one(committing_);
-        options_.keeper->commit();
     }
 
     /// Whether the run has to stop, because that was requested or because of an error.
@@ -208,30 +129,22 @@ private:
         return stopped_;
     }
 
-    /// After an early stop: keeps only the rows of blocks that are done.
-    void leave_out_missing() {
-        for (std::size_t s = 0; s < study_.scenarios.size(); ++s)
-            set_blocks(study_.scenarios[s], std::move(work_[s].done), options_.trials);
-    }
-
-    void report() {
-        progress_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        if (options_.progress) options_.progress(progress_);
+    void report() const {
+        Progress now = schedule_.progress();
+        now.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (options_.progress) options_.progress(now);
     }
 
     Study& study_;
     const RunOptions& options_;
-    std::vector<Work> work_;             ///< by scenario; its tasks, one scenario after the other
-    std::size_t task_count_ = 0;
-    std::atomic<std::size_t> next_ = 0;  ///< the first task that has not been handed out
+    std::mutex mutex_;              ///< of totals, begun_, the schedule's progress and commits_
+    Commits commits_;
+    Schedule schedule_;
+    std::vector<BlockRunner> runners_;  ///< by scenario
+    std::vector<char> begun_;           ///< by scenario
     std::atomic<bool> stopped_ = false;
-    bool at_odds_ = false;          ///< a change of totals and keeper has begun and not ended
+    bool at_odds_ = false;              ///< a change of totals and keeper has begun and not ended
     std::exception_ptr trouble_;
-    std::mutex mutex_;              ///< of totals, work_, progress and the keeper
-    std::mutex committing_;         ///< locked while a commit is made
-    std::vector<std::size_t> finished_;  ///< scenarios whose tasks are done, and whose totals are in memory
-    std::int64_t held_ = 0, finished_size_ = 0;  ///< bytes of totals in memory, and those of `finished_`
-    Progress progress_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
