@@ -91,7 +91,6 @@ struct ComponentGroup {
     /// The i-th component of the group, by its index in the state.
     int component(int i) const { return contiguous() ? first + i : components[static_cast<std::size_t>(i)]; }
 };
-using StateBlock = ComponentGroup;  ///< its name in earlier releases
 
 /// A component of the state.
 struct Component {

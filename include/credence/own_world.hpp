@@ -14,8 +14,7 @@
 //   static std::vector<Component> W::components(const Settings&)
 //       name and unit of each component of the state, [n], n up to 1000. Names and units have no blanks.
 //   static std::vector<ComponentGroup> W::groups(const Settings&)
-//       groups of components that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway. A
-//       function of the name `blocks`, as earlier releases called it, serves too.
+//       groups of components that are judged by themselves, such as {"position", 0, 2}; the whole is judged anyway.
 //   static std::vector<std::string> W::arms(const Settings&)
 //       the filters that every trial runs under, with the same draws.
 //   static int W::innovation_rows(const Settings&)
@@ -65,8 +64,7 @@ constexpr bool meets_the_world_contract() {
     static_assert(requires(OwnKeys<Settings> keys) { W::keys(keys); }, "a world has static keys(OwnKeys<Settings>&)");
     static_assert(requires(const Settings s) { { W::components(s) } -> std::same_as<std::vector<Component>>; },
                   "a world has static components(const Settings&), a vector of Component");
-    static_assert(requires(const Settings s) { { W::groups(s) } -> std::same_as<std::vector<ComponentGroup>>; } ||
-                      requires(const Settings s) { { W::blocks(s) } -> std::same_as<std::vector<ComponentGroup>>; },
+    static_assert(requires(const Settings s) { { W::groups(s) } -> std::same_as<std::vector<ComponentGroup>>; },
                   "a world has static groups(const Settings&), a vector of ComponentGroup");
     static_assert(requires(const Settings s) { { W::arms(s) } -> std::same_as<std::vector<std::string>>; },
                   "a world has static arms(const Settings&), a vector of names");
@@ -98,7 +96,7 @@ public:
     void describe(const Settings& settings, Scenario& scenario) const {
         scenario.components = W::components(settings.own);
         scenario.groups = {{"all", 0, static_cast<int>(scenario.components.size())}};
-        for (ComponentGroup& group : groups_of(settings.own)) scenario.groups.push_back(std::move(group));
+        for (ComponentGroup& group : W::groups(settings.own)) scenario.groups.push_back(std::move(group));
         scenario.arms = W::arms(settings.own);
         check_declared(scenario, report_of(settings.own));
         Settings read_back;  // a default that its own key refuses would make files that no one can read
@@ -130,13 +128,6 @@ private:
         } else {
             W::run(settings, trial);
         }
-    }
-
-    static std::vector<ComponentGroup> groups_of(const typename W::Settings& settings) {
-        if constexpr (requires { W::groups(settings); })
-            return W::groups(settings);
-        else
-            return W::blocks(settings);
     }
 
     static OwnReport report_of(const typename W::Settings& settings) {

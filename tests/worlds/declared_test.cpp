@@ -222,12 +222,3 @@ TEST_CASE("own world: of two worlds of one name neither is taken") {
           "test:2: invalid scenario.world=twin (this program has two worlds of that name). Give the one that was added "
           "another name.");
 }
-
-TEST_CASE("own world: a world in lanes of which a group has gaps runs one trial at a time") {
-    Scenario scenario = WorldOf<OwnWorld<Troubled>>().draft()->declare();
-    const auto settings = std::make_shared<const Troubled::Settings>();
-    const OwnReport report{Troubled::columns(*settings), Troubled::innovation_rows(*settings)};
-    CHECK(lane_simulation(scenario, report, linked_lanes<Troubled>(), settings) != nullptr);
-    scenario.groups.push_back({"turned", 1, 2, {1, 0}});
-    CHECK(lane_simulation(scenario, report, linked_lanes<Troubled>(), settings) == nullptr);
-}

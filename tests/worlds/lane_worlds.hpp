@@ -26,7 +26,7 @@ struct Troubled {
         keys.integer("state.rows", &Settings::rows, 0, largest, "m");
         keys.real("state.spread", &Settings::spread, 0, 100, "of the covariances");
         keys.real("state.trouble", &Settings::trouble, 0, 1, "probability");
-        keys.integer("state.groups", &Settings::groups, 0, 3, "which groups");
+        keys.integer("state.groups", &Settings::groups, 0, 4, "which groups");
         keys.integer("state.mistake", &Settings::mistake, 0, 9, "which mistake");
     }
     static std::vector<credence::Component> components(const Settings& s) {
@@ -38,6 +38,7 @@ struct Troubled {
         if (s.groups == 0 || s.state == 1) return {};
         if (s.groups == 1) return {{"first", 0, 1}, {"rest", 1, s.state - 1}};
         if (s.groups == 2) return {{"last", s.state - 1, 1}};
+        if (s.groups == 4) return {{"turned", 0, 2, {s.state - 1, 0}}, {"odd", 0, 1, {s.state / 2}}};
         return {{"whole", 0, s.state}, {"most", 0, s.state - 1}, {"others", 1, s.state - 1}};
     }
     static std::vector<std::string> arms(const Settings&) { return {"a", "b"}; }

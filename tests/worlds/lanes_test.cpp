@@ -4,6 +4,7 @@
 
 #include "../../experiments/own_filter/tracker.hpp"
 #include "lane_worlds.hpp"
+#include "oracle/own_simulation.hpp"
 
 #include <credence/detail/block.hpp>
 #include <credence/ini.hpp>
@@ -181,7 +182,7 @@ Troubled::Settings random_settings(std::mt19937& random) {
     s.rows = static_cast<int>(from(0, 1, 2, 3, 6));
     s.spread = from(0, 0.5, 2, 6, 12, 17, 20, 40);
     s.trouble = from(0, 0, 0.01, 0.1, 0.5, 1);
-    s.groups = static_cast<int>(from(0, 1, 2, 3));
+    s.groups = static_cast<int>(from(0, 1, 2, 3, 4));
     return s;
 }
 

@@ -28,7 +28,7 @@ struct Keyed {
         keys.integer("draw.index", &Settings::index, low, high, "of the key");
     }
     static std::vector<Component> components(const Settings&) { return {{"a", "m"}, {"b", "m"}}; }
-    static std::vector<ComponentGroup> blocks(const Settings&) { return {}; }
+    static std::vector<ComponentGroup> groups(const Settings&) { return {}; }
     static std::vector<std::string> arms(const Settings&) { return {"normal", "uniform"}; }
     static int innovation_rows(const Settings&) { return 0; }
     static std::vector<Column> columns(const Settings&) { return {{"x", "of the draw", "1", ColumnType::real, -1}}; }

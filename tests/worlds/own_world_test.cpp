@@ -60,7 +60,7 @@ struct Short : Spoiled {
 };
 
 /// The worlds of this file, added once.
-const bool added = [] {
+const bool worlds_added = [] {
     add_own_world<Tracker>();
     add_own_world<Spoiled>();
     add_own_world<Short>();
@@ -84,7 +84,7 @@ double statuses(const ArmResults& arm, std::size_t column, Status status) {
 }  // namespace
 
 TEST_CASE("own world: the filter that knows its model is consistent, the calm one optimistic in velocity first") {
-    REQUIRE(added);
+    REQUIRE(worlds_added);
     const Report report = make_report(run(tracker(), 4000), 0.05);
     CHECK(report.arms[0].consistency.verdict == Verdict::consistent);
     CHECK(report.arms[1].consistency.verdict == Verdict::optimistic);

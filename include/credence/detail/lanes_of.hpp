@@ -75,8 +75,7 @@ std::vector<LanesOfTarget> linked_lanes() {
     return {{"v4", v4::lanes_of<World>}, {"v3", v3::lanes_of<World>}, {"portable", portable::lanes_of<World>}};
 }
 
-/// Trials in the lanes of the target that best_target() gives, or nullptr where the program has no object for it or a
-/// group of components has gaps.
+/// Trials in the lanes of the target that best_target() gives, or nullptr where the program has no object for it.
 std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, const OwnReport& report,
                                                   const std::vector<LanesOfTarget>& targets,
                                                   std::shared_ptr<const void> settings);

@@ -25,9 +25,6 @@ std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report
 /// those of lanes, in the target that best_target() gives.
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run);
-/// The same trials to rounding, each evaluated by itself: the oracle of lanes; groups may have gaps.
-std::unique_ptr<const Simulation> one_at_a_time_simulation(const Scenario& scenario, const OwnReport& report,
-                                                           std::function<void(OwnTrial&)> run);
 
 /// Throws InputError where a declaration cannot be stored, read back or judged: names that no file can have, or that
 /// are there twice; keys of sections that mean something else in every world; a group beyond the state; a column of the

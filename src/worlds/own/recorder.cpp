@@ -24,9 +24,8 @@ void write(const Matrix& values, Eigen::Index row_size, double* out) {
 
 }  // namespace
 
-RecordingTrial::RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory)
-    : trial_(trial),
-      trajectory_(trajectory),
+StepRecorder::StepRecorder(int rows, Trajectory& trajectory)
+    : trajectory_(trajectory),
       small_state_(is_recorded(trajectory, "covariance", trajectory.scenario.components.size())),
       rows_(is_recorded(trajectory, "innovation", static_cast<std::size_t>(rows)) ? rows : 0) {
     const std::string units = "see component_units", products = "products of component_units";
@@ -44,8 +43,7 @@ RecordingTrial::RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory
                                              "products of units of its rows", {"pose", "row", "row_2"}});
 }
 
-/// A step that the trial is not asked for or that has another size than the state is refused by the trial itself.
-void RecordingTrial::write_state(const Vector& error, const Matrix& P) {
+void StepRecorder::step(const Vector& error, const Matrix& P) {
     const auto n = static_cast<Eigen::Index>(trajectory_.scenario.components.size());
     if (++pose_ >= trajectory_.scenario.poses || error.size() != n || P.rows() != n || P.cols() != n) return;
     write(error, 1, trajectory_.at(error_, pose_));
@@ -54,20 +52,14 @@ void RecordingTrial::write_state(const Vector& error, const Matrix& P) {
     if (small_state_) write(whole, n, trajectory_.at(covariance_, pose_));
 }
 
-void RecordingTrial::step(const Vector& error, const Matrix& P) {
-    write_state(error, P);
-    trial_.step(error, P);
-}
-
-void RecordingTrial::step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) {
-    write_state(error, P);
+void StepRecorder::step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) {
+    step(error, P);
     if (pose_ < trajectory_.scenario.poses && innovation.size() <= rows_ && S.rows() == innovation.size() &&
         S.cols() == S.rows()) {
         const Eigen::MatrixXd whole = S.selfadjointView<Eigen::Lower>();
         write(innovation, 1, trajectory_.at(innovation_, pose_));
         write(whole, rows_, trajectory_.at(innovation_covariance_, pose_));
     }
-    trial_.step(error, P, innovation, S);
 }
 
 void add_evaluations(Trajectory& trajectory, const StateSeries& all_series, Innovations innovations,

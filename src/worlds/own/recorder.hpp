@@ -1,35 +1,30 @@
 #pragma once
-// A trial of a user's own world that records its trajectory.
+// Records the trajectory of a trial of a user's own world.
 
-#include <credence/own_trial.hpp>
 #include <credence/detail/trajectory.hpp>
 #include "scenario/state_series.hpp"
+
+#include <Eigen/Core>
 
 #include <functional>
 #include <vector>
 
 namespace credence {
 
-/// Hands everything on to another trial, and writes what comes into a trajectory.
-class RecordingTrial : public OwnTrial {
+/// Writes step after step into a trajectory. A step that has another size than the state, or that is one too many, is
+/// left out: the trial itself refuses it.
+class StepRecorder {
 public:
-    /// Adds dimensions and variables. `rows` is the most rows of an innovation.
-    RecordingTrial(OwnTrial& trial, int rows, Trajectory& trajectory);
+    using Vector = Eigen::Ref<const Eigen::VectorXd>;
+    using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
 
-    std::size_t arm() const override { return trial_.arm(); }
-    int poses() const override { return trial_.poses(); }
-    Eigen::Vector2d normal(int source, int pose, int index) const override {
-        return trial_.normal(source, pose, index);
-    }
-    double uniform(int source, int pose, int index) const override { return trial_.uniform(source, pose, index); }
-    void set(std::size_t column, double value) override { trial_.set(column, value); }
-    void step(const Vector& error, const Matrix& P) override;
-    void step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) override;
+    /// Adds dimensions and variables. `rows` is the most rows of an innovation.
+    StepRecorder(int rows, Trajectory& trajectory);
+
+    void step(const Vector& error, const Matrix& P);
+    void step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S);
 
 private:
-    void write_state(const Vector& error, const Matrix& P);
-
-    OwnTrial& trial_;
     Trajectory& trajectory_;
     int pose_ = 0;  ///< of the last step
     bool small_state_;

@@ -18,6 +18,19 @@ struct StoredMatrix {
     bool has(int, int) const { return true; }
 };
 
+/// Some of its rows and columns, in any order.
+template <class Real>
+struct ChosenRows {
+    StoredMatrix<Real> all;
+    const int* chosen;
+
+    Real at(int i, int j) const {
+        const int a = chosen[i], b = chosen[j];
+        return all.at(a > b ? a : b, a > b ? b : a);
+    }
+    bool has(int, int) const { return true; }
+};
+
 /// What becomes of a right-hand side e under the factor of S = L L'.
 template <class Real>
 struct Whitened {
@@ -69,6 +82,12 @@ Whitened<Real> whiten_any(const Matrix& S, int n, Real* L, Real* e) {
         case 4: return written_out(Known<4>{});
         default: return whiten<Real>(S, n, L, e);
     }
+}
+
+/// Such matrices are too rare to be written out.
+template <class Real>
+Whitened<Real> whiten_any(const ChosenRows<Real>& S, int n, Real* L, Real* e) {
+    return whiten<Real>(S, n, L, e);
 }
 
 }  // namespace CREDENCE_TARGET

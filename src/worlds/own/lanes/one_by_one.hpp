@@ -1,7 +1,7 @@
 #pragma once
 // A pack of trials of a user's own world whose function takes one trial at a time: it runs for each lane in turn, and
-// its draws and the evaluation of its steps are those of the pack. That takes a quarter of the time of
-// one_at_a_time_simulation.
+// its draws and the evaluation of its steps are those of the pack. That takes a quarter of the time of evaluating each
+// trial by itself.
 
 #include <credence/detail/lane_pack.hpp>
 #include <credence/detail/own_simulation.hpp>

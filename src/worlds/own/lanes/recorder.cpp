@@ -3,7 +3,7 @@
 namespace credence {
 
 LaneRecorder::LaneRecorder(int rows, int lanes, Trajectory& trajectory)
-    : lanes_(lanes), recording_(none_, rows, trajectory) {}
+    : lanes_(lanes), recording_(rows, trajectory) {}
 
 void LaneRecorder::run(const OwnView& view, LanePack& pack, void (*run_pack)(const OwnView&, LanePack&)) {
     Between between(pack, *this);

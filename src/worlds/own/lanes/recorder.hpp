@@ -27,24 +27,12 @@ private:
         LaneRecorder& recorder;
         Between(LanePack& whole, LaneRecorder& to) : LanePack(whole), pack(whole), recorder(to) {}
     };
-    /// What a RecordingTrial hands its steps on to: the pack has them already.
-    struct NoTrial : OwnTrial {
-        std::size_t arm() const override { return 0; }
-        int poses() const override { return 0; }
-        Eigen::Vector2d normal(int, int, int) const override { return {0, 0}; }
-        double uniform(int, int, int) const override { return 0; }
-        void step(const Vector&, const Matrix&) override {}
-        void step(const Vector&, const Matrix&, const Vector&, const Matrix&) override {}
-        void set(std::size_t, double) override {}
-    };
-
     void record(const LanePack& pack, const LaneStep& step);
     /// Lane 0 of a matrix.
     Eigen::MatrixXd lane(const double* entries, int rows, int columns) const;
 
     int lanes_;
-    NoTrial none_;
-    RecordingTrial recording_;
+    StepRecorder recording_;
     std::vector<double> all_series_;  ///< [series, K - 1] of lane 0
     std::size_t steps_ = 0, steps_taken_ = 0;
 };

@@ -93,9 +93,10 @@ public:
           settings_(std::move(settings)),
           columns_(own_columns(scenario, report)),
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
-          all_series_(scenario.components, scenario.groups, innovations_) {
-        for (const ComponentGroup& group : scenario.groups) {
-            groups_.push_back({group.first, group.count});
+          all_series_(scenario.components, scenario.groups, innovations_),
+          declared_(scenario.groups) {
+        for (const ComponentGroup& group : declared_) {
+            groups_.push_back({group.first, group.count, group.contiguous() ? nullptr : group.components.data()});
             for (const double level : coverage_levels)
                 coverage_bounds_.push_back(stable_chi_square_quantile(level, group.count));
         }
@@ -164,24 +165,19 @@ private:
     std::vector<Column> columns_;
     Innovations innovations_;
     StateSeries all_series_;
-    std::vector<GroupRange> groups_;
+    std::vector<ComponentGroup> declared_;
+    std::vector<GroupPlace> groups_;       ///< of the declared ones
     std::vector<double> coverage_bounds_;  ///< [groups, levels]
     std::vector<char> whole_;              ///< [own columns]
     OwnView view_;
     SimulationShape shape_;
 };
 
-/// Lanes evaluate no others.
-bool are_contiguous(const std::vector<ComponentGroup>& groups) {
-    return std::ranges::all_of(groups, &ComponentGroup::contiguous);
-}
-
 }  // namespace
 
 std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, const OwnReport& report,
                                                   const std::vector<LanesOfTarget>& targets,
                                                   std::shared_ptr<const void> settings) {
-    if (!are_contiguous(scenario.groups)) return nullptr;
     const Target target = best_target();
     for (const LanesOfTarget& one : targets)
         if (one.target == target.name && one.run != nullptr)
@@ -191,7 +187,6 @@ std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, cons
 
 std::unique_ptr<const Simulation> own_simulation(const Scenario& scenario, const OwnReport& report,
                                                  std::function<void(OwnTrial&)> run) {
-    if (!are_contiguous(scenario.groups)) return one_at_a_time_simulation(scenario, report, std::move(run));
     const Target target = best_target();
     auto one_by_one = std::make_shared<const OneByOne>(OneByOne{std::move(run), target.lanes});
     return std::make_unique<LaneSimulation>(scenario, report, target, run_one_by_one, std::move(one_by_one));

@@ -1,6 +1,6 @@
 #pragma once
-// A pack of trials of a user's own world: its draws, and the evaluation of its steps [docs/statistics.md]. The same as
-// EvaluatedTrial does for one trial, with a status in each lane.
+// A pack of trials of a user's own world: its draws and the evaluation of its steps [docs/statistics.md], with a status
+// in each lane.
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]
 
@@ -156,16 +156,18 @@ private:
 
     void evaluate_groups(const LaneStep& step, const StoredMatrix<Real>& P) {
         for (int b = 0; b < view_.group_count; ++b) {
-            const GroupRange group = view_.groups[b];
+            const GroupPlace& group = view_.groups[b];
             Real squared_error = Real(0), variance = Real(0);
             for (int i = 0; i < group.count; ++i) {
-                const Real e = load<Real>(step.error + (group.first + i) * lanes<Real>);
+                const int j = group.component(i);
+                const Real e = load<Real>(step.error + j * lanes<Real>);
                 e_[i] = e;
                 squared_error = fma(e, e, squared_error);
-                variance = variance + P.at(group.first + i, group.first + i);
+                variance = variance + P.at(j, j);
             }
-            const StoredMatrix<Real> of_group{step.P, state_size, group.first};
-            *series(b) = norm(of_group, group.count);
+            *series(b) = group.components == nullptr
+                             ? norm(StoredMatrix<Real>{step.P, state_size, group.first}, group.count)
+                             : norm(ChosenRows<Real>{P, group.components}, group.count);
             *series(view_.squared_error + b) = squared_error;
             *series(view_.variance + b) = variance;
         }

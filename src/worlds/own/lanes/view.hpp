@@ -12,8 +12,11 @@ namespace credence {
 class LaneRecorder;
 
 /// A component group's place in the state.
-struct GroupRange {
+struct GroupPlace {
     int first = 0, count = 0;
+    const int* components = nullptr;  ///< [count] where they are not contiguous and in order; else null
+
+    int component(int i) const { return components == nullptr ? first + i : components[i]; }
 };
 
 /// A scenario of a user's own world. Of the CommonView, what the folding of series reads is filled in.
@@ -23,7 +26,7 @@ struct OwnView : CommonView {
     int largest_innovation = 0;              ///< m
     int column_count = 0, own_column_count = 0;
     const char* whole = nullptr;             ///< [own_column_count] whether the column is of whole numbers
-    const GroupRange* groups = nullptr;      ///< [group_count]
+    const GroupPlace* groups = nullptr;      ///< [group_count]
     int nis = 0, squared_error = 0, variance = 0, standardised_error = 0;  ///< where each kind of series begins
     /// Whether a matrix [n, n] whose pivots leave it open is positive definite. The answer of one trial at a time.
     bool (*positive_definite)(const double* matrix, int n) = nullptr;

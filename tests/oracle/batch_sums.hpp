@@ -1,7 +1,7 @@
 #pragma once
 // The running sums of a batch of trials that run one after the other.
 
-#include "worlds/own/evaluated_trial.hpp"
+#include "oracle/evaluated_trial.hpp"
 #include <credence/detail/batch.hpp>
 
 namespace credence {

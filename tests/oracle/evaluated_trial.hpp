@@ -6,7 +6,7 @@
 #include "numeric/chi_square.hpp"
 #include "scenario/state_series.hpp"
 #include "worlds/own/columns.hpp"
-#include "worlds/own/lag_products.hpp"
+#include "oracle/lag_products.hpp"
 #include "worlds/own/moments.hpp"
 #include "worlds/own/step.hpp"
 #include "worlds/own/trial_ends.hpp"

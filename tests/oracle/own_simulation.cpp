@@ -1,12 +1,37 @@
-// Trials of a user's own world whose groups are not all contiguous, which lanes do not evaluate; and the oracle of
-// lanes.
+#include "oracle/own_simulation.hpp"
 
-#include "worlds/own/batch_sums.hpp"
+#include "oracle/batch_sums.hpp"
 #include "worlds/own/recorder.hpp"
 
 namespace credence {
 
 namespace {
+
+/// Hands everything on to another trial, and records the steps.
+class RecordedTrial : public OwnTrial {
+public:
+    RecordedTrial(OwnTrial& trial, int rows, Trajectory& trajectory) : trial_(trial), recorder_(rows, trajectory) {}
+
+    std::size_t arm() const override { return trial_.arm(); }
+    int poses() const override { return trial_.poses(); }
+    Eigen::Vector2d normal(int source, int pose, int index) const override {
+        return trial_.normal(source, pose, index);
+    }
+    double uniform(int source, int pose, int index) const override { return trial_.uniform(source, pose, index); }
+    void set(std::size_t column, double value) override { trial_.set(column, value); }
+    void step(const Vector& error, const Matrix& P) override {
+        recorder_.step(error, P);
+        trial_.step(error, P);
+    }
+    void step(const Vector& error, const Matrix& P, const Vector& innovation, const Matrix& S) override {
+        recorder_.step(error, P, innovation, S);
+        trial_.step(error, P, innovation, S);
+    }
+
+private:
+    OwnTrial& trial_;
+    StepRecorder recorder_;
+};
 
 class OwnSimulation : public Simulation {
 public:
@@ -35,7 +60,7 @@ public:
         trajectory.source = source_text(root_seed, trial);
         Case recorded = case_;
         recorded.run = [&](OwnTrial& evaluated) {
-            RecordingTrial recording(evaluated, case_.report.largest_innovation, trajectory);
+            RecordedTrial recording(evaluated, case_.report.largest_innovation, trajectory);
             case_.run(recording);
         };
         EvaluatedTrial evaluated(recorded, arm);
