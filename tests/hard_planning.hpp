@@ -188,14 +188,4 @@ Tally run_random(unsigned count, const Settings& more = {}) {
     return tally;
 }
 
-/// Every criterion, with weights of the heading below and above 1.
-inline std::vector<Settings> criteria() {
-    return {{{"planner.criterion", "trace"}, {"planner.heading_weight", "30"}},
-            {{"planner.criterion", "log_det"}},
-            {{"planner.criterion", "max_eigenvalue"}, {"planner.heading_weight", "0.2"}},
-            {{"planner.criterion", "pose_trace"}, {"planner.heading_weight", "4"}},
-            {{"planner.criterion", "pose_log_det"}},
-            {{"planner.criterion", "features_trace"}}};
-}
-
 }  // namespace credence::test

@@ -89,6 +89,16 @@ struct Run {
 /// Which compiled form of the equations: the one that the engine picks, or always that for any number of features.
 enum class Form { engine, any_number };
 
+/// Every criterion, with weights of the heading below and above 1.
+inline std::vector<Settings> criteria() {
+    return {{{"planner.criterion", "trace"}, {"planner.heading_weight", "30"}},
+            {{"planner.criterion", "log_det"}},
+            {{"planner.criterion", "max_eigenvalue"}, {"planner.heading_weight", "0.2"}},
+            {{"planner.criterion", "pose_trace"}, {"planner.heading_weight", "4"}},
+            {{"planner.criterion", "pose_log_det"}},
+            {{"planner.criterion", "features_trace"}}};
+}
+
 Run run_arm(const DeformableSettings& scenario, const Arm& arm, const AnyNoise& noise, Form form = Form::engine);
 /// The same with the process model's own estimator.
 Run run_arm(const DeformableSettings& scenario, Controller controller, const AnyNoise& noise, Form form = Form::engine);

@@ -57,7 +57,7 @@ Judged judged(const DrawnRecord& drawn, const std::string& component_names, cons
     }));
 }
 
-void write_variances(const Handle& root, const DrawnRecord& drawn) {
+void write_variances_alone(const Handle& root, const DrawnRecord& drawn) {
     write_errors(root, drawn);
     std::vector<double> values;
     for (const Eigen::MatrixXd& P : drawn.covariance)
@@ -92,8 +92,8 @@ TEST_CASE("record: components with an error and a variance of 0 at every step ar
 }
 
 TEST_CASE("record: components that are known exactly are left out of variances and of groups' covariances") {
-    const Judged space = judged(in_space(planar()), names, "pose 0 1 2 5", write_variances),
-                 plane = judged(planar(), flat_names, "pose 0:3", write_variances);
+    const Judged space = judged(in_space(planar()), names, "pose 0 1 2 5", write_variances_alone),
+                 plane = judged(planar(), flat_names, "pose 0:3", write_variances_alone);
     CHECK(space.troubles == 0);
     CHECK(space.report == plane.report);
     REQUIRE(space.sentences.size() == plane.sentences.size() + 1);

@@ -9,7 +9,7 @@ using namespace credence::test;
 
 namespace {
 
-constexpr int trials = 60, steps = 7, n = 5;
+constexpr int all_trials = 60, all_steps = 7, n = 5;
 
 /// Components 0 to 2 are always there; 3 and 4 enter at step 1 + trial % 3; 4 leaves at step 5.
 bool is_here(int trial, int step, int component) {
@@ -25,9 +25,9 @@ std::vector<int> components_here(int trial, int step) {
 }
 
 DrawnRecord growing() {
-    DrawnRecord drawn(trials, steps, n);
-    for (int trial = 0; trial < trials; ++trial)
-        for (int step = 0; step < steps; ++step)
+    DrawnRecord drawn(all_trials, all_steps, n);
+    for (int trial = 0; trial < all_trials; ++trial)
+        for (int step = 0; step < all_steps; ++step)
             for (int j = 0; j < n; ++j)
                 if (!is_here(trial, step, j)) drawn.hide(trial, step, j);
     return drawn;
@@ -48,7 +48,7 @@ std::string trouble_of(const std::function<void(DrawnRecord&)>& change) {
     REQUIRE(record.trouble_count == 1);
     CHECK(record.troubles.front().trial == 2);
     CHECK(record.troubles.front().status == Status::non_finite);
-    CHECK(record.results.arms.front().totals.trials.counted() == trials - 1);
+    CHECK(record.results.arms.front().totals.trials.counted() == all_trials - 1);
     return "step " + std::to_string(record.troubles.front().step) + ": " + record.troubles.front().what;
 }
 
@@ -62,27 +62,27 @@ TEST_CASE("record: the whole state has at each step the dimension that it has th
     const Evidence evidence = evidence_of(record.results, arm);
     const GroupEvidence& all = evidence.groups.front();
     std::vector<double> run_means;
-    for (int trial = 0; trial < trials; ++trial) run_means.push_back(0);
-    for (int k = 0; k < steps; ++k) {
+    for (int trial = 0; trial < all_trials; ++trial) run_means.push_back(0);
+    for (int k = 0; k < all_steps; ++k) {
         CAPTURE(k);
         const auto at = static_cast<std::size_t>(k);
         double dimensions = 0, ratios = 0, error = 0;
         std::vector<double> probabilities;
         std::int64_t below_median = 0;
-        for (int trial = 0; trial < trials; ++trial) {
+        for (int trial = 0; trial < all_trials; ++trial) {
             const std::vector<int> here = components_here(trial, k);
             const auto d = static_cast<double>(here.size());
             const double nees = plain_nees(drawn.error[drawn.at(trial, k)], drawn.covariance[drawn.at(trial, k)], here);
             dimensions += d;
             ratios += nees / d;
-            run_means[static_cast<std::size_t>(trial)] += nees / d / steps;
+            run_means[static_cast<std::size_t>(trial)] += nees / d / all_steps;
             probabilities.push_back(1 - chi_square_p(nees, d));
             below_median += probabilities.back() < 0.5;
             for (const int j : here) error += std::pow(drawn.error[drawn.at(trial, k)](j), 2);
         }
         CHECK(all.anees.degrees[at] == dimensions);
-        CHECK(relative(all.step[at].mean, ratios / trials) < 1e-11);
-        CHECK(relative(all.anees.ratio[at], ratios / trials) < 1e-11);
+        CHECK(relative(all.step[at].mean, ratios / all_trials) < 1e-11);
+        CHECK(relative(all.anees.ratio[at], ratios / all_trials) < 1e-11);
         CHECK(arm.totals.series[0].covered[at * coverage_level_count] == below_median);
         CHECK(std::abs(arm.totals.distribution_distance[at] - uniform_distance(probabilities)) < 1e-9);
         CHECK(relative(totals_named(record, "squared_error").sum[at].rounded(), error) < 1e-11);
@@ -92,10 +92,10 @@ TEST_CASE("record: the whole state has at each step the dimension that it has th
         sum += mean;
         square_sum += mean * mean;
     }
-    const Moments run = moments_from_sums(trials, sum, square_sum);
+    const Moments run = moments_from_sums(all_trials, sum, square_sum);
     CHECK(relative(all.run.mean, run.mean) < 1e-11);
     CHECK(relative(all.run.standard_error, run.standard_error) < 1e-9);
-    for (std::size_t trial = 0; trial < trials; ++trial)
+    for (std::size_t trial = 0; trial < all_trials; ++trial)
         CHECK(relative(arm.columns[column_nees_ratio][trial], run_means[trial]) < 1e-11);
 }
 
@@ -109,10 +109,10 @@ TEST_CASE("record: a group is judged at the steps where it is whole") {
         const auto& [name, members] = groups[g];
         CAPTURE(name);
         const SeriesTotals& totals = totals_named(record, "nees_" + name);
-        for (int k = 0; k < steps; ++k) {
+        for (int k = 0; k < all_steps; ++k) {
             double sum = 0;
             std::int64_t count = 0;
-            for (int trial = 0; trial < trials; ++trial) {
+            for (int trial = 0; trial < all_trials; ++trial) {
                 bool whole = true;
                 for (const int j : members) whole = whole && is_here(trial, k, j);
                 if (!whole) continue;
@@ -124,11 +124,11 @@ TEST_CASE("record: a group is judged at the steps where it is whole") {
             CHECK(std::abs(totals.sum[at].rounded() - sum) <= 1e-11 * sum);
             CHECK(evidence.groups[g + 1].step[at].count == static_cast<double>(count));
         }
-        CHECK(totals.runs == trials);
+        CHECK(totals.runs == all_trials);
     }
     CHECK(totals_named(record, "standardised_error_x4").present == std::vector<std::int64_t>{0, 20, 40, 60, 60, 0, 0});
     const ArmResults& arm = record.results.arms.front();
-    for (int k = 0; k < steps; ++k) {  // of trial 0: the details are of the whole state
+    for (int k = 0; k < all_steps; ++k) {  // of trial 0: the details are of the whole state
         CHECK(std::isnan(arm.nees[static_cast<std::size_t>(k)]) == !(is_here(0, k, 3) && is_here(0, k, 4)));
         CHECK(std::isnan(arm.errors[static_cast<std::size_t>(k * n + 4)]) == !is_here(0, k, 4));
     }
@@ -137,14 +137,14 @@ TEST_CASE("record: a group is judged at the steps where it is whole") {
 TEST_CASE(
     "record: a group that no trial has at any step is not judged, and keeps nothing from being said of the rest") {
     DrawnRecord drawn = growing();
-    for (int trial = 0; trial < trials; ++trial)
-        for (int step = 0; step < steps; ++step) drawn.hide(trial, step, 4);
+    for (int trial = 0; trial < all_trials; ++trial)
+        for (int step = 0; step < all_steps; ++step) drawn.hide(trial, step, 4);
     const Record record = read_growing(drawn);
     CHECK(record.trouble_count == 0);
     CHECK(totals_named(record, "nees_landmark").runs == 0);
     const Evidence evidence = evidence_of(record.results, record.results.arms.front());
     CHECK(std::isnan(evidence.groups[2].run.mean));
-    CHECK(evidence.groups[0].run.count == trials);
+    CHECK(evidence.groups[0].run.count == all_trials);
 }
 
 TEST_CASE("record: a NaN that is not of a component outside the state fails its trial") {
@@ -170,15 +170,15 @@ TEST_CASE("record: a step that does not exist is no leaving, and a trial that en
     DrawnRecord drawn = growing();
     for (int j = 0; j < n; ++j) drawn.hide(7, 3, j);
     CHECK(read_growing(drawn).trouble_count == 0);
-    for (int j = 0; j < n; ++j) drawn.hide(7, steps - 1, j);
+    for (int j = 0; j < n; ++j) drawn.hide(7, all_steps - 1, j);
     const Record cut = read_growing(drawn);
     CHECK(cut.trouble_count == 1);
     CHECK(cut.troubles.front().what ==
           "the trial ends after 6 of 7 steps, and no dataset `steps` declares that it is shorter");
     CHECK(read_written([&](const Handle& root) {
               write_drawn(root, drawn);
-              std::vector<double> declared(trials, steps);
-              declared[7] = steps - 1;
-              write_values(root, "steps", {trials}, declared);
+              std::vector<double> declared(all_trials, all_steps);
+              declared[7] = all_steps - 1;
+              write_values(root, "steps", {all_trials}, declared);
           }).trouble_count == 0);
 }

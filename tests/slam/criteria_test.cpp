@@ -2,7 +2,6 @@
 
 #include "catch.hpp"
 #include "filter_samples.hpp"
-#include "hard_planning.hpp"
 
 using namespace credence;
 using namespace credence::test;
@@ -101,16 +100,6 @@ TEST_CASE("criteria: two steps ahead, controls and their costs are the oracle's"
             CHECK(worst.same_control);
             CHECK(worst.cost < 1e-8);
         }
-}
-
-TEST_CASE("criteria: by each of them, no control costs more than the least, in random hard scenarios") {
-    for (Settings criterion : criteria()) {
-        criterion.emplace_back("scenario.poses", "5");
-        const Tally one = run_random<double>(8, criterion), lanes = run_random<Lane<4>>(2, criterion);
-        CAPTURE(described(criterion));
-        CHECK(one.steps + lanes.steps > 40);
-        CHECK(one.dearer + lanes.dearer == 0);
-    }
 }
 
 TEST_CASE("criteria: equals are decided alike, the later one, where costs are negative logarithms") {
