@@ -56,7 +56,7 @@ void check_figures(const ScenarioResults& results, const Json& expected) {
 }
 
 void check_columns(const ScenarioResults& results, const Json& expected) {
-    for (std::size_t c = 0; c < column_count; ++c) {
+    for (std::size_t c = 0; c < results.columns.size(); ++c) {
         const std::string& name = results.columns[c].name;
         CAPTURE(name);
         const std::vector<double>& column = results.arms.front().columns[c];

@@ -12,12 +12,7 @@ void text(const Handle& root, const std::string& name, const std::string& value)
     hdf5::write_text(root, name, value);
 }
 
-/// The same bits, NaN like NaN.
-void check_same(const std::vector<double>& a, const std::vector<double>& b) {
-    REQUIRE(a.size() == b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) CHECK((a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i]))));
-}
-
+/// The same bits.
 void check_same(const SeriesTotals& a, const SeriesTotals& b) {
     for (std::size_t k = 0; k < a.sum.size(); ++k) CHECK(a.sum[k].rounded() == b.sum[k].rounded());
     for (std::size_t k = 0; k < a.square_sum.size(); ++k) CHECK(a.square_sum[k].rounded() == b.square_sum[k].rounded());

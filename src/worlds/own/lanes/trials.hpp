@@ -156,20 +156,13 @@ private:
 
     void evaluate_groups(const LaneStep& step, const StoredMatrix<Real>& P) {
         for (int b = 0; b < view_.group_count; ++b) {
-            const GroupPlace& group = view_.groups[b];
-            Real squared_error = Real(0), variance = Real(0);
-            for (int i = 0; i < group.count; ++i) {
-                const int j = group.component(i);
-                const Real e = load<Real>(step.error + j * lanes<Real>);
-                e_[i] = e;
-                squared_error = fma(e, e, squared_error);
-                variance = variance + P.at(j, j);
-            }
-            *series(b) = group.components == nullptr
-                             ? norm(StoredMatrix<Real>{step.P, state_size, group.first}, group.count)
-                             : norm(ChosenRows<Real>{P, group.components}, group.count);
-            *series(view_.squared_error + b) = squared_error;
-            *series(view_.variance + b) = variance;
+            const GroupPlace group = view_.groups[b];
+            if (group.components == nullptr)
+                evaluate_group(step, P, b, StoredMatrix<Real>{step.P, state_size, group.first}, group.count,
+                               [&](int i) { return group.first + i; });
+            else
+                evaluate_group(step, P, b, ChosenRows<Real>{P, group.components}, group.count,
+                               [&](int i) { return group.components[i]; });
         }
         for (int j = 0; j < state_size; ++j) {
             const Real e = load<Real>(step.error + j * lanes<Real>);
@@ -177,6 +170,23 @@ private:
             if (errors_ != nullptr) errors_[j * (poses - 1) + steps] = e;
         }
         if (moments_ != nullptr) add_step_moments(P);
+    }
+
+    /// `component(i)` is the i-th component of the group, and `of_group` its part of P.
+    template <class Matrix, class Component>
+    void evaluate_group(const LaneStep& step, const StoredMatrix<Real>& P, int b, const Matrix& of_group, int count,
+                        const Component& component) {
+        Real squared_error = Real(0), variance = Real(0);
+        for (int i = 0; i < count; ++i) {
+            const int j = component(i);
+            const Real e = load<Real>(step.error + j * lanes<Real>);
+            e_[i] = e;
+            squared_error = fma(e, e, squared_error);
+            variance = variance + P.at(j, j);
+        }
+        *series(b) = norm(of_group, count);
+        *series(view_.squared_error + b) = squared_error;
+        *series(view_.variance + b) = variance;
     }
 
     void add_step_moments(const StoredMatrix<Real>& P) {

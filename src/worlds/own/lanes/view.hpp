@@ -15,8 +15,6 @@ class LaneRecorder;
 struct GroupPlace {
     int first = 0, count = 0;
     const int* components = nullptr;  ///< [count] where they are not contiguous and in order; else null
-
-    int component(int i) const { return components == nullptr ? first + i : components[i]; }
 };
 
 /// A scenario of a user's own world. Of the CommonView, what the folding of series reads is filled in.
