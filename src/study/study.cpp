@@ -41,10 +41,7 @@ BlockRanges missing_blocks(const ScenarioResults& results, std::int64_t trials, 
 
 std::int64_t least_trials(const Study& study) {
     std::int64_t least = study.trials;
-    for (const ScenarioResults& results : study.scenarios)
-        if (!results.blocks.empty())
-            least =
-                std::max(least, results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1));
+    for (const ScenarioResults& results : study.scenarios) least = std::max(least, trials_up_to(results));
     return least;
 }
 

@@ -42,12 +42,6 @@ ScenarioResults without_blocks(const ScenarioResults& results) {
     return empty;
 }
 
-/// Number of trials of the smallest study that has all blocks of the scenario.
-std::int64_t trials_up_to(const ScenarioResults& results) {
-    if (results.blocks.empty()) return 0;
-    return results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1);
-}
-
 }  // namespace
 
 void name_arms(ScenarioResults& results) {

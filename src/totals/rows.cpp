@@ -68,6 +68,11 @@ std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials) {
     return block_size * (blocks.count() - 1) + trials_in_block(trials, blocks.back());
 }
 
+std::int64_t trials_up_to(const ScenarioResults& results) {
+    if (results.blocks.empty()) return 0;
+    return results.blocks.back() * block_size + block_rows(results, results.blocks.size() - 1);
+}
+
 std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(static_cast<std::size_t>(count));

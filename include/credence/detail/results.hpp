@@ -159,6 +159,9 @@ std::int64_t block_rows(const ScenarioResults& results, std::size_t place);
 /// Trials that these blocks of a study of `trials` trials have.
 std::int64_t trials_in(const BlockRanges& blocks, std::int64_t trials);
 
+/// Trials of the smallest study that has all blocks of the scenario.
+std::int64_t trials_up_to(const ScenarioResults& results);
+
 /// The trials of rows first ... first + count - 1.
 std::vector<std::int64_t> trial_numbers(const ScenarioResults& results, std::int64_t first, std::int64_t count);
 

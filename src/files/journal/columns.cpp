@@ -45,19 +45,8 @@ void Journal::keep(Study& study) {
         ScenarioResults& results = study.scenarios[s];
         Kept kept{
             BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
-        kept.placed.blocks = results.blocks;
+        kept.placed = places_in_file(results, kept.layout);
         results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
-        const auto note = [&](std::size_t place) {
-            kept.placed.places[results.blocks[place]] = {block_rows(results, place),
-                                                         block_size * static_cast<std::int64_t>(place), true};
-        };
-        const std::size_t blocks = results.blocks.size();
-        const auto with_values =
-            results.keep == Keep::trials
-                ? blocks
-                : static_cast<std::size_t>(results.blocks.count_below(kept.layout.detailed_blocks()));
-        for (std::size_t place = 0; place < with_values; ++place) note(place);
-        if (results.trials % block_size != 0) note(blocks - 1);
         for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {
             kept.in_file.push_back(results.arms[a].kept);
             results.arms[a].kept = std::make_shared<ColumnsOfRun>(*this, s, a);

@@ -2,63 +2,15 @@
 // The journal of a run: finished blocks, committed to the disk during the run. docs/durability.md describes its
 // guarantees.
 
-#include "files/journal/file.hpp"
-#include "files/journal/commit.hpp"
+#include "files/journal/places.hpp"
 #include "study/releases.hpp"
 
 #include <atomic>
 #include <chrono>
-#include <map>
 #include <memory>
 #include <optional>
 
 namespace credence {
-
-/// The place of a block's values: in the journal, or in the results file that the journal extends.
-struct BlockPlace {
-    std::int64_t trials = 0;
-    std::int64_t position = 0;  ///< in the journal: of the block's first byte; in the results file: of its first row
-    bool in_file = false;
-};
-
-/// The blocks of a journal and their places. If no trial is kept, only blocks with details and partial blocks have an
-/// entry of their own, so that memory does not grow with the number of the other blocks.
-struct PlacedBlocks {
-    BlockRanges blocks;
-    std::map<std::int64_t, BlockPlace> places;
-
-    void put(std::int64_t block, const BlockPlace& place);
-    /// Adds blocks without kept trials, of a study of `trials` trials. Those of them with details must have a place
-    /// already.
-    void put(const BlockRange& range, std::int64_t trials, const BlockLayout& layout);
-    /// Adds the blocks of `others`; where both have a block, the others' place is taken.
-    void put(const PlacedBlocks& others);
-    void remove(std::int64_t block);
-    std::int64_t trials_of(std::int64_t block) const;
-    std::int64_t trials() const;
-    /// Number of trials of the smallest study that has all these blocks.
-    std::int64_t trials_up_to() const {
-        return blocks.empty() ? 0 : blocks.back() * block_size + trials_of(blocks.back());
-    }
-    /// Whether `other` has the same blocks with as many trials.
-    bool has(const PlacedBlocks& others) const;
-};
-
-/// The position of a scenario's last totals in the journal.
-struct JournalTotals {
-    std::int64_t position = 0, size = 0;
-
-    /// Whether any commit is of that scenario.
-    bool found() const { return position > 0; }
-};
-
-/// The journal's content for one scenario.
-struct JournalScenario {
-    PlacedBlocks placed;
-    std::int64_t asked = 0;    ///< trials that the study was asked for at the last totals
-    std::int64_t counted = 0;  ///< trials in the last totals
-    JournalTotals totals;
-};
 
 class Journal : public BlockKeeper {
 public:

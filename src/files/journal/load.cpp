@@ -23,16 +23,8 @@ std::vector<JournalScenario> Journal::scan(const Study& study) {
     const std::vector<BlockLayout> layouts = this->layouts();
     const std::int64_t end = scan_commits(file_, header_size_, layouts, [&](const FoundCommit& record) {
         seal_ = seal_with(seal_, record.checksum);
-        JournalScenario& scenario = found[record.scenario];
-        for (std::size_t b = 0; b < record.places.size(); ++b)
-            scenario.placed.put(record.start.blocks[b].index,
-                                {record.start.blocks[b].trials, record.places[b], false});
-        for (const BlockRange& range : record.start.ranges)
-            scenario.placed.put(range, record.start.trials, layouts[record.scenario]);
+        found[record.scenario].take(record, layouts[record.scenario]);
         note_release(computed_by_, record.start.release);
-        scenario.asked = record.start.trials;
-        scenario.counted = record.start.counted;
-        scenario.totals = {record.totals, record.end - record.totals};
         asked_ = std::max(asked_, record.start.trials);
     });
     torn_ = file_.size() - end;
@@ -56,24 +48,6 @@ void Journal::read_details(std::size_t scenario, ScenarioResults& results) const
     }
 }
 
-namespace {
-
-/// Adds the journal's blocks to those of the file. A partial block that is larger in the study of the last totals had
-/// been removed from the totals before, and is left out. Throws BadBytes where blocks and totals do not agree.
-void add_places(PlacedBlocks& placed, const JournalScenario& found) {
-    placed.put(found.placed);
-    std::vector<std::int64_t> taken_back;
-    for (const auto& [block, place] : placed.places)
-        if (place.trials < trials_in_block(found.asked, block)) taken_back.push_back(block);
-    for (const std::int64_t block : taken_back) placed.remove(block);
-    if (placed.trials() != found.counted) throw BadBytes("totals and blocks do not agree");
-    for (const auto& [block, place] : placed.places)
-        if (place.trials != block_size && block != placed.blocks.back())
-            throw BadBytes("a partial block is not the last");
-}
-
-}  // namespace
-
 void Journal::load_totals(std::size_t scenario, ScenarioResults& results) const {
     const Kept& kept = kept_[scenario];
     if (kept.totals_in_file) kept.totals_in_file->load(results);
@@ -82,10 +56,7 @@ void Journal::load_totals(std::size_t scenario, ScenarioResults& results) const 
     const std::string bytes = file_.read(kept.totals.position, kept.totals.size);
     try {
         ByteReader totals(bytes.data(), bytes.size());
-        get_totals(totals, results);
-        for (const ArmResults& arm : results.arms)
-            if (arm.totals.trials.trials() != kept.counted)
-                throw BadBytes("totals of an impossible number of trials");
+        get_totals(totals, results, kept.counted);
         read_details(scenario, results);
     } catch (const BadBytes& bad) {
         refuse_damaged(file_.path(), bad.what());
@@ -99,11 +70,8 @@ void Journal::load(Study& study) {
         const std::vector<JournalScenario> found = scan(study);
         for (std::size_t s = 0; s < found.size(); ++s) {
             PlacedBlocks& placed = kept_[s].placed;
-            // The run may have ended, so that the results file holds everything and only the journal's removal was
-            // missing.
-            if (!found[s].totals.found() || placed.has(found[s].placed)) continue;
+            if (!add_places(placed, found[s])) continue;
             ScenarioResults& results = study.scenarios[s];
-            add_places(placed, found[s]);
             kept_[s].counted = found[s].counted;
             kept_[s].totals = found[s].totals;
             drop_totals(results);

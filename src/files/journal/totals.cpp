@@ -102,14 +102,12 @@ void put_totals(ByteWriter& to, const ScenarioResults& results) {
     for (const ArmResults& arm : results.arms) visit_totals([&](const auto& part) { put(to, part); }, arm.totals);
 }
 
-void get_trial_totals(ByteReader& from, ScenarioResults& results) {
+void get_totals(ByteReader& from, ScenarioResults& results, std::int64_t trials) {
     for (ArmResults& arm : results.arms) get_trials(from, arm.totals.trials);
-}
-
-void get_totals(ByteReader& from, ScenarioResults& results) {
-    get_trial_totals(from, results);
     for (ArmResults& arm : results.arms) visit_totals([&](auto& part) { get(from, part); }, arm.totals);
     if (from.left() != 0) throw BadBytes("has more than the totals");
+    for (const ArmResults& arm : results.arms)
+        if (arm.totals.trials.trials() != trials) throw BadBytes("totals of an impossible number of trials");
 }
 
 }  // namespace credence

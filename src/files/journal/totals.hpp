@@ -11,10 +11,8 @@ namespace credence {
 /// trials are left out.
 void put_totals(ByteWriter& to, const ScenarioResults& results);
 
-/// Reads the totals of trials alone, which come first.
-void get_trial_totals(ByteReader& from, ScenarioResults& results);
-
-/// Reads all of them into results of the same scenario. Throws BadBytes where they are not its totals or are invalid.
-void get_totals(ByteReader& from, ScenarioResults& results);
+/// Reads all of them into results of the same scenario. Throws BadBytes where they are not its totals, are invalid, or
+/// not those of `trials` trials.
+void get_totals(ByteReader& from, ScenarioResults& results, std::int64_t trials);
 
 }  // namespace credence

@@ -9,41 +9,18 @@
 
 namespace credence {
 
-std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
-    std::vector<std::size_t> watched;
-    for (std::size_t c = 0; c < columns.size(); ++c)
-        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
-    return watched;
-}
-
-WatchedScenario described(const ScenarioResults& results) {
-    WatchedScenario scenario;
-    scenario.name = results.scenario.name;
-    const std::vector<std::size_t> watched = watched_columns(results.columns);
-    for (const std::size_t column : watched) scenario.columns.push_back(results.columns[column]);
-    for (const ArmResults& of_arm : results.arms) {
-        const TrialTotals& totals = of_arm.totals.trials;
-        WatchedArm arm{of_arm.name, totals.trials() - totals.counted(),
-                       totals.statuses[static_cast<std::size_t>(Status::diverged)], {}, {}, {}};
-        for (const std::size_t column : watched) arm.columns.push_back(column_moments(of_arm, column));
-        if (const ArmResults* other = baseline_of(results, of_arm)) {
-            arm.other = other->name;
-            arm.difference = moments_of(column_differences(results, of_arm, *other, watched.front()).difference);
-        }
-        scenario.arms.push_back(std::move(arm));
-    }
-    return scenario;
-}
-
 JournalFollower::JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results)
     : header_(std::move(found.header)),
       study_(new_study(header_.study.scenarios, header_.study.root_seed, header_.study.keep)),
       followed_(study_.scenarios.size()),
       start_(journal.read(0, found.size)),
       position_(found.size),
-      asked_(header_.trials),
       shard_(header_.shard) {
-    for (const ScenarioResults& scenario : study_.scenarios) layouts_.emplace_back(scenario);
+    study_.trials = header_.trials;
+    for (ScenarioResults& scenario : study_.scenarios) {
+        layouts_.emplace_back(scenario);
+        for (ArmResults& arm : scenario.arms) arm.columns.clear();  // no trial is read
+    }
     seal_ = seal_of(journal);
     if (header_.base == JournalBase::grown) read_file(results);
 }
@@ -55,9 +32,13 @@ void JournalFollower::read_file(const std::string& path) {
         throw InputError(path + ": is not the file that its journal goes on with (" + difference +
                          "). Put that back, or remove the journal.");
     for (std::size_t s = 0; s < followed_.size(); ++s) {
-        followed_[s].in_file = blocks_of(stored.scenarios[s]);
-        for (std::size_t a = 0; a < study_.scenarios[s].arms.size(); ++a)  // until the journal has others
-            study_.scenarios[s].arms[a].totals.trials = stored.scenarios[s].arms[a].totals.trials;
+        ScenarioResults& results = study_.scenarios[s];
+        const ScenarioResults& from = stored.scenarios[s];
+        followed_[s].in_file = places_in_file(from, layouts_[s]);
+        results.blocks = from.blocks;
+        results.trials = from.trials;
+        for (std::size_t a = 0; a < results.arms.size(); ++a)
+            results.arms[a].totals.trials = from.arms[a].totals.trials;
     }
 }
 
@@ -72,63 +53,31 @@ bool JournalFollower::goes_on_with(const JournalBytes& journal) const {
            seal_of(journal) == seal_;
 }
 
-void JournalFollower::take(const JournalBytes& journal, const FoundCommit& record) {
-    Followed& followed = followed_[record.scenario];
-    for (const BlockRange& range : record.start.ranges) followed.in_journal.add(range, record.start.trials);
-    if (header_.study.keep == Keep::trials)
-        for (const JournalBlock& block : record.start.blocks)
-            followed.in_journal.add({block.index, block.index}, record.start.trials);
-    followed.in_file.asked(record.start.trials);
-    followed.in_journal.asked(record.start.trials);
-    followed.counted = record.start.counted;
-    followed.totals = journal.read(record.totals, record.end - record.totals);
-    asked_ = std::max(asked_, record.start.trials);
-    shard_ = record.start.shard;
-}
-
-/// Takes the last totals of a scenario, and checks that they are of the blocks that are there.
-void JournalFollower::check(std::size_t scenario) {
+/// Reads the last totals of a scenario, unless they were read before or the results file has them.
+void JournalFollower::read_totals(const JournalBytes& journal, std::size_t scenario) {
     Followed& followed = followed_[scenario];
-    if (!followed.totals) return;
+    const JournalTotals& totals = followed.in_journal.totals;
+    if (totals.position == followed.read) return;
+    followed.read = totals.position;
+    PlacedBlocks placed = followed.in_file;
+    if (!add_places(placed, followed.in_journal)) return;
     ScenarioResults& results = study_.scenarios[scenario];
-    ByteReader from(followed.totals->data(), followed.totals->size());
-    load_totals(results);
-    get_totals(from, results);
+    const std::string bytes = journal.read(totals.position, totals.size);
+    ByteReader from(bytes.data(), bytes.size());
+    clear_totals(results);
+    get_totals(from, results, followed.in_journal.counted);
     drop_totals(results);  // those of trials are kept
-    followed.totals.reset();
-    if (followed.already_in_file()) return;
-    if (followed.trials() != followed.counted) throw BadBytes("totals and blocks do not agree");
-    for (const ArmResults& arm : results.arms)
-        if (arm.totals.trials.trials() != followed.counted)
-            throw BadBytes("totals of an impossible number of trials");
+    set_blocks(results, placed.blocks, placed.trials_up_to());
 }
 
 void JournalFollower::read(const JournalBytes& journal) {
-    position_ = scan_commits(journal, position_, layouts_, [&](const FoundCommit& record) { take(journal, record); });
+    position_ = scan_commits(journal, position_, layouts_, [&](const FoundCommit& commit) {
+        followed_[commit.scenario].in_journal.take(commit, layouts_[commit.scenario]);
+        study_.trials = std::max(study_.trials, commit.start.trials);
+        shard_ = commit.start.shard;
+    });
     seal_ = seal_of(journal);
-    for (std::size_t s = 0; s < followed_.size(); ++s) check(s);
-}
-
-void JournalFollower::tell(Snapshot& snapshot) const {
-    snapshot.state = RunState::running;
-    snapshot.trials = asked_;
-    snapshot.shard = shard_;
-    for (std::size_t s = 0; s < followed_.size(); ++s) {
-        const Followed& followed = followed_[s];
-        WatchedScenario scenario = described(study_.scenarios[s]);
-        const bool in_file = followed.already_in_file();
-        const auto over_both = [&](auto count) {
-            return count(followed.in_file) + (in_file ? 0 : count(followed.in_journal));
-        };
-        scenario.trials = over_both([](const WatchedBlocks& part) { return part.trials(); });
-        scenario.blocks = over_both([](const WatchedBlocks& part) { return part.blocks(); });
-        // Blocks that are present already, and those that the shard lacks.
-        scenario.trials_asked = scenario.trials + trials_of_shard(shard_, asked_) -
-                                over_both([&](const WatchedBlocks& part) { return part.trials_of(shard_); });
-        scenario.blocks_asked = scenario.blocks + blocks_of_shard(shard_, asked_) -
-                                over_both([&](const WatchedBlocks& part) { return part.blocks_of(shard_); });
-        snapshot.scenarios.push_back(std::move(scenario));
-    }
+    for (std::size_t s = 0; s < followed_.size(); ++s) read_totals(journal, s);
 }
 
 }  // namespace credence

@@ -14,21 +14,80 @@ namespace credence {
 
 namespace {
 
+/// A part of a scenario.
+struct Size {
+    std::int64_t blocks = 0, trials = 0;
+};
+
+/// What a shard has of these blocks, the first `trials` trials being those up to the last of them. Counted without a
+/// list of the shard's blocks, since a file may claim any number of trials.
+Size size_in(const Shard& shard, const BlockRanges& blocks, std::int64_t trials) {
+    const auto below = [&](std::int64_t block) {
+        return block <= shard.index ? 0 : (block - 1 - shard.index) / shard.count + 1;
+    };
+    Size size;
+    for (const BlockRange& range : blocks.ranges()) size.blocks += below(range.last + 1) - below(range.first);
+    size.trials = block_size * size.blocks;
+    if (!blocks.empty() && blocks.back() % shard.count == shard.index)
+        size.trials -= block_size - trials_in_block(trials, blocks.back());
+    return size;
+}
+
+Size size_of(const Shard& shard, std::int64_t trials) {
+    return size_in(shard, BlockRanges::below(block_count(trials)), trials);
+}
+
 /// The shard that has exactly these blocks; the whole study where there is no such shard.
-Shard shard_of(const ScenarioResults& results, std::int64_t trials) {
-    const BlockRanges& blocks = results.blocks;
+Shard shard_of(const BlockRanges& blocks, std::int64_t trials) {
     if (blocks.size() < 2) return {};
     const Shard shard{blocks[0], blocks[1] - blocks[0]};
-    if (shard.count == 1 || shard.index >= shard.count || blocks.count() != blocks_of_shard(shard, trials)) return {};
-    std::int64_t next = shard.index;
-    for (const std::int64_t block : blocks) {
-        if (block != next) return {};
-        next += shard.count;
+    const std::int64_t count = blocks.count();
+    return shard.index < shard.count && size_in(shard, blocks, trials).blocks == count &&
+                   size_of(shard, trials).blocks == count
+               ? shard
+               : Shard{};
+}
+
+WatchedArm watched_arm(const ScenarioResults& results, const ArmResults& arm,
+                       const std::vector<std::size_t>& columns) {
+    const TrialTotals& totals = arm.totals.trials;
+    WatchedArm watched{arm.name, totals.trials() - totals.counted(),
+                       totals.statuses[static_cast<std::size_t>(Status::diverged)], {}, {}, {}};
+    for (const std::size_t column : columns) watched.columns.push_back(column_moments(arm, column));
+    if (const ArmResults* other = baseline_of(results, arm)) {
+        watched.other = other->name;
+        watched.difference = moments_of(column_differences(results, arm, *other, columns.front()).difference);
     }
-    return shard;
+    return watched;
+}
+
+WatchedScenario watched_scenario(const ScenarioResults& results, std::int64_t trials, const Shard& shard) {
+    // What is there already may be of other shards, too.
+    const Size there = size_in(shard, results.blocks, trials_up_to(results)), asked = size_of(shard, trials);
+    const std::int64_t blocks = results.blocks.count();
+    WatchedScenario scenario{results.scenario.name, {}, results.trials, results.trials + asked.trials - there.trials,
+                             blocks, blocks + asked.blocks - there.blocks, {}};
+    const std::vector<std::size_t> columns = watched_columns(results.columns);
+    for (const std::size_t column : columns) scenario.columns.push_back(results.columns[column]);
+    for (const ArmResults& arm : results.arms) scenario.arms.push_back(watched_arm(results, arm, columns));
+    return scenario;
+}
+
+Snapshot snapshot_of(const std::string& path, RunState state, const Study& study, const Shard& shard) {
+    Snapshot snapshot{path, state, study.trials, shard, {}, 0, {}};
+    for (const ScenarioResults& results : study.scenarios)
+        snapshot.scenarios.push_back(watched_scenario(results, study.trials, shard));
+    return snapshot;
 }
 
 }  // namespace
+
+std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
+    std::vector<std::size_t> watched;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+    return watched;
+}
 
 std::int64_t Snapshot::trials_done() const {
     std::int64_t trials = 0;
@@ -59,14 +118,15 @@ std::optional<Snapshot> RunWatch::journal_snapshot() {
         if (!journal) return std::nullopt;
         try {
             if (follower_ && !follower_->goes_on_with(*journal)) follower_.reset();
-            Snapshot snapshot{path_, RunState::begun, 0, {}, {}, journal->seconds_since_change(), {}};
-            if (!follower_) {
-                const std::optional<FoundHeader> found = find_header(*journal);
-                if (!found) return snapshot;
-                follower_ = std::make_unique<JournalFollower>(*journal, *found, path_);
+            Snapshot snapshot{path_, RunState::begun, 0, {}, {}, 0, {}};
+            if (!follower_)
+                if (const std::optional<FoundHeader> found = find_header(*journal))
+                    follower_ = std::make_unique<JournalFollower>(*journal, *found, path_);
+            if (follower_) {
+                follower_->read(*journal);
+                snapshot = snapshot_of(path_, RunState::running, follower_->study(), follower_->shard());
             }
-            follower_->read(*journal);
-            follower_->tell(snapshot);
+            snapshot.seconds_since_commit = journal->seconds_since_change();
             return snapshot;
         } catch (const BadBytes& bad) {
             follower_.reset();
@@ -87,20 +147,14 @@ Snapshot RunWatch::results_snapshot() const {
                          " is there. Check the name, or begin with `" + program_name() + " run SCENARIO.ini -o " +
                          path_ + "`.");
     const Study study = read_results(path_, 0).study;
-    Snapshot snapshot{path_, study.complete ? RunState::complete : RunState::incomplete, study.trials, {}, {}, 0, {}};
-    if (!study.complete && !study.scenarios.empty()) snapshot.shard = shard_of(study.scenarios.front(), study.trials);
-    for (const ScenarioResults& results : study.scenarios) {
-        if (results.blocks != study.scenarios.front().blocks) snapshot.shard = {};
-        WatchedScenario scenario = described(results);
-        scenario.trials = results.trials;
-        scenario.blocks = results.blocks.count();
-        snapshot.scenarios.push_back(std::move(scenario));
+    Shard shard;
+    if (!study.complete && !study.scenarios.empty()) {
+        const BlockRanges& blocks = study.scenarios.front().blocks;
+        const bool all_same = std::ranges::all_of(
+            study.scenarios, [&](const ScenarioResults& results) { return results.blocks == blocks; });
+        if (all_same) shard = shard_of(blocks, study.trials);
     }
-    for (WatchedScenario& scenario : snapshot.scenarios) {
-        scenario.trials_asked = trials_of_shard(snapshot.shard, study.trials);
-        scenario.blocks_asked = blocks_of_shard(snapshot.shard, study.trials);
-    }
-    return snapshot;
+    return snapshot_of(path_, study.complete ? RunState::complete : RunState::incomplete, study, shard);
 }
 
 void RunWatch::time(Snapshot& snapshot) {

@@ -62,8 +62,8 @@ struct Snapshot {
 class JournalFollower;
 
 /// Watches the run that writes the results file `path`. It neither writes nor locks anything, so the run is not
-/// affected. A snapshot reads what was appended to the journal since the last one; memory does not grow with the
-/// trials.
+/// affected. A snapshot reads what was appended to the journal since the last one; memory grows by some bytes for each
+/// block of 256 trials.
 class RunWatch {
 public:
     explicit RunWatch(std::string path);
