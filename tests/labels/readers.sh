@@ -1,13 +1,12 @@
 #!/usr/bin/env bash
 # Label readers: credence's files as read by other programs, and the scripts of analysis/, in the languages that run
-# them; the claims of docs/planning.md and docs/theory/planning.md, of their tables and as a second program finds them;
+# them; the claims of docs/planning.md and docs/theory/planning.md, of their tables;
 # the draws as docs/model.md defines them; and the columns of the filter in numpy, and in JAX where it is installed,
 # beside credence's.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }
 bash tests/readers/run.sh build/credence
 bash tests/record_example.sh build/credence /usr/bin/python3 analysis/record/write_record.py
-/usr/bin/python3 tests/planning_claims.py docs/theory/planning.md
 records=$(mktemp -d)
 trap 'rm -rf "$records"' EXIT
 claims() { /usr/bin/python3 experiments/claims.py experiments/planning/claims.py "$@"; }

@@ -124,7 +124,9 @@ Block made_up_block(const std::vector<Column>& columns) {
 }
 
 std::vector<TrialTotals> totals_of(const std::vector<Column>& columns, const Block& block) {
-    return trial_totals_of({{}, columns}, block);
+    ScenarioResults results;
+    results.columns = columns;
+    return trial_totals_of(results, block);
 }
 
 }  // namespace
