@@ -123,6 +123,19 @@ struct WorstTrials {
     double share = 0;                          ///< of the sum of NEES over the detailed trials
 };
 
+/// So many independent parts of runs are needed for a verdict; as many runs are trials by themselves.
+inline constexpr int least_segments = 20;
+
+/// Segments of the runs of a record [docs/statistics.md, One log]. If they count, they take the place of trials in
+/// everything that is not by step.
+struct SegmentEvidence {
+    bool count = false;
+    int steps = 0;                             ///< of a segment; 0: there are none
+    double autocorrelation_time = 0;           ///< in steps; infinite where errors do not decorrelate, 0: not computed
+    std::int64_t steps_of_runs = 0;            ///< of all runs that did not fail
+    std::vector<std::int64_t> run;             ///< [segments] that each is of
+};
+
 struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
@@ -139,12 +152,21 @@ struct Evidence {
     WorstTrials worst;
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
+    SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
     std::int64_t failed_trials() const { return left_out + diverged; }
+    /// Steps of what is independent: of a trial, or of a segment where these count.
+    int steps_together() const { return segments.count ? segments.steps : steps; }
+    /// What is independent: `trials` or `segments`.
+    std::string units() const { return segments.count ? "segments" : "trials"; }
 };
 
 /// Computes the evidence from an arm's totals. It selects series by their roles only.
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm);
+
+/// The evidence of a record's runs with that of its segments, which come from results of their own, in everything that
+/// is not by step; `runs.segments` says which they are.
+Evidence by_segments(Evidence runs, Evidence segments);
 
 }  // namespace credence

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,23 @@ struct RecordGaps {
     double beside = std::numeric_limits<double>::quiet_NaN(), elsewhere = beside, difference = beside;
 };
 
+/// In place of the steps of a segment: chosen by the errors where there are fewer than `least_segments` runs
+/// [evidence.hpp]; no segments.
+inline constexpr int segments_auto = -1, segments_off = 0;
+
+/// Segments of the runs of a record that did not fail [docs/statistics.md, One log].
+struct RecordSegments {
+    int asked = segments_auto;                 ///< as given to `read_record`
+    std::int64_t runs = 0, steps_of_runs = 0;  ///< and the steps that these have
+    int steps = 0;                             ///< of a segment; 0: there are none
+    /// The longest integrated autocorrelation time of any run, in steps: infinite where its errors do not decorrelate,
+    /// 0 where it was not computed.
+    double autocorrelation_time = 0;
+    std::vector<std::int64_t> run;             ///< [segments] that each is of
+    /// Those of segments in place of trials; null for fewer than `least_segments`, and where runs are trials.
+    std::shared_ptr<const ScenarioResults> results;
+};
+
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
 /// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
 /// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and
@@ -51,6 +69,7 @@ struct Record {
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};
+    RecordSegments segments{};
     std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
     /// Reads the record again, with its errors in the other chart; else empty.
     std::function<Record()> in_other_chart{};
@@ -84,8 +103,11 @@ struct Record {
 /// Components whose errors and whose rows and columns of every covariance are 0 at all steps are not in the state: they
 /// are left out, and `results.not_judged` names them.
 ///
+/// `segments` is the number of steps in a segment, segments_auto or segments_off.
+///
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
-Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {});
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {},
+                   int segments = segments_auto);
 
 /// An array in memory that stands for a dataset of a record.
 struct RecordArray {
@@ -110,6 +132,6 @@ struct RecordArrays {
 /// Reads a record in memory as if it were in a file, a part at a time; the arrays are only read. `name` names the
 /// scenario, as a file's path does. Throws InputError `PLACE: PROBLEM. REMEDY.`, its places those of a file.
 Record read_record(const RecordArrays& arrays, const std::string& name,
-                   const std::function<void(const Progress&)>& progress = {});
+                   const std::function<void(const Progress&)>& progress = {}, int segments = segments_auto);
 
 }  // namespace credence

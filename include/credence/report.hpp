@@ -63,6 +63,7 @@ struct Report {
     bool complete = true;
     Keep keep = Keep::trials;
     Limits limits;
+    int segments = segments_auto;           ///< of a record, as asked for [record.hpp]
     std::vector<Scenario> scenarios;
     std::vector<ArmReport> arms;
     std::vector<RecordTrouble> troubles;    ///< of a record: trials that failed, the first ones
@@ -80,7 +81,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
 Report together(std::vector<Report> reports);
 
 /// One arm's part of a report.
-ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evidence evidence, std::uint64_t root_seed,
                      const Limits& limits);
 
 /// The report as text: the verdicts, their reasons, and the steps.

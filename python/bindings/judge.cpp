@@ -58,15 +58,17 @@ RecordArray described(const std::string& path, const Array& array, double epsilo
 }
 
 /// The program's options by their names, such as `margin`.
-Limits limits_of(const Options& options) {
+cli::Parsed parsed_of(const Options& options) {
     cli::Parsed parsed;
     for (const auto& [name, value] : options) parsed.values[name] = {value};
-    return cli::parse_limits(parsed);
+    return parsed;
 }
 
 template <class Read>
 Judgement judgement(const std::string& name, const Options& options, const Listener& listener, const Read& read) {
-    const Limits limits = limits_of(options);
+    const cli::Parsed parsed = parsed_of(options);
+    const Limits limits = cli::parse_limits(parsed);
+    const int segments = cli::parse_segments(parsed);
     const auto progress = [&, due = Due()](const Progress& now) mutable {
         if (!due(now)) return;
         if (must_end()) throw Failure("the verdict was not finished (Python ended). Wait for it.");
@@ -74,7 +76,7 @@ Judgement judgement(const std::string& name, const Options& options, const Liste
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (listener) (*listener)(now.done, now.total);
     };
-    return alone([&] { return Judgement{make_record_report(read(progress), name, limits), name}; });
+    return alone([&] { return Judgement{make_record_report(read(progress, segments), name, limits), name}; });
 }
 
 Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
@@ -85,15 +87,15 @@ Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
     RecordArrays record{{}, texts, dimensions, lists};
     for (const auto& [path, array] : arrays) record.arrays.push_back(described(path, array.first, array.second));
     return judgement(name, options, listener,
-                     [&](const auto& progress) { return read_record(record, name, progress); });
+                     [&](const auto& progress, int segments) { return read_record(record, name, progress, segments); });
 }
 
 Judgement judge_file(const nb::bytes& file, const Options& options, const Listener& listener) {
     const std::string path = bytes_of(file);
     try {
-        return judgement(path, options, listener, [&](const auto& progress) {
+        return judgement(path, options, listener, [&](const auto& progress, int segments) {
             cli::check_kind(path, {cli::FileKind::record});
-            return read_record(path, progress);
+            return read_record(path, progress, segments);
         });
     } catch (const InputError& error) {
         throw InputError(shown(error.what()));  // Python takes no other text than UTF-8

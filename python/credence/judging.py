@@ -103,6 +103,7 @@ def judge(
     margin_direction: float | str | None = None,
     bias: float = 0.1,
     failed: float | str = 0.01,
+    segments: int | str = "auto",
     component_names: str | Sequence[str] | None = None,
     component_units: str | Sequence[str] | None = None,
     steps: object = None,
@@ -147,6 +148,9 @@ def judge(
         A mean error of a component within this many of its sigmas is consistent.
     failed : float or str
         The verdict is ``failed`` where more than this share of the runs failed.
+    segments : int or str
+        Fewer than 20 runs are counted by segments, which take the place of runs: ``"auto"`` makes them ten times as
+        long as errors take to decorrelate [docs/statistics.md, One log], a number says their steps, ``"off"``: none.
     component_names, component_units : list of str
         One for each component.
     steps : array [trial]
@@ -179,7 +183,13 @@ def judge(
     InputError
         A ValueError: arrays do not fit each other, a covariance is not symmetric, an option is out of its range.
     """
-    options = {"margin": margin, "bias": bias, "failed": failed, "margin-direction": margin_direction}
+    options = {
+        "margin": margin,
+        "bias": bias,
+        "failed": failed,
+        "margin-direction": margin_direction,
+        "segments": segments,
+    }
     given_options = {key: str(value) for key, value in options.items() if value is not None}
     own = {"covariance": group_covariance or {}, "nees": group_nees or {}}
     arrays = {

@@ -58,6 +58,26 @@ def test_margins_are_those_of_the_program(tmp_path, program):
     assert [verdict[name] for name in ("margin", "failed_limit")] == [0.4, 0.5]
 
 
+@pytest.mark.parametrize("segments", ["auto", "off", 25])
+def test_a_log_is_counted_in_segments_as_the_program_does(segments, tmp_path, program):
+    errors = np.random.default_rng(1).normal(size=(2000, 2))
+    log = {"error": errors, "covariance": np.broadcast_to(0.5 * np.eye(2), (2000, 2, 2))}
+    path = records.write(tmp_path / "log.h5", log)
+    printed = program("judge", path, f"--segments={segments}", "--format", "json", "--quiet")[1]
+    verdict = credence.judge(**log, segments=segments, name=str(path))
+    assert verdict.json == json.loads(printed)
+    assert verdict["evidence"] == ("trials" if segments == "off" else "segments")
+    if segments == "off":
+        assert "segments" not in verdict.json[0]
+    else:
+        steps = verdict["segments"]["steps"]
+        assert segments in ("auto", steps)
+        assert verdict["segments"]["count"] == 2000 // steps
+        assert (verdict["segments"]["autocorrelation_time"] is None) == (segments == 25)
+        assert verdict.verdict == "optimistic"
+    assert "one log of 2000 steps" in str(verdict)
+
+
 def test_any_layout_in_memory_is_the_same_record():
     record = records.with_innovations(np.random.default_rng(1))
     plain = credence.judge(**record).json
@@ -137,6 +157,10 @@ def test_no_copy_of_the_arrays_is_made():
         (
             {"covariance": np.ones((3, 2, 2, 2)), "margin_direction": 0.01},
             "invalid margin_direction=0.01 (less than the margin",
+        ),
+        (
+            {"covariance": np.ones((3, 2, 2, 2)), "segments": 1.5},
+            "invalid segments=1.5 (must be a whole number of steps from 2 on, auto or off). Write 50.",
         ),
         (
             {"covariance": np.ones((3, 2, 2, 2)), "innovation": np.ones((3, 2, 1))},

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <new>
@@ -215,6 +216,16 @@ double parse_failed(const Parsed& parsed) {
     if (!(share >= 0 && share <= 1))
         throw invalid_value("--failed", given, "must be from 0 to 100 %", "Write 1% or 0.01");
     return share;
+}
+
+int parse_segments(const Parsed& parsed) {
+    const std::string given = parsed.text("segments").value_or("auto");
+    if (given == "auto") return segments_auto;
+    if (given == "off") return segments_off;
+    const double steps = to_number(given).value_or(0);
+    if (!(steps >= 2 && steps <= 1e9) || steps != std::floor(steps))
+        throw invalid_value("--segments", given, "must be a whole number of steps from 2 on, auto or off", "Write 50");
+    return static_cast<int>(steps);
 }
 
 std::vector<std::string> inputs_of(const Parsed& parsed) {

@@ -65,6 +65,9 @@ Limits parse_limits(const Parsed& parsed);
 /// --failed: `1%` or `0.01` as a number in [0, 1]; throws InputError.
 double parse_failed(const Parsed& parsed);
 
+/// --segments: a number of steps, segments_auto or segments_off; throws InputError.
+int parse_segments(const Parsed& parsed);
+
 /// The output file of `-o`, if it is given. Before any work, refuses files that cannot be written, files that exist
 /// unless --overwrite is given, and the files that the command reads.
 std::optional<Output> check_output_option(const Parsed& parsed);

@@ -49,7 +49,7 @@ std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
     if (records && paths.size() == 1) throw InputError("compare takes several records of the same runs. Give another.");
     std::vector<StudyFile> files;
     for (const std::string& path : paths) {
-        files.push_back({path, records ? study_of(read_record(path)) : read_results(path, 0).study});
+        files.push_back({path, records ? study_of(read_record(path, {}, segments_off)) : read_results(path, 0).study});
         if (records && files.back().study.trials != files.front().study.trials)
             throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +
                              std::to_string(files.back().study.trials) + " trials, not " +

@@ -30,6 +30,9 @@ const Command& judge_command() {
          bias_option(),
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
+         {"segments", "STEPS",
+          "count few long runs by segments of so many steps; off; or auto (the default): ten times the steps over "
+          "which errors decorrelate, for fewer than 20 runs"},
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output"),
@@ -40,11 +43,12 @@ const Command& judge_command() {
 int judge(const Parsed& parsed) {
     if (parsed.arguments.empty()) throw InputError("judge takes one record or several. Give RECORD.h5.");
     const ReportRequest request = read_report_request(parsed);
+    const int segments = parse_segments(parsed);
     for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::record});
     std::vector<Report> reports;
     for (const std::string& path : parsed.arguments) {
         ProgressLine progress(parsed.has("quiet"));
-        Record record = read_record(path, [&](const Progress& now) { progress(now); });
+        Record record = read_record(path, [&](const Progress& now) { progress(now); }, segments);
         progress.finish();
         reports.push_back(make_record_report(std::move(record), path, request.limits));
     }

@@ -93,21 +93,23 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
 
 namespace {
 
-Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, bool other) {
+Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
+                     bool other) {
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
                            [&](const Handle& root) {
-                               return read_in_chart(RecordReader(FileSource(root)), path, progress, other,
-                                                    [path](bool again) { return read_in_chart(path, {}, again); });
+                               return read_in_chart(
+                                   RecordReader(FileSource(root)), path, progress, segments, other,
+                                   [path, segments](bool again) { return read_in_chart(path, {}, segments, again); });
                            });
 }
 
 }  // namespace
 
-Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress) {
-    return read_in_chart(path, progress, false);
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
+    return read_in_chart(path, progress, segments, false);
 }
 
 }  // namespace credence

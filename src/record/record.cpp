@@ -2,23 +2,24 @@
 
 #include <credence/error.hpp>
 
+#include "record/segments.hpp"
 #include "record/totals.hpp"
 
 #include <chrono>
 
 namespace credence {
 
-Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress) {
+void each_step(const RecordReader& reader, const std::function<void(const RecordStep&)>& use,
+               const ReportProgress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const RecordShape& shape = reader.shape();
-    RecordTotals totals(shape, name);
     RecordValues values;
     for (std::int64_t trial = 0; trial < shape.trials;) {
         std::int64_t trials = 1;
         for (int step = 0; step < shape.steps;) {
             const RecordPart part = reader.part_at(trial, step);
             reader.read(part, values);
-            for_each_step(part, values, [&](const RecordStep& one) { totals.add(one); });
+            for_each_step(part, values, use);
             step += part.steps;
             trials = part.trials;
         }
@@ -26,15 +27,23 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         if (progress) progress({trial, shape.trials, seconds.count()});
     }
-    return totals.finish();
 }
 
-Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, bool other,
-                     const std::function<Record(bool)>& read_again) {
+Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
+    SegmentPlanner planner(reader.shape(), segments);
+    RecordTotals totals(reader.shape(), name, &planner);
+    each_step(reader, [&](const RecordStep& one) { totals.add(one); }, progress);
+    Record record = totals.finish();
+    record.segments = planner.finish(reader, name);
+    return record;
+}
+
+Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
+                     bool other, const std::function<Record(bool)>& read_again) {
     std::optional<Manifold>& manifold = reader.manifold();
     const bool has_charts = manifold && manifold->has_charts();
     if (has_charts && other) manifold->take_other_chart();
-    Record record = read_record(reader, name, progress);
+    Record record = read_record(reader, name, progress, segments);
     if (!has_charts) return record;
     record.chart = manifold->chart() == ErrorChart::local ? "local" : "global";
     record.in_other_chart = [read_again, other] { return read_again(!other); };
@@ -43,11 +52,13 @@ Record read_in_chart(RecordReader reader, const std::string& name, const ReportP
 
 namespace {
 
-Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, bool other) {
+Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments,
+                     bool other) {
     constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;  // the arrays are in memory: a part fits a cache
     try {
-        return read_in_chart(RecordReader(ArraySource(arrays), part_numbers), name, progress, other,
-                             [&arrays, name](bool again) { return read_in_chart(arrays, name, {}, again); });
+        return read_in_chart(
+            RecordReader(ArraySource(arrays), part_numbers), name, progress, segments, other,
+            [&arrays, name, segments](bool again) { return read_in_chart(arrays, name, {}, segments, again); });
     } catch (const RecordError& error) {
         throw InputError(error.what() + (". " + error.remedy_of_arrays()) + ".");
     }
@@ -55,8 +66,8 @@ Record read_in_chart(const RecordArrays& arrays, const std::string& name, const 
 
 }  // namespace
 
-Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress) {
-    return read_in_chart(arrays, name, progress, false);
+Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
+    return read_in_chart(arrays, name, progress, segments, false);
 }
 
 }  // namespace credence

@@ -4,6 +4,7 @@
 #include "statistics/goodness.hpp"
 
 #include "record/results.hpp"
+#include "record/segments.hpp"
 #include "base/nan.hpp"
 
 #include <algorithm>
@@ -21,8 +22,9 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 
-RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path)
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, SegmentPlanner* planner)
     : shape_(shape),
+      planner_(planner),
       all_series_(record_series(shape_)),
       alike_(shape_),
       judge_(shape_, all_series_),
@@ -166,6 +168,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
     if (!failed(status_)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
+        if (planner_ != nullptr) plan_segments(trial);
     }
     if (!failed(status_)) return;
     if (trial >= record_.results.detailed()) return;
@@ -175,6 +178,22 @@ void RecordTotals::end_trial(std::int64_t trial) {
     };
     forget(arm().nees, size(shape_.steps));
     forget(arm().errors, size(shape_.steps) * size(shape_.n));
+}
+
+/// The autocorrelation of NEES is about its own mean, since P may have the wrong size; that of a standardised error
+/// about 0, the mean of a filter that is right: an offset that was drawn once does not decorrelate.
+void RecordTotals::plan_segments(std::int64_t trial) {
+    planner_->add(trial, present_);
+    if (!planner_->wants_series()) return;
+    for (std::size_t f = 0; f < all_series_.list.size(); ++f) {
+        const SeriesRole role = all_series_.list[f].role;
+        if (role != SeriesRole::nees && role != SeriesRole::standardised_error) continue;
+        std::vector<double> values;
+        double sum = 0;
+        for (const std::size_t k : present_)
+            if (const double value = series(f, k); !std::isnan(value)) values.push_back(value), sum += value;
+        planner_->add_series(values, role == SeriesRole::nees ? sum / static_cast<double>(values.size()) : 0);
+    }
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {

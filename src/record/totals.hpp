@@ -17,11 +17,13 @@
 
 namespace credence {
 
+class SegmentPlanner;
+
 /// Receives a record's steps one after the other, and makes results of them.
 class RecordTotals {
 public:
-    /// `path` names the scenario.
-    RecordTotals(const RecordShape& shape, const std::string& path);
+    /// `path` names the scenario; `planner` learns of the runs.
+    RecordTotals(const RecordShape& shape, const std::string& path, SegmentPlanner* planner = nullptr);
     RecordTotals(const RecordTotals&) = delete;
     RecordTotals& operator=(const RecordTotals&) = delete;
 
@@ -50,10 +52,12 @@ private:
     void set_dimension(std::size_t k);
     void add_rounding(std::size_t k);
     void finish_rounding();
+    void plan_segments(std::int64_t trial);
     double nees_at(std::size_t k);
     const double* bounds(std::size_t f, std::size_t k);
 
     RecordShape shape_;
+    SegmentPlanner* planner_;
     StateSeries all_series_;
     AlikeSums alike_;
     StepEvaluator judge_;

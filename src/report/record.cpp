@@ -51,13 +51,39 @@ bool is_too_large(const Finding& finding) {
     return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
 }
 
+/// That of its runs, and of their segments if these count.
+Evidence evidence_of(const Record& record) {
+    const RecordSegments& found = record.segments;
+    Evidence evidence = evidence_of(record.results, record.results.arms.front());
+    evidence.segments = {found.results != nullptr, found.steps, found.autocorrelation_time, found.steps_of_runs,
+                         found.run};
+    if (!evidence.segments.count) return evidence;
+    return by_segments(std::move(evidence), evidence_of(*found.results, found.results->arms.front()));
+}
+
+/// Gives the ratios of the whole record the intervals of its segments.
+void set_ratios(ArmReport& arm) {
+    const Evidence& evidence = arm.evidence;
+    for (ColumnReport& column : arm.columns) {
+        Moments moments;
+        if (column.name == "nees_ratio" && !std::isnan(column.summary.mean)) moments = evidence.groups.front().run;
+        if (column.name == "nis_ratio" && !evidence.nis.empty()) {
+            const NisEvidence& nis = evidence.nis.front();
+            const auto count = static_cast<double>(evidence.segments.run.size());
+            const double se = half_width(nis.ratio95) / t_quantile(0.05, count - 1);
+            moments = {count, nis.ratio, se * std::sqrt(count), se};
+        }
+        if (moments.count > 0) column.summary = summary_of(moments);
+    }
+}
+
 /// NEES with the error in the other chart, where the given one is doubted: beside the record's own, without a verdict.
 void try_other_chart(const Record& record, ArmReport& arm) {
     Consistency& verdict = arm.consistency;
     const bool doubted = verdict.chart_doubted || std::ranges::any_of(verdict.findings, is_too_large);
     if (!record.in_other_chart || !doubted || !(arm.evidence.groups.front().run.count > 0)) return;
     const Record other = record.in_other_chart();
-    const Evidence evidence = evidence_of(other.results, other.results.arms.front());
+    const Evidence evidence = evidence_of(other);
     for (const GroupEvidence& group : evidence.groups)
         arm.evidence.charts.push_back({other.chart, group.name, group.dimension, group.run, group.step, group.anees});
     const GroupEvidence &own = arm.evidence.groups.front(), &theirs = evidence.groups.front();
@@ -75,15 +101,22 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     Report report;
     report.source = "record " + printable(path, path.size());
     report.limits = limits;
+    report.segments = record.segments.asked;
     report.troubles = record.troubles;
     report.not_judged = results.not_judged;
     results.scenario.title.clear();  // the source names it
     report.scenarios.push_back(results.scenario);
     constexpr std::uint64_t bootstrap_seed = 1;
-    report.arms.push_back(report_arm(results, results.arms.front(), bootstrap_seed, limits));
+    report.arms.push_back(report_arm(results, results.arms.front(), evidence_of(record), bootstrap_seed, limits));
     results.arms.clear();  // large, and of no further use
     ArmReport& arm = report.arms.front();
     arm.gaps = record.gaps;
+    if (arm.evidence.segments.count) {
+        set_ratios(arm);
+        report.not_judged.push_back(
+            "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so few "
+            "runs cannot show whether P is right about it.");
+    }
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     name_absent_groups(arm.evidence, limits, report.not_judged);

@@ -78,9 +78,9 @@ void leave_out_nees(std::vector<ColumnReport>& columns) {
 
 }  // namespace
 
-ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, std::uint64_t root_seed,
+ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evidence evidence, std::uint64_t root_seed,
                      const Limits& limits) {
-    ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, evidence_of(results, arm), {}};
+    ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, std::move(evidence), {}};
     report.consistency = judge(report.evidence, limits);
     report.evidence.moments.reset();  // large, and of no further use
     leave_out_rounded(report.evidence, limits);
@@ -107,7 +107,8 @@ Report make_report(const Study& study, const Limits& limits) {
         report.scenarios.push_back(results.scenario);
         const WithTotals with_totals(results);
         for (const ArmResults& arm : (*with_totals).arms)
-            report.arms.push_back(report_arm(*with_totals, arm, study.root_seed, limits));
+            report.arms.push_back(
+                report_arm(*with_totals, arm, evidence_of(*with_totals, arm), study.root_seed, limits));
     }
     return report;
 }

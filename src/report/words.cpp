@@ -64,30 +64,40 @@ std::string failed_text(const ArmReport& arm) {
            short_number(100 * arm.consistency.limits.failed) + " %" + cause_text(arm);
 }
 
-std::string needed_text(const TrialsNeeded& needed) {
+/// `450 trials`, or of a log `450 segments, 24300 steps,`
+std::string trials_text(const ArmReport& arm, double trials) {
+    const SegmentEvidence& segments = arm.evidence.segments;
+    const std::string text = number(trials, 0) + " " + arm.evidence.units();
+    return segments.count ? text + ", " + number(trials * segments.steps, 0) + " steps," : text;
+}
+
+std::string needed_text(const ArmReport& arm) {
+    const TrialsNeeded& needed = arm.consistency.trials_needed;
     if (!(needed.value > 0)) return {};
-    return "a consistent filter with this spread needs about " + number(needed.value, 0) +
-           " trials to be shown consistent (" + number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
+    return "a consistent filter with this spread needs about " + trials_text(arm, needed.value) +
+           " to be shown consistent (" + number(needed.low, 0) + " to " + number(needed.high, 0) + ")";
 }
 
 /// `NEES/dim of all is 0.91 and not shown to be too small: 2500 trials would show it if it stays (1500 to 6200)`
-std::string suspicion_text(const Suspicion& suspicion) {
+std::string suspicion_text(const ArmReport& arm, const Suspicion& suspicion) {
     const std::string too = suspicion.about == Subject::bias ? "beyond the margin"
                             : suspicion.what == Fault::optimistic ? "too large"
                                                              : "too small";
     return suspicion.measure + " of " + suspicion.where + " is " + number(suspicion.value, 2) +
-           " and not shown to be " + too + ": " + number(suspicion.trials.value, 0) +
-           " trials would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
+           " and not shown to be " + too + ": " + trials_text(arm, suspicion.trials.value) +
+           " would show it if it stays (" + number(suspicion.trials.low, 0) + " to " +
            number(suspicion.trials.high, 0) + ")";
 }
 
 /// The suspicions, those that need the fewest trials first.
-std::vector<std::string> suspicion_texts(std::vector<Suspicion> suspicions) {
+std::vector<std::string> suspicion_texts(const ArmReport& arm) {
     constexpr std::size_t most = 3;
+    std::vector<Suspicion> suspicions = arm.consistency.suspicions;
     std::sort(suspicions.begin(), suspicions.end(),
               [](const Suspicion& a, const Suspicion& b) { return a.trials.value < b.trials.value; });
     std::vector<std::string> texts;
-    for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i) texts.push_back(suspicion_text(suspicions[i]));
+    for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i)
+        texts.push_back(suspicion_text(arm, suspicions[i]));
     if (suspicions.size() > most)
         texts.push_back(std::to_string(suspicions.size() - most) + " more look wrong and are not shown to be");
     return texts;
@@ -98,12 +108,9 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     const Consistency& verdict = arm.consistency;
     if (arm.evidence.trials == 0) return {"no trial is left that could be judged"};
     if (verdict.verdict != Verdict::undecided) return {};
-    if (arm.evidence.trials == 1)
-        return {arm.evidence.nis.empty() ? "one trial without innovations decides nothing: give more trials"
-                                         : "the innovations of one trial do not decide: give more trials or steps"};
     std::vector<std::string> reasons = verdict.reasons;
-    std::ranges::copy(suspicion_texts(verdict.suspicions), std::back_inserter(reasons));
-    if (const std::string text = needed_text(verdict.trials_needed); !text.empty()) reasons.push_back(text);
+    std::ranges::copy(suspicion_texts(arm), std::back_inserter(reasons));
+    if (const std::string text = needed_text(arm); !text.empty()) reasons.push_back(text);
     return reasons;
 }
 
@@ -141,7 +148,21 @@ bool has_run(const Report& report, const std::string& scenario) {
                        [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
 }
 
+/// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`
+std::string log_text(const ArmReport& arm) {
+    const SegmentEvidence& segments = arm.evidence.segments;
+    const std::string logs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " logs of together ",
+                      text = logs + std::to_string(segments.steps_of_runs) + " steps";
+    if (segments.steps == 0) return text;
+    return text + ", worth about " + std::to_string(segments.run.size()) + " independent runs (segments of " +
+           std::to_string(segments.steps) + " steps)";
+}
+
 std::string trials_text(const Report& report) {
+    if (report.arms.size() == 1)
+        if (const ArmReport& arm = report.arms.front();
+            arm.evidence.segments.count || (arm.trials == 1 && arm.evidence.segments.steps_of_runs > 0))
+            return log_text(arm);
     std::int64_t least = 0, most = 0;
     std::size_t run = 0;
     for (const ArmReport& arm : report.arms) {
@@ -166,8 +187,8 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
         if (auto parts = findings_parts(verdict.findings, what, directions); !parts.empty())
             reasons.push_back({fault_name(what) + " (" + measure + "):", std::move(parts), true});
     };
-    list(Fault::optimistic, arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
-    list(Fault::pessimistic, arm.evidence.trials == 1 ? "NIS/m" : "NEES/dim");
+    list(Fault::optimistic, "NEES/dim");
+    list(Fault::pessimistic, "NEES/dim");
     list(Fault::optimistic, "directions", true);
     list(Fault::pessimistic, "directions", true);
     list(Fault::biased, "mean error/sigma");

@@ -1,4 +1,4 @@
-// The verdict on a single trial, and the cautions beside a verdict.
+// The cautions beside a verdict.
 
 #include "statistics/goodness.hpp"
 #include "statistics/whiteness.hpp"
@@ -14,40 +14,6 @@ Interval interval_of(const Whiteness& lag) {
 }
 
 }  // namespace
-
-/// One trial: its NIS, summed over the steps, is chi-square with as many degrees as it had rows, if the innovations are
-/// white; the factor by which S is off has an exact interval, corrected over the groups of rows. Half of the level is
-/// for these and half for the lags.
-Consistency judge_single_trial(const Evidence& evidence, const Limits& limits) {
-    const double margin = limits.margin;
-    Consistency verdict;
-    verdict.limits = limits;
-    bool all_inside = !evidence.nis.empty(), above = false, below = false;
-    for (const NisEvidence& nis : evidence.nis) {
-        all_inside = all_inside && within(nis.scale95, margin);
-        const Interval band = chi_square_band(nis.degrees, 0.025 / static_cast<double>(evidence.nis.size()));
-        const Interval corrected{nis.ratio / band.high, nis.ratio / band.low};
-        const Side side = side_of(corrected, margin);
-        if (side == Side::inside) continue;
-        (side == Side::above ? above : below) = true;
-        verdict.findings.push_back({Subject::innovations, fault_of(side), "innovations (" + nis.part + ")",
-                                    "over all steps", nis.ratio, corrected, "NIS/m"});
-    }
-    const double lags = static_cast<double>(evidence.whiteness.size()),
-                 quantile = evidence.whiteness.empty() ? 0 : normal_quantile(0.025 / lags);
-    for (const Whiteness& lag : evidence.whiteness) {
-        all_inside = all_inside && lag.known();
-        if (lag.known() && std::abs(lag.scaled) > quantile / std::sqrt(static_cast<double>(lag.count)))
-            verdict.findings.push_back({Subject::whiteness, Fault::correlated, "innovations",
-                                        "lag " + std::to_string(lag.lag), lag.scaled, interval_of(lag),
-                                        "relative correlation"});
-    }
-    if (above && below) verdict.verdict = Verdict::mixed;
-    else if (above) verdict.verdict = Verdict::optimistic;
-    else if (below) verdict.verdict = Verdict::pessimistic;
-    else if (all_inside && verdict.findings.empty()) verdict.verdict = Verdict::consistent;
-    return verdict;
-}
 
 /// Correlations that differ from 0 by significantly more than the margin: with enough trials every filter has some
 /// correlation.

@@ -44,8 +44,8 @@ private:
         const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
         const auto groups = static_cast<int>(evidence_.groups.size());
         const double level = level_of_group(levels::run, place_, groups) / 2;
-        const MeanClaim claim =
-            claim_on_nees(sample, degrees_over_steps(sample, group_.dimension, evidence_.steps), level, margin());
+        const double degrees = degrees_over_steps(sample, group_.dimension, evidence_.steps_together());
+        const MeanClaim claim = claim_on_nees(sample, degrees, level, margin());
         if (claim.above || claim.below)
             judgement_.add(
                 claim.above ? Side::above : Side::below,
@@ -66,8 +66,8 @@ private:
         if (trials_.size() < 2) return {};
         const Tail tail = tail_of(trials_);
         char text[120];
-        std::snprintf(text, sizeof text, " (the 1 %% largest trials carry %.2g %% of it%s", 100 * tail.worst_share,
-                      tail.degrees ? "" : ")");
+        std::snprintf(text, sizeof text, " (the 1 %% largest %s carry %.2g %% of it%s", evidence_.units().c_str(),
+                      100 * tail.worst_share, tail.degrees ? "" : ")");
         std::string all = text;
         if (!tail.degrees) return all;
         std::snprintf(text, sizeof text, "; tails like Student's t with about %.0f degrees of freedom)", *tail.degrees);
@@ -108,13 +108,14 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     for (std::size_t group = 0; group < evidence.groups.size(); ++group) GroupJudge(evidence, group, judgement).judge();
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
+    if (evidence.segments.count) judge_segments(evidence, judgement);
     if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state", false);
     return judgement.consistency(evidence);
 }
 
 /// The verdict on the trials that did not fail.
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
-    if (evidence.trials == 1) return judge_single_trial(evidence, limits);
+    if (evidence.trials == 1 && !evidence.segments.count) return judge_single_run(evidence, limits);
     Consistency verdict = judge_trials(evidence, limits);
     if (evidence.groups.empty() || evidence.trials == 0) return verdict;
     caution_about_whiteness(evidence, verdict);
@@ -171,8 +172,8 @@ Consistency Judgement::consistency(const Evidence& evidence) {
         if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
         verdict.reasons.push_back(text + why);
     };
-    list(unknown_, ": too few trials to show that it is within its margin");
-    list(tails_, ": within its margin, but for trials as large as the largest that were seen");
+    list(unknown_, ": too few " + evidence.units() + " to show that it is within its margin");
+    list(tails_, ": within its margin, but for " + evidence.units() + " as large as the largest that were seen");
     verdict.suspicions = std::move(suspicions_);
     if (more_trials_help_) verdict.trials_needed = trials_needed(evidence, limits_);
     return verdict;

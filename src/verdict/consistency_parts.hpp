@@ -46,8 +46,8 @@ struct Found {
     }
 };
 
-/// The verdict on one trial: its NIS and the whiteness of its innovations.
-Consistency judge_single_trial(const Evidence& evidence, const Limits& limits);
+/// The verdict on one run whose segments do not count: what no correlation of its steps can explain.
+Consistency judge_single_run(const Evidence& evidence, const Limits& limits);
 
 /// Adds the cautions to a verdict.
 void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);

@@ -49,7 +49,7 @@ std::vector<Loading> loadings_of(const Direction& direction, const std::vector<B
 void leave_out_directions(const Evidence& evidence, Judgement& judgement) {
     const int size = evidence.groups.front().dimension;
     std::string& why = judgement.directions.unknown;
-    why = "directions need " + std::to_string(static_cast<int>(direction_trials)) + " trials";
+    why = "directions need " + std::to_string(static_cast<int>(direction_trials)) + " " + evidence.units();
     if (!evidence.moments) why = "directions are not in this file";
     if (size > largest_moment_state)
         why = "directions are computed for states of up to " + std::to_string(largest_moment_state) +
@@ -86,7 +86,7 @@ void accept_state(const Evidence& evidence, const GroupMoments& state, const Fol
     if (sums.trials() < direction_trials)
         return judgement.not_shown(
             "directions need " + std::to_string(static_cast<int>(direction_trials)) +
-                " trials in which every two components are in the state together, and there are " +
+                " " + evidence.units() + " in which every two components are in the state together, and there are " +
                 std::to_string(static_cast<int>(sums.trials())),
             true);
     const DirectionsAccepted accepted = accept_directions(state, sums, limits_of(evidence, judgement));

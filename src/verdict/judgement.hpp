@@ -59,6 +59,9 @@ void judge_directions(const Evidence& evidence, Judgement& judgement);
 /// Mean errors against the margin of the bias, in sigmas.
 void judge_bias(const Evidence& evidence, Judgement& judgement);
 
+/// Withholds `consistent` where segments of runs depend on each other, or runs differ.
+void judge_segments(const Evidence& evidence, Judgement& judgement);
+
 /// How many trials would do [docs/theory/statistics.md, Advice], to two digits; 0 below 30 trials.
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);
 

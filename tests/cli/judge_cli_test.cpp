@@ -191,3 +191,19 @@ TEST_CASE("compare: two records of the same runs are compared trial by trial") {
     CHECK_THAT(here.credence("compare a.h5 short.h5").err, Contains("it has 200 trials, not 300"));
     CHECK_THAT(here.credence("compare a.h5").err, Contains("several records of the same runs"));
 }
+
+TEST_CASE("judge: --segments takes a number of steps, auto or off") {
+    const Workplace here;
+    PlainRecord(7).write(here.path("trials.h5"));
+    for (const char* wrong : {"0", "1", "1.5", "-3", "many", ""}) {
+        const auto refused = here.credence(std::string("judge trials.h5 --quiet --segments='") + wrong + "'");
+        CAPTURE(wrong, refused.err);
+        CHECK(refused.exit_code == 2);
+        CHECK_THAT(refused.err, Contains("--segments"));
+    }
+    for (const char* counted : {"auto", "off", "5"}) {
+        const auto report =
+            here.credence(std::string("judge trials.h5 --quiet --format json --segments ") + counted);
+        CHECK(Json::parse(report.out)[0]["evidence"] == (counted == std::string("5") ? "segments" : "trials"));
+    }
+}

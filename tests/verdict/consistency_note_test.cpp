@@ -103,21 +103,14 @@ TEST_CASE("consistency: a wrong size of S is not taken for correlation") {
     CHECK(wrong.nis.front().ratio == Approx(4).margin(0.1));
 }
 
-TEST_CASE("consistency: the verdict on a single trial uses its innovations") {
+TEST_CASE("consistency: a single trial decides nothing, whatever its innovations say") {
     Evidence evidence = evidence_of_values({1.3});
     evidence.nis = {nis_of(1.01, 0.01)};
     evidence.whiteness = {{1, 1'000'000, 0.001, 0.001, 0.00196, 0.00196}};
-    CHECK(judge(evidence, 0.05).verdict == Verdict::consistent);
-    evidence.whiteness.front().scaled = 0.01;  // ten standard errors
     CHECK(judge(evidence, 0.05).verdict == Verdict::undecided);
-    CHECK(judge(evidence, 0.05).findings.front().what == Fault::correlated);
-    evidence.whiteness.front().scaled = 0;
-    evidence.nis = {nis_of(1.2, 0.01)};
-    CHECK(judge(evidence, 0.05).verdict == Verdict::optimistic);
-    evidence.nis = {nis_of(0.8, 0.01)};
-    CHECK(judge(evidence, 0.05).verdict == Verdict::pessimistic);
-    evidence.nis = {nis_of(1.04, 0.03)};
+    evidence.nis = {nis_of(8, 0.01)};
     CHECK(judge(evidence, 0.05).verdict == Verdict::undecided);
-    evidence.nis.clear();
-    CHECK(judge(evidence, 0.05).verdict == Verdict::undecided);
+    CHECK(judge(evidence, 0.05).reasons.front() == "one trial decides nothing: give more trials");
+    CHECK(judge(evidence_of_values({100}), 0.05).verdict == Verdict::optimistic);  // of any correlation of its steps
+    CHECK(judge(evidence_of_values({1e-9}), 0.05).verdict == Verdict::pessimistic);
 }

@@ -125,6 +125,14 @@ Json arm_json(const Report& report, const ArmReport& arm) {
         json["trials_to_decide"] = needed.value;
         json["trials_to_decide_range"] = {needed.low, needed.high};
     }
+    const SegmentEvidence& segments = arm.evidence.segments;
+    json["evidence"] = arm.evidence.units();
+    if (segments.steps > 0)
+        json["segments"] = {{"count", std::ssize(segments.run)},
+                            {"steps", segments.steps},
+                            {"autocorrelation_time", segments.autocorrelation_time > 0
+                                                         ? Json(segments.autocorrelation_time)
+                                                         : Json()}};
     json["directions"] = directions_json(arm.consistency.directions);
     json["hints"] = arm.consistency.hints;
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};

@@ -24,12 +24,15 @@ std::string fact(const RunFacts& facts, const std::string& name) {
 }
 
 /// The options that give the same verdicts again.
-std::string limits_options(const Limits& limits) {
+std::string options_of(const Report& report) {
+    const Limits& limits = report.limits;
     const Limits usual(limits.margin);
     std::string options = " --margin " + to_text(limits.margin);
     if (limits.failed != usual.failed) options += " --failed " + to_text(limits.failed);
     if (limits.direction != usual.direction) options += " --margin-direction " + to_text(limits.direction);
     if (limits.bias != usual.bias) options += " --bias " + to_text(limits.bias);
+    if (report.segments == segments_off) options += " --segments off";
+    if (report.segments > 0) options += " --segments " + std::to_string(report.segments);
     return options;
 }
 
@@ -77,12 +80,12 @@ Html provenance(const Report& report, const PageOrigin& origin) {
 }
 
 Html reproduction(const Report& report, const PageOrigin& origin) {
-    const std::string file = shell_word(origin.file), limits = limits_options(report.limits);
+    const std::string file = shell_word(origin.file), options = options_of(report);
     Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
-                command(program_name() + " judge " + file + limits + " --format html -o page.html") +
-                command(program_name() + " judge " + file + limits + " --format json");
+                command(program_name() + " judge " + file + options + " --format html -o page.html") +
+                command(program_name() + " judge " + file + options + " --format json");
         return html + "</section>\n"_html;
     }
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
@@ -97,8 +100,8 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
               "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
     html +=
         "<p>This page, and the same with every digit:</p>\n"_html +
-        command(program_name() + " report " + file + limits + " --format html -o page.html") +
-        command(program_name() + " report " + file + limits + " --format json");
+        command(program_name() + " report " + file + options + " --format html -o page.html") +
+        command(program_name() + " report " + file + options + " --format json");
     return html + "</section>\n"_html;
 }
 

@@ -128,6 +128,7 @@ Html distribution_table(const Part& part) {
     Table table(part.scenario.name + ": distribution of the NEES, and credibility",
                     {"arm", "distance from chi-square", "at step", "p over all steps", "NCI", "I²", "of these trials"});
     for (const ArmReport* arm : part.arms) {
+        if (arm->evidence.trials == 1) continue;  // one value at a step has no distribution
         const WorstDistribution worst = worst_distribution(arm->evidence.distribution);
         const CredibilityEvidence& credibility = arm->evidence.credibility;
         if (worst.known == 0 && std::isnan(credibility.nci)) continue;

@@ -85,6 +85,7 @@ std::string innovations_part(const Evidence& evidence) {
 }
 
 std::string distribution_part(const Evidence& evidence) {
+    if (evidence.trials == 1) return "";  // one value at a step has no distribution
     std::string text;
     if (const WorstDistribution worst = worst_distribution(evidence.distribution); worst.known > 0)
         text += "    NEES against chi-square: distance " + number(worst.distance, 4) + " at step " +

@@ -1,0 +1,16 @@
+#pragma once
+// How far the steps of one run depend on each other.
+
+#include <vector>
+
+namespace credence {
+
+/// Integrated autocorrelation time of a series about `mean`, in steps: 1/2 + rho_1 + ... + rho_M, with the first window
+/// M of at least 5 times that [Sokal 1997, section 3]; 1/2 of independent values. Infinite where no window of up to
+/// half of the series is long enough: then it does not decorrelate.
+double autocorrelation_time(const std::vector<double>& values, double mean);
+
+/// The quantile of F with `above` and `below` degrees of freedom above which `p` lies.
+double f_upper_quantile(double p, double above, double below);
+
+}  // namespace credence

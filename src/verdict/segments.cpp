@@ -1,0 +1,179 @@
+// Segments of a few long runs in place of trials: their evidence, and whether they are as independent as they should
+// be.
+
+#include "statistics/autocorrelation.hpp"
+#include "statistics/moments/bias.hpp"
+#include "statistics/moments/trial_moments.hpp"
+#include "verdict/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace credence {
+
+namespace {
+
+constexpr double doubted = 0.01;  ///< the level at which segments count as dependent, shared by all their series
+
+/// One number of each segment, run by run: NEES/dim of a group, or the mean standardised error of a component.
+struct SegmentSeries {
+    std::string name;
+    std::map<std::int64_t, std::map<std::int64_t, double>> values;  ///< by run, then by segment
+
+    double mean(const std::map<std::int64_t, double>& of_run) const {
+        double sum = 0;
+        for (const auto& [segment, value] : of_run) sum += value;
+        return sum / static_cast<double>(of_run.size());
+    }
+};
+
+std::vector<SegmentSeries> series_of(const Evidence& evidence) {
+    std::vector<SegmentSeries> all;
+    const TrialMoments& moments = *evidence.moments;
+    const auto add = [&](const std::string& name, auto value) {
+        SegmentSeries series{name, {}};
+        for (std::size_t i = 0; i < moments.trials(); ++i)
+            if (const double x = value(i); !std::isnan(x))
+                series.values[evidence.segments.run[static_cast<std::size_t>(moments.trial[i])]][moments.trial[i]] = x;
+        all.push_back(std::move(series));
+    };
+    for (int g = 0; g < moments.groups; ++g)
+        add("NEES of " + evidence.groups[static_cast<std::size_t>(g)].name,
+            [&](std::size_t i) { return moments.X(i, g); });
+    for (int j = 0; j < moments.components; ++j)
+        add("errors of " + evidence.bias[static_cast<std::size_t>(j)].component,
+            [&](std::size_t i) { return moments.z(i, j); });
+    return all;
+}
+
+/// Whether one segment is like the next: the correlation of neighbours in a run is shown, at `level`, to be more than
+/// segments of ten autocorrelation times have, which is some 0.05. It makes intervals 10 % too narrow.
+bool neighbours_are_alike(const SegmentSeries& series, double level) {
+    double products = 0, squares = 0, pairs = 0, values = 0, runs = 0;
+    for (const auto& [run, of_run] : series.values) {
+        const double mean = series.mean(of_run);
+        ++runs;
+        for (auto at = of_run.begin(); at != of_run.end(); ++at, ++values) {
+            squares += (at->second - mean) * (at->second - mean);
+            const auto next = std::next(at);
+            if (next == of_run.end() || next->first != at->first + 1) continue;
+            products += (at->second - mean) * (next->second - mean);
+            ++pairs;
+        }
+    }
+    if (!(squares > 0) || pairs < 2) return false;
+    constexpr double allowed = 0.1;
+    // Of independent values about their own mean it is about -1/values of a run.
+    const double correlation = products / pairs / (squares / values) + runs / values;
+    return correlation > allowed + normal_quantile(2 * level) / std::sqrt(pairs);
+}
+
+/// Whether runs differ by more than their segments say.
+bool runs_differ(const SegmentSeries& series, double level) {
+    double all = 0, count = 0;
+    for (const auto& [run, of_run] : series.values)
+        for (const auto& [segment, value] : of_run) all += value, ++count;
+    const double mean = all / count, runs = static_cast<double>(series.values.size());
+    double between = 0, within = 0;
+    for (const auto& [run, of_run] : series.values) {
+        const double of = series.mean(of_run);
+        between += static_cast<double>(of_run.size()) * (of - mean) * (of - mean);
+        for (const auto& [segment, value] : of_run) within += (value - of) * (value - of);
+    }
+    if (runs < 2 || count - runs < 1 || !(within > 0)) return false;
+    return between / (runs - 1) > within / (count - runs) * f_upper_quantile(level, runs - 1, count - runs);
+}
+
+/// Bounds on the mean over the steps of NEES/dimension, for a filter that is right, whatever the correlation of the
+/// steps: P(mean >= c) <= exp(-d/2 (c - 1 - ln c)), likewise below [Chernoff 1952; Jensen's inequality for the mean].
+Interval bounds_at_any_correlation(int dimension, double level) {
+    const double exponent = -2 * std::log(level) / dimension;
+    const auto solve = [&](double inside, double outside) {
+        for (int i = 0; i < 200; ++i) {
+            const double c = (inside + outside) / 2;
+            (c - 1 - std::log(c) < exponent ? inside : outside) = c;
+        }
+        return outside;
+    };
+    return {solve(1, 0), solve(1, 2 * (2 + exponent))};
+}
+
+void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judgement) {
+    const GroupEvidence& group = evidence.groups[g];
+    if (!(group.run.count > 0) || is_rounded(group, judgement.limits())) return;
+    const double level =
+        level_of_group(levels::run, static_cast<int>(g), static_cast<int>(evidence.groups.size())) / 2;
+    const Interval bounds = bounds_at_any_correlation(group.dimension, level);
+    const Interval interval{group.run.mean / bounds.high, group.run.mean / bounds.low};
+    if (const Side side = side_of(interval, judgement.limits().margin); side != Side::inside)
+        judgement.add(side, {Subject::size, Fault{}, group.name, "over all steps", group.run.mean, interval,
+                             "NEES/dim"});
+}
+
+std::string steps_needed(const SegmentEvidence& segments) {
+    return std::to_string(std::int64_t{least_segments} * segments.steps);
+}
+
+}  // namespace
+
+Evidence by_segments(Evidence runs, Evidence segments) {
+    for (std::size_t g = 0; g < runs.groups.size(); ++g) {
+        runs.groups[g].run = segments.groups[g].run;
+        runs.groups[g].accuracy.ratio = segments.groups[g].accuracy.ratio;
+        runs.groups[g].accuracy.ratio_ci95 = segments.groups[g].accuracy.ratio_ci95;
+    }
+    for (std::size_t i = 0; i < runs.charts.size(); ++i) runs.charts[i].run = segments.charts[i].run;
+    for (std::size_t j = 0; j < runs.bias.size(); ++j) runs.bias[j].run = segments.bias[j].run;
+    for (NisEvidence& nis : runs.nis)
+        for (const NisEvidence& of_segments : segments.nis)
+            if (of_segments.part == nis.part) {
+                nis.ratio = of_segments.ratio;
+                nis.ratio95 = of_segments.ratio95;
+            }
+    runs.whiteness = std::move(segments.whiteness);
+    runs.moments = std::move(segments.moments);
+    return runs;
+}
+
+void judge_segments(const Evidence& evidence, Judgement& judgement) {
+    if (!evidence.moments) return;
+    const std::vector<SegmentSeries> all = series_of(evidence);
+    const double level = doubted / static_cast<double>(all.size());
+    for (const SegmentSeries& series : all) {
+        if (neighbours_are_alike(series, level))
+            judgement.not_shown("segments of " + std::to_string(evidence.segments.steps) +
+                                    " steps are not independent: " + series.name + " are alike in one and the next",
+                                false);
+        if (runs_differ(series, level))
+            judgement.not_shown("the runs differ among each other: " + series.name, false);
+    }
+}
+
+Consistency judge_single_run(const Evidence& evidence, const Limits& limits) {
+    Judgement judgement(limits);
+    // Whatever the correlation of the steps, the mean of numbers with variance 1 has a variance of at most 1.
+    const double level = levels::bias / static_cast<double>(std::max<std::size_t>(1, evidence.bias.size())),
+                 most = normal_quantile(level);
+    for (const BiasEvidence& bias : evidence.bias)
+        if (const double z = bias.run.mean; bias.largest_error > rounding_error && std::abs(z) - most > limits.bias)
+            judgement.add_bias({Subject::bias, Fault::biased, bias.component, "over all steps", z,
+                                {z - most, z + most}, "mean error/sigma"});
+    for (std::size_t g = 0; g < evidence.groups.size(); ++g) judge_size_of_run(evidence, g, judgement);
+    const SegmentEvidence& segments = evidence.segments;
+    std::string why = "one trial decides nothing: give more trials";
+    if (segments.steps > 0)
+        why = "this log is worth about " + std::to_string(segments.run.size()) + " independent runs: " +
+              std::to_string(least_segments) + " are needed, some " + steps_needed(segments) + " steps";
+    else if (std::isinf(segments.autocorrelation_time))
+        why = "the errors of this log do not decorrelate, so it is worth one run: what was drawn once, such as the "
+              "start or a map's offset, is seen once";
+    else if (segments.autocorrelation_time > 0)
+        why = "this log is worth about one run: its errors decorrelate over so many steps that " +
+              std::to_string(least_segments) + " independent runs would take some " +
+              std::to_string(std::llround(std::ceil(10 * segments.autocorrelation_time) * least_segments)) + " steps";
+    judgement.not_shown(why, false);
+    return judgement.consistency(evidence);
+}
+
+}  // namespace credence

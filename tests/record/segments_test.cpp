@@ -1,0 +1,193 @@
+// A few long runs are counted by segments [docs/statistics.md, One log].
+
+#include <credence/report.hpp>
+#include <credence/text.hpp>
+
+#include "statistics/autocorrelation.hpp"
+#include "record_support.hpp"
+
+using namespace credence;
+using namespace credence::test;
+
+namespace {
+
+std::vector<double> autoregressive(double correlation, int steps, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> values{normal(random)};
+    const double fresh = std::sqrt(1 - correlation * correlation);
+    while (std::ssize(values) < steps) values.push_back(correlation * values.back() + fresh * normal(random));
+    return values;
+}
+
+/// Runs whose errors have P = 1 in two components, and decorrelate by `correlation` a step.
+DrawnRecord logs(int runs, int steps, double correlation, unsigned seed = 1) {
+    DrawnRecord record(runs, steps, 2, 1);
+    for (int component = 0; component < 2; ++component)
+        for (int run = 0; run < runs; ++run) {
+            const std::vector<double> errors =
+                autoregressive(correlation, steps, seed + 10 * static_cast<unsigned>(run) +
+                                                       static_cast<unsigned>(component));
+            for (int k = 0; k < steps; ++k) {
+                record.error[record.at(run, k)](component) = errors[static_cast<std::size_t>(k)];
+                record.covariance[record.at(run, k)] = Eigen::MatrixXd::Identity(2, 2);
+            }
+        }
+    return record;
+}
+
+Report judged(const DrawnRecord& drawn, int segments = segments_auto, const Limits& limits = {}) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "record.h5";
+    write_file(path, [&](const Handle& root) { write_drawn(root, drawn); });
+    return make_record_report(read_record(path, {}, segments), path, limits);
+}
+
+Consistency verdict_on(const DrawnRecord& drawn) { return judged(drawn).arms.front().consistency; }
+
+}  // namespace
+
+TEST_CASE("segments: the autocorrelation time of an autoregression is that of its formula") {
+    for (const double correlation : {0.0, 0.5, 0.9, 0.98}) {
+        // 1/2 + sum of the powers of the correlation
+        const double expected = 0.5 + correlation / (1 - correlation);
+        CAPTURE(correlation);
+        CHECK(autocorrelation_time(autoregressive(correlation, 400000, 1), 0) == Approx(expected).epsilon(0.06));
+    }
+    CHECK(autocorrelation_time({3, 3, 3, 3}, 3) == 0.5);
+    CHECK(autocorrelation_time({}, 0) == 0.5);
+    CHECK(autocorrelation_time({1, -1, 1, -1, 1, -1, 1, -1}, 0) == 0.5);
+    std::vector<double> offset = autoregressive(0, 1000, 1);
+    for (double& value : offset) value += 1;
+    CHECK(std::isinf(autocorrelation_time(offset, 0)));
+    CHECK(autocorrelation_time(offset, 1) < 1);
+    CHECK(f_upper_quantile(0.01, 3, 20) == Approx(4.938193).epsilon(1e-6));  // scipy.stats.f.isf(0.01, 3, 20)
+}
+
+TEST_CASE("segments: a log is judged as a record whose trials are its segments") {
+    const DrawnRecord log = logs(1, 1000, 0.3);
+    DrawnRecord parts = log;
+    parts.trials = 50;
+    parts.steps = 20;
+    const Report by_segment = judged(log, 20), by_trial = judged(parts);
+    const ArmReport &segments = by_segment.arms.front(), &trials = by_trial.arms.front();
+    CHECK(segments.evidence.segments.count);
+    CHECK(segments.evidence.units() == "segments");
+    CHECK(!trials.evidence.segments.count);
+    const auto same = [](const Moments& a, const Moments& b) {
+        CHECK(a.count == b.count);
+        CHECK(a.mean == b.mean);
+        CHECK(a.standard_error == b.standard_error);
+    };
+    for (std::size_t g = 0; g < trials.evidence.groups.size(); ++g)
+        same(segments.evidence.groups[g].run, trials.evidence.groups[g].run);
+    for (std::size_t j = 0; j < trials.evidence.bias.size(); ++j)
+        same(segments.evidence.bias[j].run, trials.evidence.bias[j].run);
+    CHECK(segments.consistency.trials_needed.value == trials.consistency.trials_needed.value);
+    CHECK(segments.evidence.nis.front().ratio95.low == trials.evidence.nis.front().ratio95.low);
+    CHECK(segments.evidence.whiteness.front().scaled == trials.evidence.whiteness.front().scaled);
+    for (const char* name : {"nees_ratio", "nis_ratio"}) {
+        const auto summary_in = [&](const ArmReport& arm) {
+            for (const ColumnReport& column : arm.columns)
+                if (column.name == name) return column.summary;
+            throw std::logic_error(name);
+        };
+        CAPTURE(name);
+        // The column's NIS is the mean over the trials, that of segments the ratio of sums: the rows are as many here.
+        CHECK(summary_in(segments).mean == Approx(summary_in(trials).mean).epsilon(1e-12));
+        CHECK(summary_in(segments).ci95.low == Approx(summary_in(trials).ci95.low).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("segments: their number follows from the autocorrelation, the number of runs and what is asked") {
+    const auto segments = [](const DrawnRecord& drawn, int asked = segments_auto) {
+        return judged(drawn, asked).arms.front().evidence.segments;
+    };
+    const SegmentEvidence found = segments(logs(1, 4000, 0.5));
+    CHECK(found.count);
+    CHECK(found.autocorrelation_time == Approx(1.5).epsilon(0.35));
+    CHECK(found.steps == std::ceil(10 * found.autocorrelation_time));
+    CHECK(std::ssize(found.run) == 4000 / found.steps);
+    CHECK(segments(logs(3, 500, 0), 30).run.size() == 3 * (500 / 30));
+    CHECK(!segments(logs(1, 500, 0), 30).count);  // 16 are fewer than 20
+    CHECK(!segments(logs(1, 4000, 0.5), segments_off).count);
+    CHECK(segments(logs(20, 100, 0)).run.empty());  // as many runs are trials
+    CHECK(segments(logs(20, 100, 0), 10).run.size() == 200);
+    CHECK(segments(logs(1, 200, 0.99)).run.empty());
+}
+
+TEST_CASE("segments: a long gap ends one, and those without half of their steps are left out") {
+    DrawnRecord log = logs(1, 1000, 0);
+    const auto hide = [&](int from, int to) {
+        for (int k = from; k < to; ++k)
+            for (int component = 0; component < 2; ++component) log.hide(0, k, component);
+    };
+    hide(30, 90);    // segments of 20 begin at 0 and 20, of which the second has 10 steps of 20; the next at 90
+    hide(995, 1000); // the last 5 steps: from 90 on there are 45 segments, the last of which ends at 990
+    const SegmentEvidence found = judged(log, 20).arms.front().evidence.segments;
+    CHECK(found.steps_of_runs == 1000 - 60 - 5);
+    CHECK(found.run.size() == 1 + 45);
+    CHECK(found.count);
+}
+
+TEST_CASE("segments: a covariance that is too small or too large is found in one log, and a right one is not refuted") {
+    for (const double factor : {0.5, 1.0, 2.0}) {
+        DrawnRecord log = logs(1, 6000, 0.5);
+        for (Eigen::MatrixXd& P : log.covariance) P *= factor;
+        const Consistency found = verdict_on(log);
+        CAPTURE(factor);
+        CHECK(found.verdict == (factor < 1 ? Verdict::optimistic : factor > 1 ? Verdict::pessimistic
+                                                                              : Verdict::undecided));
+        CHECK(found.findings.empty() == (factor == 1));
+    }
+    const Report within = judged(logs(1, 60000, 0.3), segments_auto, 0.2);
+    CAPTURE(joined(within.arms.front().consistency.reasons, "; "));
+    CHECK(within.arms.front().consistency.verdict == Verdict::consistent);
+}
+
+TEST_CASE("segments: an error that does not decorrelate is worth one run, and found if it is beyond P") {
+    const auto shifted = [](double sigmas) {
+        DrawnRecord log = logs(1, 3000, 0.5);
+        for (Eigen::VectorXd& error : log.error) error(0) += sigmas;
+        return verdict_on(log);
+    };
+    const Consistency once = shifted(1.5);
+    CHECK(once.verdict == Verdict::undecided);
+    CHECK_THAT(once.reasons.front(), Catch::Contains("do not decorrelate"));
+    const Consistency beyond = shifted(6);
+    CHECK(beyond.verdict == Verdict::optimistic);
+    CHECK(std::ranges::any_of(beyond.findings, [](const Finding& finding) {
+        return finding.about == Subject::bias && finding.where == "x0" && std::abs(finding.value - 6) < 0.3;
+    }));
+    CHECK(shifted(0.3).verdict == Verdict::optimistic);  // seen in every segment
+}
+
+TEST_CASE("segments: runs that differ, and segments that are alike, withhold the verdict") {
+    constexpr double wide = 0.3;
+    const auto reasons = [&](const DrawnRecord& drawn, int asked) {
+        return joined(judged(drawn, asked, Limits(wide)).arms.front().consistency.reasons, "; ");
+    };
+    DrawnRecord several = logs(4, 8000, 0.2);
+    CHECK(judged(several, 50, Limits(wide)).arms.front().consistency.verdict == Verdict::consistent);
+    for (int run = 0; run < 4; ++run)
+        for (int k = 0; k < 8000; ++k)
+            several.error[several.at(run, k)] *= run % 2 == 0 ? 1.05 : 0.95;
+    CHECK_THAT(reasons(several, 50), Catch::Contains("the runs differ among each other: NEES of all"));
+    CHECK_THAT(reasons(logs(1, 20000, 0.95), 10), Catch::Contains("segments of 10 steps are not independent"));
+}
+
+TEST_CASE("segments: a short log decides nothing but what no correlation explains, and says what it is worth") {
+    const Report report = judged(logs(1, 100, 0.5));
+    CHECK(report.arms.front().consistency.verdict == Verdict::undecided);
+    CHECK_THAT(report_html(judged(logs(1, 1000, 0.5), 25), {"log.h5", {}, ""}),
+               Catch::Contains("credence judge log.h5 --margin 0.05 --segments 25 --format html"));
+    CHECK_THAT(report_text(report), Catch::Contains("one log of 100 steps, worth about") &&
+                                        Catch::Contains("independent runs: 20 are needed, some"));
+    DrawnRecord wrong = logs(1, 100, 0.5);
+    for (Eigen::MatrixXd& P : wrong.covariance) P *= 0.05;
+    const Consistency found = verdict_on(wrong);
+    CHECK(found.verdict == Verdict::optimistic);
+    CHECK(found.findings.front().interval.low > 1.05);
+    for (Eigen::MatrixXd& P : wrong.covariance) P *= 20 * 300;
+    CHECK(verdict_on(wrong).verdict == Verdict::pessimistic);
+}
