@@ -28,11 +28,11 @@ const Command& judge_command() {
         {margin_option(),
          margin_direction_option(),
          bias_option(),
-         failed_option("the verdict is `failed`"),
-         format_option({"text", "json", "csv", "html"}),
          {"segments", "STEPS",
           "count few long runs by segments of so many steps; off; or auto (the default): ten times the steps over "
           "which errors decorrelate, for fewer than 20 runs"},
+         failed_option("the verdict is `failed`"),
+         format_option({"text", "json", "csv", "html"}),
          {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output"),
