@@ -5,8 +5,8 @@ time, shared by all cores.
 
     /usr/bin/python3 experiments/verdict/logs.py [LOGS]      LOGS of each kind, 100 by default
 
-Errors of four components are autoregressions with P = 1, of innovations drawn from `DRAWS`, so that they decorrelate over
-`time` steps; in logs that stop and go, errors and sigma are a fifth as large in every second hundred of steps."""
+Errors of four components are autoregressions with P = 1, of innovations drawn from `DRAWS`, with the autocorrelation
+`time`; in logs that stop and go, errors and sigma are a fifth as large in every second hundred of steps."""
 
 import json
 import os
@@ -69,7 +69,8 @@ def main():
                                 for factor in (1, FACTOR))
                 shares = [100 * sum(found for _, found in some) / logs for some in (right, wrong)]
                 segments = np.median([count for count, _ in right])
-                print(f"| {kind} | {time} | {steps:,} | {segments:.0f} | {shares[0]:.0f} % | {shares[1]:.0f} % |", flush=True)
+                print(f"| {kind} | {time} | {steps:,} | {segments:.0f} | {shares[0]:.0f} % | {shares[1]:.0f} % |",
+                      flush=True)
 
 
 if __name__ == "__main__":
