@@ -134,6 +134,11 @@ struct SegmentEvidence {
     double autocorrelation_time = 0;           ///< in steps; infinite where errors do not decorrelate, 0: not computed
     std::int64_t steps_of_runs = 0;            ///< of all runs that did not fail
     std::vector<std::int64_t> run;             ///< [segments] that each is of
+
+    /// `55 independent runs`
+    std::string worth() const {
+        return std::to_string(run.size()) + (run.size() == 1 ? " independent run" : " independent runs");
+    }
 };
 
 struct Evidence {

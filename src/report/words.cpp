@@ -154,8 +154,7 @@ std::string log_text(const ArmReport& arm) {
     const std::string logs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " logs of together ",
                       text = logs + std::to_string(segments.steps_of_runs) + " steps";
     if (segments.steps == 0) return text;
-    return text + ", worth about " + std::to_string(segments.run.size()) + " independent runs (segments of " +
-           std::to_string(segments.steps) + " steps)";
+    return text + ", worth about " + segments.worth() + " (segments of " + std::to_string(segments.steps) + " steps)";
 }
 
 std::string trials_text(const Report& report) {

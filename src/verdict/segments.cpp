@@ -163,8 +163,8 @@ Consistency judge_single_run(const Evidence& evidence, const Limits& limits) {
     const SegmentEvidence& segments = evidence.segments;
     std::string why = "one trial decides nothing: give more trials";
     if (segments.steps > 0)
-        why = "this log is worth about " + std::to_string(segments.run.size()) + " independent runs: " +
-              std::to_string(least_segments) + " are needed, some " + steps_needed(segments) + " steps";
+        why = "this log is worth about " + segments.worth() + ": " + std::to_string(least_segments) +
+              " are needed, some " + steps_needed(segments) + " steps";
     else if (std::isinf(segments.autocorrelation_time))
         why = "the errors of this log do not decorrelate, so it is worth one run: what was drawn once, such as the "
               "start or a map's offset, is seen once";
