@@ -38,7 +38,7 @@ expect 'json' credence report --format = j
 expect 'csv html json text' credence report --format =
 expect '--failed' credence report --format json --f
 expect '--seed --set' credence run --set noise.heading = 1 --se
-expect consistent credence judge record.h5 --require ''
+expect 'consistent no-finding' credence judge record.h5 --require ''
 expect '' credence run --trials ''
 expect 'sub world.ini' credence run ''
 expect 'sub world.ini' credence run --quiet ''

@@ -131,7 +131,8 @@ inline constexpr int least_segments = 20;
 struct SegmentEvidence {
     bool count = false;
     int steps = 0;                             ///< of a segment; 0: there are none
-    double autocorrelation_time = 0;           ///< in steps; infinite where errors do not decorrelate, 0: not computed
+    /// The longest of any run, in steps: infinite where its errors do not decorrelate, 0 where it was not computed.
+    double autocorrelation_time = 0;
     std::int64_t steps_of_runs = 0;            ///< of all runs that did not fail
     std::vector<std::int64_t> run;             ///< [segments] that each is of
 

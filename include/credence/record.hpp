@@ -3,6 +3,7 @@
 // [docs/statistics.md]. It is converted to the same results as those of a run, so that report and verdict treat both
 // alike.
 
+#include <credence/evidence.hpp>
 #include <credence/detail/progress.hpp>
 #include <credence/detail/results.hpp>
 
@@ -41,15 +42,9 @@ inline constexpr int segments_auto = -1, segments_off = 0;
 
 /// Segments of the runs of a record that did not fail [docs/statistics.md, One log].
 struct RecordSegments {
-    int asked = segments_auto;                 ///< as given to `read_record`
-    std::int64_t runs = 0, steps_of_runs = 0;  ///< and the steps that these have
-    int steps = 0;                             ///< of a segment; 0: there are none
-    /// The longest integrated autocorrelation time of any run, in steps: infinite where its errors do not decorrelate,
-    /// 0 where it was not computed.
-    double autocorrelation_time = 0;
-    std::vector<std::int64_t> run;             ///< [segments] that each is of
-    /// Those of segments in place of trials; null for fewer than `least_segments`, and where runs are trials.
-    std::shared_ptr<const ScenarioResults> results;
+    int asked = segments_auto;  ///< as given to `read_record`
+    SegmentEvidence found{};
+    std::shared_ptr<const ScenarioResults> results{};  ///< of segments in place of trials, if they count; else null
 };
 
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and

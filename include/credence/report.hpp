@@ -100,7 +100,11 @@ struct PageOrigin {
 /// One self-contained page: it loads nothing and runs no scripts. The same bytes for the same report and origin.
 std::string report_html(const Report& report, const PageOrigin& origin);
 
-/// Throws Failure naming the arms that are not `consistent`.
-void require_consistent(const Report& report);
+/// What a gate asks of every arm: that it is shown to be `consistent`, or that it is not refuted, so that `undecided`
+/// passes.
+enum class Requirement { consistent, no_finding };
+
+/// Throws Failure naming the arms that do not meet it. An arm without a trial that can be judged meets neither.
+void require(const Report& report, Requirement requirement);
 
 }  // namespace credence

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from credence import _core
 from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
@@ -230,21 +230,22 @@ def judge(
         return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 
 
-P = ParamSpec("P")
-
-
-def _with_arguments_of(_: Callable[P, object]) -> Callable[[Callable[..., None]], Callable[P, None]]:
-    """Let type checkers know that a function takes the arguments of another."""
-    return lambda function: function
-
-
-@_with_arguments_of(judge)
-def assert_consistent(*arguments: Any, **named: Any) -> None:
-    """Raise AssertionError with the text of the report unless the verdict is ``consistent``.
+def assert_consistent(*arguments: Any, within: float | str | None = None, **named: Any) -> None:
+    """Raise AssertionError with the text of the report if the filter is refuted.
 
     It takes the arguments of `judge`.
+
+    Parameters
+    ----------
+    within : float or str
+        The margin within which the filter must be shown to be ``consistent``, which takes some hundreds of runs. By
+        default ``undecided`` passes: fifty runs that speak against nothing are no proof.
     """
     __tracebackhide__ = True  # pytest then shows the line that asserts
+    if within is not None:
+        named["margin"] = within
     verdict = judge(*arguments, **named)
-    if not verdict.is_consistent:
-        raise AssertionError(f"the filter is not shown to be consistent\n\n{verdict}")
+    if verdict.verdict not in ("consistent", "undecided"):
+        raise AssertionError(f"the filter is not consistent\n\n{verdict}")
+    if within is not None and not verdict.is_consistent:
+        raise AssertionError(f"the filter is not shown to be consistent within {within}\n\n{verdict}")

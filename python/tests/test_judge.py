@@ -194,6 +194,16 @@ def test_assert_consistent_says_why():
     assert credence.judge(**optimistic).verdict == "optimistic"
 
 
+def test_assert_consistent_asks_for_a_proof_within_a_margin():
+    errors, covariances = np.random.default_rng(4).normal(size=(50, 20, 2)), np.broadcast_to(np.eye(2), (50, 20, 2, 2))
+    assert credence.judge(errors, covariances).verdict == "undecided"
+    credence.assert_consistent(errors, covariances)
+    with pytest.raises(AssertionError, match="not shown to be consistent within 10%\n\n"):
+        credence.assert_consistent(errors, covariances, within="10%")
+    many = np.random.default_rng(4).normal(size=(4000, 3, 2))
+    credence.assert_consistent(many, np.broadcast_to(np.eye(2), (4000, 3, 2, 2)), within=0.1)
+
+
 def test_an_error_in_progress_ends_the_call():
     class Stop(Exception):
         pass

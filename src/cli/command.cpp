@@ -284,6 +284,12 @@ Option bias_option() {
     return {"bias", "SIGMAS", "a mean error of a component within this many of its sigmas counts (default 0.1)"};
 }
 
+Option require_option() {
+    return {"require", "VERDICT",
+            "consistent: exit with 1 unless all are shown to be; no-finding: unless none is refuted", false,
+            {"consistent", "no-finding"}};
+}
+
 Option failed_option(const std::string& what) {
     return {"failed", "SHARE", "where more than this share of the trials failed, " + what + " (default 1%)"};
 }

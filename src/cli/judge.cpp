@@ -24,7 +24,8 @@ const Command& judge_command() {
         "range\n"
         "not included): parts of the state that are judged by themselves. A component is NaN where it is not in the\n"
         "state. docs/judge.md has the rest, such as covariances or NEES of groups alone, and poses on manifolds.\n"
-        "With --require consistent the exit code is 1 unless the verdict is `consistent`.\n",
+        "With --require consistent the exit code is 1 unless the verdict is `consistent`; with --require no-finding it "
+        "is 1\nif the filter is refuted: `undecided` passes.\n",
         {margin_option(),
          margin_direction_option(),
          bias_option(),
@@ -33,7 +34,7 @@ const Command& judge_command() {
           "which errors decorrelate, for fewer than 20 runs"},
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
-         {"require", "VERDICT", "consistent: exit with 1 unless it is", false, {"consistent"}},
+         require_option(),
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output"),
          overwrite_option()}};

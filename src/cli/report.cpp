@@ -15,13 +15,14 @@ const Command& report_command() {
         "report",
         "FILE.h5 [options]",
         "say what a results file proves, with confidence",
-        "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`.\n",
+        "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`; with --require\n"
+        "no-finding it is 1 if an arm is refuted: `undecided` passes.\n",
         {margin_option(),
          margin_direction_option(),
          bias_option(),
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
-         {"require", "VERDICT", "consistent: exit with 1 unless every arm is", false, {"consistent"}},
+         require_option(),
          output_option("write there, not to the standard output"),
          overwrite_option()}};
     return command;
@@ -59,7 +60,8 @@ StoredStudy reported_study(const std::string& path) {
 int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
                 const RunFacts& run) {
     write_output(parsed, rendered(report, request.format, path, run));
-    if (parsed.has("require")) require_consistent(report);
+    if (parsed.has("require"))
+        require(report, parsed.choice("require") == "consistent" ? Requirement::consistent : Requirement::no_finding);
     return 0;
 }
 

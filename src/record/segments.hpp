@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace credence {
@@ -18,7 +19,7 @@ public:
     SegmentPlanner(const RecordShape& shape, int asked);
 
     /// Whether a run's series are wanted.
-    bool wants_series() const { return asked_ == segments_auto && few_runs_; }
+    bool wants_series() const { return wanted_ && asked_ == segments_auto; }
     /// A run that did not fail, with the steps that exist, in order.
     void add(std::int64_t run, const std::vector<std::size_t>& present);
     /// A series of that run, whose autocorrelation is taken about `mean`.
@@ -28,16 +29,14 @@ public:
     RecordSegments finish(const RecordReader& reader, const std::string& name);
 
 private:
-    void cut_runs();
+    void cut(std::int64_t run, const std::vector<std::size_t>& present);
     ScenarioResults results(const RecordReader& reader, const std::string& name) const;
 
     int asked_;
-    bool few_runs_;
-    double time_ = 0;
-    std::vector<std::int64_t> runs_;
-    std::vector<std::vector<std::size_t>> present_;  ///< [runs]
-    RecordSegments found_;
-    std::vector<int> first_, declared_;              ///< [segments] the first step, and how many up to its last one
+    bool wanted_;
+    SegmentEvidence found_;
+    std::vector<std::pair<std::int64_t, std::vector<std::size_t>>> uncut_;  ///< runs, while the length is not known
+    std::vector<int> first_, declared_;  ///< [segments] the first step, and how many up to its last one
 };
 
 }  // namespace credence

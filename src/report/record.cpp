@@ -53,12 +53,11 @@ bool is_too_large(const Finding& finding) {
 
 /// That of its runs, and of their segments if these count.
 Evidence evidence_of(const Record& record) {
-    const RecordSegments& found = record.segments;
     Evidence evidence = evidence_of(record.results, record.results.arms.front());
-    evidence.segments = {found.results != nullptr, found.steps, found.autocorrelation_time, found.steps_of_runs,
-                         found.run};
+    evidence.segments = record.segments.found;
     if (!evidence.segments.count) return evidence;
-    return by_segments(std::move(evidence), evidence_of(*found.results, found.results->arms.front()));
+    const ScenarioResults& segments = *record.segments.results;
+    return by_segments(std::move(evidence), evidence_of(segments, segments.arms.front()));
 }
 
 /// Gives the ratios of the whole record the intervals of its segments.

@@ -137,12 +137,17 @@ Report together(std::vector<Report> reports) {
     return all;
 }
 
-void require_consistent(const Report& report) {
+void require(const Report& report, Requirement requirement) {
     std::vector<std::string> others;
-    for (const ArmReport& arm : report.arms)
-        if (arm.consistency.verdict != Verdict::consistent)
+    const bool proof = requirement == Requirement::consistent;
+    for (const ArmReport& arm : report.arms) {
+        const bool open = arm.consistency.verdict == Verdict::undecided && arm.evidence.trials > 0 && !proof;
+        if (arm.consistency.verdict != Verdict::consistent && !open)
             others.push_back(arm.scenario + "/" + arm.arm + " " + verdict_clause(arm));
-    if (!others.empty()) throw Failure("required consistent, but " + joined(others) + ".");
+    }
+    if (!others.empty())
+        throw Failure(std::string("required ") + (proof ? "consistent" : "no finding") + ", but " + joined(others) +
+                      ".");
 }
 
 }  // namespace credence

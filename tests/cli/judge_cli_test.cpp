@@ -207,3 +207,25 @@ TEST_CASE("judge: --segments takes a number of steps, auto or off") {
         CHECK(Json::parse(report.out)[0]["evidence"] == (counted == std::string("5") ? "segments" : "trials"));
     }
 }
+
+TEST_CASE("judge: --require no-finding passes on what is not refuted, and fails on what is, or cannot be judged") {
+    const Workplace here;
+    PlainRecord record(7);
+    record.write(here.path("right.h5"));
+    for (double& P : record.covariance) P /= 2;
+    record.write(here.path("wrong.h5"));
+    write_correlated(here.path("few.h5"), 0, 1, 30);
+    const auto code = [&](const std::string& name, const std::string& required) {
+        return here.credence("judge " + name + ".h5 --quiet --require " + required).exit_code;
+    };
+    CHECK(code("right", "consistent") == 0);
+    CHECK(code("right", "no-finding") == 0);
+    CHECK(code("few", "consistent") == 1);
+    CHECK(code("few", "no-finding") == 0);
+    CHECK(code("wrong", "no-finding") == 1);
+    CHECK_THAT(here.credence("judge wrong.h5 --quiet --require no-finding").err,
+               Contains("required no finding, but wrong/record is optimistic."));
+    std::fill(record.covariance.begin(), record.covariance.end(), 0);
+    record.write(here.path("failed.h5"));
+    CHECK(code("failed", "no-finding") == 1);
+}

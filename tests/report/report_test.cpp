@@ -127,8 +127,8 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
 
 TEST_CASE("report: requiring consistency names the arms that are not") {
     const Report report = make_report(small_study(1, 300, 1), 0.05);
-    CHECK_THROWS_WITH(require_consistent(report), Contains("heading-straight/fixed.ekf is "));
+    CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf is "));
     Report none = report;
     none.arms.clear();
-    CHECK_NOTHROW(require_consistent(none));
+    CHECK_NOTHROW(require(none, Requirement::consistent));
 }

@@ -220,7 +220,7 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
     CHECK_THAT(page, Contains("<span class=\"badge failed\">") &&
                          Contains("3 of 100 trials failed (2 of them diverged)") &&
                          Contains(" trials failed, <data value=\"2\">2</data> of them diverged"));
-    CHECK_THROWS_WITH(require_consistent(report), Contains("heading-straight/fixed.ekf failed, "));
+    CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf failed, "));
 }
 
 TEST_CASE("failed: the program's gate, its share and its refusals") {

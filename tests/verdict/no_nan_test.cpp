@@ -156,7 +156,7 @@ TEST_CASE("report: an arm that is not run yet is said to be so, in every form") 
         const std::string page = report_html(report, {"r.h5", {}, "test"});
         CHECK_THAT(page, Contains("2 not run yet.") && Contains("</span> not run yet</span>") &&
                              !Contains("no trial is left"));
-        CHECK_THROWS_WITH(require_consistent(report), Contains("translation-circle/greedy.kf is not run yet"));
+        CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("translation-circle/greedy.kf is not run yet"));
 
         const CompareReport compared = compare_studies({{"r.h5", study}}, std::nullopt);
         CHECK(compared.pairs.back().conclusion == Conclusion::not_run);
