@@ -21,7 +21,7 @@ def test_the_notebook_comes_to_both_verdicts(tmp_path):
     said = ["".join(output.get("text", "") for output in cell.get("outputs", [])) for cell in notebook.cells]
     assert re.search(r"right/record +consistent ", said[3])
     assert re.search(r"wrong/record +optimistic ", said[4])
-    assert said[5].startswith("AssertionError: the filter is not shown to be consistent")
+    assert said[5].startswith("AssertionError: the filter is not consistent")
     shown = [output["data"] for cell in notebook.cells for output in cell.get("outputs", []) if "data" in output]
     assert "circle" in shown[0]["text/html"]
     assert "image/png" in shown[1]
