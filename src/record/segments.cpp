@@ -14,14 +14,25 @@ SegmentPlanner::SegmentPlanner(const RecordShape& shape, int asked)
     if (asked > 0) found_.steps = asked;
 }
 
-void SegmentPlanner::add(std::int64_t run, const std::vector<std::size_t>& present) {
+/// The autocorrelation of NEES is about its own mean, since P may have the wrong size; that of a standardised error
+/// about 0, the mean of a filter that is right: an offset that was drawn once does not decorrelate.
+void SegmentPlanner::add(std::int64_t run, const std::vector<std::size_t>& present,
+                         const std::vector<Series>& all_series,
+                         const std::function<double(std::size_t f, std::size_t k)>& value) {
     found_.steps_of_runs += std::ssize(present);
-    if (wants_series()) uncut_.emplace_back(run, present);
-    else if (wanted_) cut(run, present);
-}
-
-void SegmentPlanner::add_series(const std::vector<double>& values, double mean) {
-    found_.autocorrelation_time = std::max(found_.autocorrelation_time, autocorrelation_time(values, mean));
+    if (wanted_ && !measures()) cut(run, present);
+    if (!measures()) return;
+    uncut_.emplace_back(run, present);
+    for (std::size_t f = 0; f < all_series.size(); ++f) {
+        const SeriesRole role = all_series[f].role;
+        if (role != SeriesRole::nees && role != SeriesRole::standardised_error) continue;
+        std::vector<double> known;
+        double sum = 0;
+        for (const std::size_t k : present)
+            if (const double one = value(f, k); !std::isnan(one)) known.push_back(one), sum += one;
+        const double mean = role == SeriesRole::nees ? sum / static_cast<double>(known.size()) : 0;
+        found_.autocorrelation_time = std::max(found_.autocorrelation_time, autocorrelation_time(known, mean));
+    }
 }
 
 /// A segment begins with a step that exists, so that a long gap ends one, and is left out where it lacks half of its
@@ -40,9 +51,8 @@ void SegmentPlanner::cut(std::int64_t run, const std::vector<std::size_t>& prese
 }
 
 RecordSegments SegmentPlanner::finish(const RecordReader& reader, const std::string& name) {
-    constexpr double times = 10;  // with fewer, intervals of few segments are too narrow
-    const double length = std::ceil(times * found_.autocorrelation_time);
-    if (wants_series() && length > 0 && length <= reader.shape().steps) {
+    const double length = independent_steps(found_.autocorrelation_time);
+    if (measures() && length > 0 && length <= reader.shape().steps) {
         found_.steps = static_cast<int>(length);
         for (const auto& [run, present] : uncut_) cut(run, present);
     }

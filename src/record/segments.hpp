@@ -18,17 +18,16 @@ public:
     /// `asked` steps in a segment, segments_auto or segments_off.
     SegmentPlanner(const RecordShape& shape, int asked);
 
-    /// Whether a run's series are wanted.
-    bool wants_series() const { return wanted_ && asked_ == segments_auto; }
-    /// A run that did not fail, with the steps that exist, in order.
-    void add(std::int64_t run, const std::vector<std::size_t>& present);
-    /// A series of that run, whose autocorrelation is taken about `mean`.
-    void add_series(const std::vector<double>& values, double mean);
+    /// A run that did not fail, with the steps that exist, in order, and value(f, k) of its series at these.
+    void add(std::int64_t run, const std::vector<std::size_t>& present, const std::vector<Series>& all_series,
+             const std::function<double(std::size_t f, std::size_t k)>& value);
 
     /// The segments, and their results if they count. Reads the record again.
     RecordSegments finish(const RecordReader& reader, const std::string& name);
 
 private:
+    /// Whether the length of segments follows from the runs.
+    bool measures() const { return wanted_ && asked_ == segments_auto; }
     void cut(std::int64_t run, const std::vector<std::size_t>& present);
     ScenarioResults results(const RecordReader& reader, const std::string& name) const;
 

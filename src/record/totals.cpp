@@ -168,7 +168,9 @@ void RecordTotals::end_trial(std::int64_t trial) {
     if (!failed(status_)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
-        if (planner_ != nullptr) plan_segments(trial);
+        if (planner_ != nullptr)
+            planner_->add(trial, present_, all_series_.list,
+                          [this](std::size_t f, std::size_t k) { return series(f, k); });
     }
     if (!failed(status_)) return;
     if (trial >= record_.results.detailed()) return;
@@ -178,22 +180,6 @@ void RecordTotals::end_trial(std::int64_t trial) {
     };
     forget(arm().nees, size(shape_.steps));
     forget(arm().errors, size(shape_.steps) * size(shape_.n));
-}
-
-/// The autocorrelation of NEES is about its own mean, since P may have the wrong size; that of a standardised error
-/// about 0, the mean of a filter that is right: an offset that was drawn once does not decorrelate.
-void RecordTotals::plan_segments(std::int64_t trial) {
-    planner_->add(trial, present_);
-    if (!planner_->wants_series()) return;
-    for (std::size_t f = 0; f < all_series_.list.size(); ++f) {
-        const SeriesRole role = all_series_.list[f].role;
-        if (role != SeriesRole::nees && role != SeriesRole::standardised_error) continue;
-        std::vector<double> values;
-        double sum = 0;
-        for (const std::size_t k : present_)
-            if (const double value = series(f, k); !std::isnan(value)) values.push_back(value), sum += value;
-        planner_->add_series(values, role == SeriesRole::nees ? sum / static_cast<double>(values.size()) : 0);
-    }
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {

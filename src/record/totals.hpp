@@ -52,7 +52,6 @@ private:
     void set_dimension(std::size_t k);
     void add_rounding(std::size_t k);
     void finish_rounding();
-    void plan_segments(std::int64_t trial);
     double nees_at(std::size_t k);
     const double* bounds(std::size_t f, std::size_t k);
 

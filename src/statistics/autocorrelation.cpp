@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -38,6 +39,8 @@ double autocorrelation_time(const std::vector<double>& values, double mean) {
     }
     return std::numeric_limits<double>::infinity();
 }
+
+double independent_steps(double autocorrelation_time) { return std::ceil(10 * autocorrelation_time); }
 
 double f_upper_quantile(double p, double above, double below) {
     return quantile(complement(boost::math::fisher_f(above, below), p));

@@ -10,6 +10,10 @@ namespace credence {
 /// half of the series is long enough: then it does not decorrelate.
 double autocorrelation_time(const std::vector<double>& values, double mean);
 
+/// Steps of a part of a run that is nearly independent of the next: ten times that. With fewer, intervals of few parts
+/// are too narrow.
+double independent_steps(double autocorrelation_time);
+
 /// The quantile of F with `above` and `below` degrees of freedom above which `p` lies.
 double f_upper_quantile(double p, double above, double below);
 

@@ -111,9 +111,8 @@ void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judge
                              "NEES/dim"});
 }
 
-std::string steps_needed(const SegmentEvidence& segments) {
-    return std::to_string(std::int64_t{least_segments} * segments.steps);
-}
+/// Of segments of that length.
+std::string steps_needed(double length) { return std::to_string(std::llround(least_segments * length)); }
 
 }  // namespace
 
@@ -164,14 +163,14 @@ Consistency judge_single_run(const Evidence& evidence, const Limits& limits) {
     std::string why = "one trial decides nothing: give more trials";
     if (segments.steps > 0)
         why = "this log is worth about " + segments.worth() + ": " + std::to_string(least_segments) +
-              " are needed, some " + steps_needed(segments) + " steps";
+              " are needed, some " + steps_needed(segments.steps) + " steps";
     else if (std::isinf(segments.autocorrelation_time))
         why = "the errors of this log do not decorrelate, so it is worth one run: what was drawn once, such as the "
               "start or a map's offset, is seen once";
     else if (segments.autocorrelation_time > 0)
         why = "this log is worth about one run: its errors decorrelate over so many steps that " +
               std::to_string(least_segments) + " independent runs would take some " +
-              std::to_string(std::llround(std::ceil(10 * segments.autocorrelation_time) * least_segments)) + " steps";
+              steps_needed(independent_steps(segments.autocorrelation_time)) + " steps";
     judgement.not_shown(why, false);
     return judgement.consistency(evidence);
 }

@@ -9,25 +9,24 @@
 
 namespace credence {
 
-JournalFollower::JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results)
-    : header_(std::move(found.header)),
-      study_(new_study(header_.study.scenarios, header_.study.root_seed, header_.study.keep)),
+JournalFollower::JournalFollower(const JournalBytes& journal, const FoundHeader& found, const std::string& results)
+    : study_(new_study(found.header.study.scenarios, found.header.study.root_seed, found.header.study.keep)),
       followed_(study_.scenarios.size()),
       start_(journal.read(0, found.size)),
       position_(found.size),
-      shard_(header_.shard) {
-    study_.trials = header_.trials;
+      shard_(found.header.shard) {
+    study_.trials = found.header.trials;
     for (ScenarioResults& scenario : study_.scenarios) {
         layouts_.emplace_back(scenario);
         for (ArmResults& arm : scenario.arms) arm.columns.clear();  // no trial is read
     }
     seal_ = seal_of(journal);
-    if (header_.base == JournalBase::grown) read_file(results);
+    if (found.header.base == JournalBase::grown) read_file(results, found.header.study);
 }
 
-void JournalFollower::read_file(const std::string& path) {
+void JournalFollower::read_file(const std::string& path, const StudyDefinition& expected) {
     const Study stored = read_results(path, 0).study;
-    const std::string difference = difference_of(definition_of(stored), header_.study);
+    const std::string difference = difference_of(definition_of(stored), expected);
     if (!difference.empty())
         throw InputError(path + ": is not the file that its journal goes on with (" + difference +
                          "). Put that back, or remove the journal.");

@@ -11,7 +11,7 @@ namespace credence {
 class JournalFollower {
 public:
     /// `results` is the path of the results file, which the journal may extend.
-    JournalFollower(const JournalBytes& journal, FoundHeader found, const std::string& results);
+    JournalFollower(const JournalBytes& journal, const FoundHeader& found, const std::string& results);
 
     /// Whether the journal begins with everything that was read before.
     bool goes_on_with(const JournalBytes& journal) const;
@@ -29,12 +29,11 @@ private:
         std::int64_t read = 0;  ///< the position of the totals that were read last
     };
 
-    void read_file(const std::string& path);
+    void read_file(const std::string& path, const StudyDefinition& expected);
     void read_totals(const JournalBytes& journal, std::size_t scenario);
     /// The checksum of the last commit that was read.
     std::string seal_of(const JournalBytes& journal) const;
 
-    JournalHeader header_;
     Study study_;
     std::vector<BlockLayout> layouts_;
     std::vector<Followed> followed_;
