@@ -111,6 +111,7 @@ struct Difference {
     double nees = 0, nis = 0, trace_P = 0;          ///< relative
     double cost = 0;                                ///< relative, over all candidates
     double pose_error = 0, nees_ratio = 0, nis_ratio = 0;
+    double log_score = 0;                           ///< in nats a component
     bool same_unseen = true, same_rows = true;
     double condition = 0;                           ///< greatest condition of S, which the tolerances rest on
 };

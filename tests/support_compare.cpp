@@ -64,6 +64,8 @@ Difference difference(const Run& ours, const oracle::Trial& oracle) {
     greatest.pose_error = relative(ours.columns[column_pose_error], oracle.pose_error);
     greatest.nees_ratio = relative(ours.columns[column_nees_ratio], oracle.nees_ratio);
     greatest.nis_ratio = relative(ours.columns[column_nis_ratio], oracle.nis_ratio);
+    greatest.log_score = std::abs(ours.columns[column_log_score] - oracle.log_score) /
+                         static_cast<double>(ours.steps.front().mean.size());
     greatest.same_unseen = ours.columns[column_unseen] == oracle.unseen;
     return greatest;
 }

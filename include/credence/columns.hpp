@@ -98,6 +98,10 @@ struct Component {
     friend bool operator==(const Component&, const Component&) = default;
 };
 
+/// The column of every world that has the log score: the mean over the steps of the negative log-likelihood of the
+/// truth under the belief, (n log 2 pi + log det P + NEES)/2, in nats.
+Column log_score_column();
+
 /// Position of the column that says how a trial ended. Every world declares one, and after it the pose at which that
 /// happened.
 std::size_t status_column(const std::vector<Column>& columns);

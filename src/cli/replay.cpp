@@ -130,7 +130,8 @@ constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},
                                          {"unseen", "unseen", 15},
                                          {"pose_error", "pose error", 5},
                                          {"nees_ratio", "NEES/n", 4},
-                                         {"nis_ratio", "NIS/m", 4}};
+                                         {"nis_ratio", "NIS/m", 4},
+                                         {"log_score", "log score", 4}};
 
 /// The column of that name; nullptr where the world has none.
 const Column* find_column(const Trajectory& t, const std::string& name) {

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <credence/detail/elementary.hpp>
+
 namespace credence {
 
 bool CholeskyFactor::compute(const Eigen::Ref<const Eigen::MatrixXd>& P) {
@@ -11,6 +13,12 @@ bool CholeskyFactor::compute(const Eigen::Ref<const Eigen::MatrixXd>& P) {
 
 bool CholeskyFactor::pivots_exceed(double share, const Eigen::Ref<const Eigen::MatrixXd>& P) const {
     return (factor_.matrixLLT().diagonal().array().square() > share * P.diagonal().array()).all();
+}
+
+double CholeskyFactor::log_determinant() const {
+    ScaledProduct<double> root;
+    for (Eigen::Index i = 0; i < factor_.rows(); ++i) root.multiply(factor_.matrixLLT()(i, i));
+    return 2 * root.log();
 }
 
 double CholeskyFactor::rcond() const { return factor_.rcond(); }

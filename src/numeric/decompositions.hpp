@@ -17,6 +17,7 @@ public:
     bool succeeded() const { return factor_.info() == Eigen::Success; }
     /// Whether every squared diagonal entry of L exceeds `share` of P's.
     bool pivots_exceed(double share, const Eigen::Ref<const Eigen::MatrixXd>& P) const;
+    double log_determinant() const;
     /// An estimate of 1 / (|P| |P^-1|), in the norm of column sums.
     double rcond() const;
 

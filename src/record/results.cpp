@@ -8,6 +8,7 @@
 
 #include "base/nan.hpp"
 #include "record/alike.hpp"
+#include "scenario/state_series.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -35,7 +36,8 @@ std::vector<Column> record_columns(const RecordShape& shape) {
          ColumnType::real, nan},
         {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
         {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
-        {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan}};
+        {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan},
+        log_score_column()};
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }
@@ -90,7 +92,7 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
                             unit_of(whole) + " alone, and the pose error of those in " + unit_of(pose) + ".");
     if (shape.has_variances)
         sentences.push_back("The record has variances only: each component is judged by itself, and no correlation "
-                            "between components is.");
+                            "between components is; the log score is the sum of theirs.");
     else if (!shape.has_joint())
         sentences.push_back(
             "The record has no covariance of the whole state: correlations between its groups are not judged.");

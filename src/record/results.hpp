@@ -12,7 +12,7 @@ namespace credence {
 
 /// Places of a record's columns. What a record does not say, such as `unseen`, is NaN.
 namespace RecordColumn {
-enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, status, status_pose };
+enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, log_score, status, status_pose };
 }
 inline constexpr std::size_t record_column_count = RecordColumn::status_pose + 1;
 

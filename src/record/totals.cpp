@@ -85,6 +85,7 @@ void RecordTotals::start_trial() {
     present_.clear();
     products_.start_trial();
     moments_.start_trial();
+    log_score_ = 0;
 }
 
 void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checked) {
@@ -104,6 +105,7 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     judge_.forget_unknown(values);
     alike_.keep(k, checked);
     set_dimension(k);
+    log_score_ += judge_.log_score();
     present_.push_back(k);
     keep_details(step.trial, k, checked);
     if (record_.has_innovations) products_.correlate();
@@ -208,6 +210,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
         if (shape_.has_errors) {
             row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
+            row[RecordColumn::log_score] = log_score_ / static_cast<double>(present_.size());
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;

@@ -80,6 +80,7 @@ private:
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
     /// [steps] of the state, if there is a joint covariance; else empty.
     std::vector<int> dimensions_;
+    double log_score_ = 0;                       ///< sum over the steps
     RowProducts products_;
     TrialMomentSums moments_;
 };

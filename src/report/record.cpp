@@ -6,6 +6,7 @@
 #include <credence/report.hpp>
 #include <credence/text.hpp>
 
+#include "record/results.hpp"
 #include "report/format.hpp"
 #include "verdict/judgement.hpp"
 
@@ -60,8 +61,8 @@ Evidence evidence_of(const Record& record) {
     return by_segments(std::move(evidence), evidence_of(segments, segments.arms.front()));
 }
 
-/// Gives the ratios of the whole record the intervals of its segments.
-void set_ratios(ArmReport& arm) {
+/// Gives the means of the whole record the intervals of its segments.
+void set_means(const ScenarioResults& segments, ArmReport& arm) {
     const Evidence& evidence = arm.evidence;
     for (ColumnReport& column : arm.columns) {
         Moments moments;
@@ -72,6 +73,8 @@ void set_ratios(ArmReport& arm) {
             const double se = half_width(nis.ratio95) / t_quantile(0.05, count - 1);
             moments = {count, nis.ratio, se * std::sqrt(count), se};
         }
+        if (column.name == "log_score")
+            moments = column_moments(segments.arms.front(), RecordColumn::log_score);
         if (moments.count > 0) column.summary = summary_of(moments);
     }
 }
@@ -111,7 +114,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     ArmReport& arm = report.arms.front();
     arm.gaps = record.gaps;
     if (arm.evidence.segments.count) {
-        set_ratios(arm);
+        set_means(*record.segments.results, arm);
         report.not_judged.push_back(
             "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so few "
             "runs cannot show whether P is right about it.");

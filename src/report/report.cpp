@@ -70,7 +70,7 @@ std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmRe
 /// Rounding may have changed it too much.
 void leave_out_nees(std::vector<ColumnReport>& columns) {
     for (ColumnReport& column : columns) {
-        if (column.name != "nees_ratio") continue;
+        if (column.name != "nees_ratio" && column.name != "log_score") continue;
         column.summary = summarise({});
         std::fill(column.quantiles.begin(), column.quantiles.end(), nan);
     }

@@ -64,7 +64,7 @@ std::set<std::string> SweptReport::names_of_points(const Grid& grid) const {
 
 std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
     std::vector<SweptColumn> columns;
-    for (const char* name : {"nees_ratio", "nis_ratio", "trace_P"})
+    for (const char* name : {"nees_ratio", "nis_ratio", "trace_P", "log_score"})
         for (const ColumnReport& column : arm.columns)
             if (column.name == name) columns.push_back({column.name, column.unit, column.summary});
     return columns;
@@ -72,7 +72,7 @@ std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
 
 std::vector<SweptColumn> swept_columns(const Comparison& pair) {
     std::vector<SweptColumn> columns;
-    for (const char* name : {"trace_P", "unseen", "pose_error"})
+    for (const char* name : {"trace_P", "unseen", "pose_error", "log_score"})
         for (const ComparedColumn& column : pair.columns)
             if (column.name == name) columns.push_back({column.name, column.unit, column.paired.difference});
     return columns;

@@ -30,6 +30,7 @@ std::vector<std::string> heads_of(const Grid& grid, const std::vector<SweptColum
     for (const SweptColumn& column : columns) {
         if (column.name == "nees_ratio") heads.push_back("NEES/n");
         else if (column.name == "nis_ratio") heads.push_back("NIS/m");
+        else if (column.name == "log_score") heads.push_back("log score");
         else heads.push_back(column.name + (column.unit == "1" ? "" : " [" + column.unit + "]"));
     }
     return heads;

@@ -216,6 +216,7 @@ const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const
 std::string column_title(const std::string& column, const std::string& unit) {
     const std::string name = column == "trace_P"        ? "trace(P), last step"
                              : column == "mean_trace_P" ? "trace(P), mean over the steps"
+                             : column == "log_score"    ? "log score, mean over the steps"
                              : column == "pose_error"   ? "pose error, sum over the poses"
                                                         : column;
     return unit == "1" ? name : name + " [" + unit + "]";

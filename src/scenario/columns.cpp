@@ -1,5 +1,7 @@
 #include <credence/columns.hpp>
 
+#include "base/nan.hpp"
+
 #include <algorithm>
 
 namespace credence {
@@ -8,6 +10,11 @@ const std::vector<std::string>& status_names() {
     static const std::vector<std::string> names{"completed", "diverged", "covariance_not_positive_definite",
                                                 "non_finite"};
     return names;
+}
+
+Column log_score_column() {
+    return {"log_score", "mean over the steps of the negative log-likelihood of the truth", "nat", ColumnType::real,
+            nan};
 }
 
 std::vector<Column> status_columns() {

@@ -2,6 +2,7 @@
 // The filter's belief: mean and covariance, and the quadratic forms e' P^-1 e that are computed from it.
 
 #include <credence/detail/each.hpp>
+#include <credence/detail/elementary.hpp>
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
@@ -34,11 +35,12 @@ Real trace(const Symmetric<Real, capacity>& P, Size n) {
     return sum;
 }
 
-/// A normalised squared error, and whether its matrix was positive definite: where not, the number means nothing.
+/// A normalised squared error, and whether its matrix was positive definite: where not, the numbers mean nothing.
 template <class Real>
 struct SquaredError {
     Real value{};
     Mask<Real> positive_definite{};
+    ScaledProduct<Real> determinant{};  ///< of the matrix
 };
 
 /// S = L D L' of two rows, L = [1 0; slope 1]: the second row less `slope` times the first is not correlated with the
@@ -49,6 +51,7 @@ struct Decorrelation {
     Real slope{};
     Vector2<Real> precision{};  ///< D^-1, zero where masked
     Mask<Real> positive_definite{};
+    Real determinant{};         ///< of S
 
     /// L^-1 pair
     Vector2<Real> operator()(const Vector2<Real>& pair) const { return {pair.x, fnma(slope, pair.x, pair.y)}; }
@@ -66,14 +69,14 @@ template <class Real>
 Decorrelation<Real> decorrelation(Real xx, Real xy, Real yy, Mask<Real> used) {
     const Real x = select(used, Real(1) / xx, Real(0)), slope = x * xy, rest = fnma(slope, xy, yy);
     return {slope, {x, select(used, Real(1) / rest, Real(0))},
-            either(both(xx > Real(0), rest > Real(0)), negated(used))};
+            either(both(xx > Real(0), rest > Real(0)), negated(used)), xx * rest};
 }
 
 /// The same where S = xx I: the bits of decorrelation(xx, 0, xx, used).
 template <class Real>
 Decorrelation<Real> decorrelation_by_axis(Real xx, Mask<Real> used) {
     const Real x = select(used, Real(1) / xx, Real(0));
-    return {Real(0), {x, x}, either(xx > Real(0), negated(used))};
+    return {Real(0), {x, x}, either(xx > Real(0), negated(used)), xx * xx};
 }
 
 /// A matrix and a vector that are being eliminated, from the last row up.
@@ -115,7 +118,7 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
                 left.A.entry[m][k] = fnma(scaled, A[m][i], A[m][k]);
             });
         });
-        return {pivot.squared(e), pivot.positive_definite};
+        return {pivot.squared(e), pivot.positive_definite, ScaledProduct<Real>(pivot.determinant)};
     } else {
         const Decorrelation<Real> pivot =
             decorrelation(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
@@ -129,7 +132,7 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
                 left.A.entry[m][k] = fnma(scaled.y, W[m].y, fnma(scaled.x, W[m].x, A[m][k]));
             });
         });
-        return {pivot.squared(e), pivot.positive_definite};
+        return {pivot.squared(e), pivot.positive_definite, ScaledProduct<Real>(pivot.determinant)};
     }
 }
 
@@ -147,7 +150,9 @@ CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, c
                                            Last last, Elimination<Real, capacity>& left, Visit&& visit) {
     SquaredError<Real> sum{Real(0), all_lanes<Real>()};
     const auto add = [&](auto i, const SquaredError<Real>& part) {
-        sum = {sum.value + part.value, both(sum.positive_definite, part.positive_definite)};
+        sum.value = sum.value + part.value;
+        sum.positive_definite = both(sum.positive_definite, part.positive_definite);
+        sum.determinant.multiply(part.determinant);
         visit(i, sum);
     };
     each(zero, half(last - first), [&](auto pair) {
@@ -158,7 +163,7 @@ CREDENCE_INLINE void nested_squared_errors(const Symmetric<Real, capacity>& P, c
         const bool alone = last - first == 1;
         const Real pivot = alone ? P.entry[first][first] : left.A.entry[first][first];
         const Real e = alone ? error[first] : left.e[first];
-        add(first, {e * e / pivot, pivot > Real(0)});
+        add(first, {e * e / pivot, pivot > Real(0), ScaledProduct<Real>(pivot)});
     }
 }
 

@@ -33,6 +33,7 @@ struct FilterParameters {
     double variance_initial_heading = 0, variance_initial_position = 0;
     double measurement_factor = 1;           ///< on sigma_feat
     double covariance_factor = 1;            ///< on the reported P
+    double log_covariance_factor = 0;
     double gate = std::numeric_limits<double>::infinity();  ///< largest squared normalised innovation of a sighting
 
     const Point& sway_increment_at(int k, int j) const { return sway_increment[k * features + j]; }

@@ -69,7 +69,8 @@ std::vector<Column> trial_columns(const SlamState& state) {
             {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
             {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
             {"mean_trace_P", "mean over the steps of the trace of the covariance", trace_unit(state),
-             ColumnType::real, nan}};
+             ColumnType::real, nan},
+            log_score_column()};
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }

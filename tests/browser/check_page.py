@@ -76,6 +76,7 @@ def check_figures(tables, arm):
         "pose_error": "pose error",
         "nees_ratio": "NEES/n",
         "nis_ratio": "NIS/m",
+        "log_score": "log score",
     }
     for name, words in groups.items():
         of_arm = [row for row in found["rows"] if row["group"].startswith(words) and row["head"] == arm["arm"]]

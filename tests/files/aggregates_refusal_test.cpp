@@ -38,7 +38,7 @@ const char* const no_ranges = "/first_block: and last_block are no ranges of the
 const std::vector<Damage> damages{
     {"/@keep: is not aggregates", [](auto& r) { set_text(r, "/", "keep", "trials"); }},
     {"/@keep: is not text", [](auto& r) { set_number<double>(r, "/", "keep", 1); }},
-    {fixed + "/mean_trace_P: is missing", [](auto& r) { H5Adelete(r.id(), "keep"); }},
+    {fixed + "/log_score: is missing", [](auto& r) { H5Adelete(r.id(), "keep"); }},
     {fixed + "/trace_P: does not belong here", [](auto& r) { replace<double>(r, fixed + "/trace_P", {300}, {}); }},
     {fixed + "/difference_count: does not belong here",
      [](auto& r) {
@@ -90,16 +90,16 @@ const std::vector<Damage> damages{
      [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 299); }},
     {arm + "/column: does not count on",
      [](auto& r) {
-         replace<std::int32_t>(r, arm + "/column", {6}, {0, 1, 1});
+         replace<std::int32_t>(r, arm + "/column", {7}, {0, 1, 1});
      }},
-    {arm + "/column: has extents [7], not [6]", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {7}, {}); }},
+    {arm + "/column: has extents [8], not [7]", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {8}, {}); }},
     {arm + "/status_count: a column has more values than trials",
      [](auto& r) {
-         set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300});
+         set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300, 300});
      }},
     {arm + "/status_count: a column has more values than trials",
      [](auto& r) {
-         set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300});
+         set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300, 300});
      }},
     {arm + "/column_total: its parts do not follow",
      [](auto& r) {
@@ -113,15 +113,15 @@ const std::vector<Damage> damages{
      }},
     {arm + "/status_count: there are more pairs than values",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_count", {1, 6}, {301});
+         replace<std::int64_t>(r, arm + "/difference_count", {1, 7}, {301});
      }},
     {arm + "/status_count: more pairs differ than there are",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_above", {1, 6}, {301});
+         replace<std::int64_t>(r, arm + "/difference_above", {1, 7}, {301});
      }},
     {arm + "/status_count: more pairs differ than there are",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_below", {1, 6}, {-1});
+         replace<std::int64_t>(r, arm + "/difference_below", {1, 7}, {-1});
      }},
     {fixed + "/first_block: [1099511627776] does not fit",
      [](auto& r) { promise_terabytes(r, fixed + "/first_block"); }},

@@ -298,10 +298,12 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     REQUIRE(last.arm == "greedy.ekf");
     const auto row = text.find("greedy.ekf\n", text.find("sweep of base"));
     REQUIRE(row != std::string::npos);
-    std::istringstream table(text.substr(row));
+    const auto point = text.find("0.1, ranged\n", row);  // a line of its own: the numbers are in the next
+    REQUIRE(point != std::string::npos);
+    std::istringstream table(text.substr(point));
     std::string line;
-    for (int skipped = 0; skipped < 6; ++skipped) std::getline(table, line);  // its name, heads, four points
-    CHECK_THAT(line, Contains("0.1") && Contains("ranged") && Contains(verdict_name(last.consistency.verdict)) &&
+    for (int skipped = 0; skipped < 2; ++skipped) std::getline(table, line);
+    CHECK_THAT(line, Contains(verdict_name(last.consistency.verdict)) &&
                          Contains(with_interval(last.columns[column_trace_P].summary.mean,
                                                 last.columns[column_trace_P].summary.ci95)));
 

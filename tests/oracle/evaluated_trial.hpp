@@ -80,6 +80,7 @@ public:
         status_ = Status::completed;
         status_pose_ = -1;
         step_ = 0;
+        log_score_ = 0;
         try {
             case_.run(*this);
         } catch (const TrialEnds&) {
@@ -156,7 +157,7 @@ public:
         row.insert(row.end(), own_.begin(), own_.end());
         row.insert(row.end(), {total(at.squared_error), total(0) / steps / case_.shape.n,
                                innovations ? total(at.nis) / total(at.rows) : nan, total(at.variance) / steps,
-                               static_cast<double>(status_), static_cast<double>(status_pose_)});
+                               log_score_ / steps, static_cast<double>(status_), static_cast<double>(status_pose_)});
     }
 
 private:
@@ -182,6 +183,7 @@ private:
         products_.correlate(step_);
         if (keeps_moments_)
             moments_.add(step_series_.data(), step_series_.data() + case_.all_series.standardised_error, checked_.P);
+        log_score_ += evaluator_.log_score();
         ++step_;
     }
 
@@ -202,6 +204,7 @@ private:
     Status status_ = Status::completed;
     int status_pose_ = -1;
     std::size_t step_ = 0;
+    double log_score_ = 0;
     std::vector<double> all_series_, errors_, own_, step_series_;
     LagProducts products_;
     TrialMomentSums moments_;

@@ -104,13 +104,15 @@ void note(const DeformableSettings& scenario, const World& world, const Belief& 
 
 /// Figures of the whole trial from its steps [docs/model.md, Reported per trial].
 void sum_up(const DeformableSettings& scenario, Trial& trial) {
-    double nees = 0, nis = 0, rows = 0;
+    double nees = 0, nis = 0, rows = 0, log_determinants = 0;
     for (std::size_t k = 0; k < trial.steps.size(); ++k) {
         const Step& step = trial.steps[k];
         trial.pose_error += (step.mean - step.truth).head(pose_dimension(scenario)).squaredNorm();
         if (k == 0) continue;
         for (const bool feature_seen : step.seen) trial.unseen += feature_seen ? 0 : 1;
         nees += step.nees;
+        const Eigen::MatrixXd L = (scenario.filter.covariance * step.covariance).llt().matrixL();
+        log_determinants += 2 * L.diagonal().array().log().sum();
         nis += step.nis;
         rows += step.rows;
     }
@@ -119,6 +121,8 @@ void sum_up(const DeformableSettings& scenario, Trial& trial) {
     trial.trace_P = trial.steps.back().trace_P;
     trial.nees_ratio = moves > 0 ? nees / moves / state_dimension(scenario) : none;
     trial.nis_ratio = rows > 0 ? nis / rows : none;
+    const double constant = state_dimension(scenario) * std::log(2 * std::acos(-1));
+    trial.log_score = moves > 0 ? (constant + (log_determinants + nees) / moves) / 2 : none;
 }
 
 }  // namespace

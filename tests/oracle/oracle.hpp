@@ -57,6 +57,7 @@ struct Trial {
     double pose_error = 0;     ///< sum over all k of the squared error of the pose, heading included and not wrapped
     double nees_ratio = 0;     ///< mean over k >= 1 of NEES/n; NaN for K = 1
     double nis_ratio = 0;      ///< sum of NIS / sum of m; NaN if there never was a row
+    double log_score = 0;      ///< mean over k >= 1 of (n log 2 pi + log det P + NEES)/2, reported covariance
 };
 
 /// Runs one trial from pose 0 to K-1. Makes no check of the scenario and knows no status: a trial that breaks down

@@ -98,7 +98,7 @@ TEST_CASE("record: of variances each component is judged by itself") {
     CHECK(record.results.not_judged ==
           std::vector<std::string>{
               "The record has variances only: each component is judged by itself, and no correlation "
-              "between components is.",
+              "between components is; the log score is the sum of theirs.",
               "Without a covariance there is no NEES of pair."});
 }
 

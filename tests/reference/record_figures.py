@@ -120,6 +120,8 @@ class Expected:
 
     def compute_state(self):
         error, covariance = self.record.error[self.there], self.P[self.there]
+        self.log_score = np.full((self.trials, self.steps), np.nan)
+        self.log_score[self.there] = [-stats.multivariate_normal.logpdf(e, cov=P) for e, P in zip(error, covariance)]
         for name, (first, end) in self.groups.items():
             block, e = covariance[:, first:end, first:end], error[:, first:end]
             self.put("nees", name, (e * np.linalg.solve(block, e[..., None])[..., 0]).sum(axis=1))
@@ -166,7 +168,7 @@ class Expected:
     def columns(self):
         used = ~self.failed
         result = {name: np.full(self.trials, np.nan)
-                  for name in ["trace_P", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P"]}
+                  for name in ["trace_P", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P", "log_score"]}
         trace = self.values["variance", "all"]
         last = [np.flatnonzero(row)[-1] if row.any() else 0 for row in self.there]
         pose = "pose" if "pose" in self.groups else "all"
@@ -174,6 +176,7 @@ class Expected:
         result["mean_trace_P"][used] = np.nanmean(trace[used], axis=1)
         result["pose_error"][used] = np.nansum(self.values["squared_error", pose][used], axis=1)
         result["nees_ratio"][used] = np.nanmean(self.values["nees", "all"][used], axis=1) / self.n
+        result["log_score"][used] = np.nanmean(self.log_score[used], axis=1)
         if self.white is not None:
             sums = [np.nansum(self.values[name, "all"][used], axis=1) for name in ("nis", "nis_rows")]
             result["nis_ratio"][used] = np.divide(*sums, out=np.full(len(sums[0]), np.nan), where=sums[1] > 0)

@@ -33,6 +33,7 @@ void check_trial(const Settings& settings, Controller controller, std::uint64_t 
     CHECK(worst.pose_error < 1e-10);
     CHECK(worst.nees_ratio < 1e-10);
     CHECK(worst.nis_ratio < 1e-10);
+    CHECK(worst.log_score < 1e-10);
 }
 
 }  // namespace

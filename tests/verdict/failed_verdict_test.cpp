@@ -243,5 +243,5 @@ TEST_CASE("failed: the program's gate, its share and its refusals") {
             CHECK_THAT(refused.err, Contains("(must be from 0 to 100 %). Write 1% or 0.01."));
         }
     const Outcome replayed = here.credence("replay r.h5 --scenario ekf-straight-constant --arm fixed.ekf --trial 0");
-    CHECK_THAT(replayed.out, Contains("trace(P) - dm^2 + rad^2, unseen -, pose error -, NEES/n -, NIS/m -\n"));
+    CHECK_THAT(replayed.out, Contains("trace(P) - dm^2 + rad^2, unseen -, pose error -, NEES/n -, NIS/m -, log score -\n"));
 }

@@ -187,6 +187,7 @@ TEST_CASE("own world: series are those of the formulas") {
     CHECK(column("squared_error") == Approx(nees).epsilon(1e-14));
     CHECK(column("nees_ratio") == Approx(nees / 9 / 2).epsilon(1e-14));
     CHECK(column("nis_ratio") == Approx(nis / 27).epsilon(1e-14));
+    CHECK(column("log_score") == Approx(std::log(2 * std::acos(-1)) + nees / 9 / 2).epsilon(1e-14));
 }
 
 TEST_CASE("own world: what a world does wrong is said, not counted") {

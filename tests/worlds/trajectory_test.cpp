@@ -39,12 +39,13 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
         const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 2);
         const std::vector<TrajectoryStep> steps = steps_of(t);
         const int n = state_size(scenario);
-        double nees = 0, nis = 0, rows = 0, unseen = 0;
+        double nees = 0, nis = 0, rows = 0, unseen = 0, score = 0;
         for (std::size_t k = 1; k < steps.size(); ++k) {
             const TrajectoryStep& step = steps[k];
             const double own = mahalanobis(step.mean - step.truth, step.covariance);
             CHECK(step.nees == Approx(own).epsilon(1e-10));
             nees += own / n;
+            score += (own + n * std::log(2 * pi) + std::log(step.covariance.determinant())) / 2;
             std::vector<Eigen::Index> seen;
             for (Eigen::Index i = 0; i < step.innovation.size(); ++i)
                 if (!std::isnan(step.innovation[i])) seen.push_back(i);
@@ -58,6 +59,7 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
             CHECK(step.trace_P == Approx(step.covariance.trace()).epsilon(1e-14));
         }
         CHECK(t.column_values[column_nees_ratio] == Approx(nees / (scenario.poses - 1)).epsilon(1e-10));
+        CHECK(t.column_values[column_log_score] == Approx(score / (scenario.poses - 1)).epsilon(1e-10));
         CHECK(t.column_values[column_nis_ratio] == Approx(nis / rows).epsilon(1e-10));
         CHECK(t.column_values[column_unseen] == unseen);
         CHECK(t.column_values[column_trace_P] == steps.back().trace_P);

@@ -9,6 +9,7 @@ namespace credence {
 inline namespace CREDENCE_TARGET {
 
 inline constexpr double pi = 3.14159265358979323846;
+inline constexpr double log_two_pi = 1.83787706640934548356;
 
 /// Natural logarithm of a normal positive number. Anything else gives a meaningless value, never a trap.
 ///
@@ -35,6 +36,36 @@ Real log_of_normal(Real x) {
     const Real small = fma(f, fma(Real(2) * s, series, -large), e * Real(ln2_low));
     return fma(e, Real(ln2_high), large + small);
 }
+
+/// A product of positive numbers of which each is normal, and of any size itself: its exponent is kept apart.
+template <class Real>
+class ScaledProduct {
+public:
+    ScaledProduct() = default;
+    explicit ScaledProduct(Real number) : fraction_(number) {}
+
+    void multiply(Real number) {
+        constexpr std::uint64_t exponent_field = 0x7ff0000000000000u, bits_of_one = 0x3ff0000000000000u;
+        const Bits<Real> bits = bits_of(fraction_), field = bits & exponent_field;
+        exponent_ = exponent_ + ((field >> 52) - Bits<Real>(1023));
+        fraction_ = from_bits(bits - field + Bits<Real>(bits_of_one)) * number;
+    }
+    void multiply(const ScaledProduct& by) {
+        multiply(by.fraction_);
+        exponent_ = exponent_ + by.exponent_;
+    }
+
+    /// Its natural logarithm.
+    Real log() const {
+        constexpr double ln2 = 0.693147180559945309417;
+        const Real e = from_bits(exponent_ + bits_of(Real(integer_shifter))) - Real(integer_shifter);
+        return fma(e, Real(ln2), log_of_normal(fraction_));
+    }
+
+private:
+    Real fraction_ = Real(1);
+    Bits<Real> exponent_ = Bits<Real>(0);  ///< a signed number
+};
 
 /// Lower bound on the square root of a normal positive number or 0: at most 0.2 % below it, never above. Cheaper than
 /// sqrt where a bound is enough.

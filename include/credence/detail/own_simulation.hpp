@@ -17,7 +17,8 @@ struct OwnReport {
     int largest_innovation = 0;         ///< m; 0: the trials give no innovations
 };
 
-/// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, status, status_pose.
+/// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, log_score, status,
+/// status_pose.
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report);
 std::vector<Series> own_series(const Scenario& scenario, const OwnReport& report);
 

@@ -5,6 +5,7 @@
 #include <credence/text.hpp>
 
 #include "report/compare/choice.hpp"
+#include "statistics/mean_bounds.hpp"
 
 namespace credence {
 
@@ -34,6 +35,24 @@ void require_common_trials(const ChosenPair& chosen, const CommonTrials& common)
                      " in common. Merge the shards of each study, or compare the same shard of both.");
 }
 
+/// The estimator of an arm, such as `ekf` of `greedy.ekf`; all of a name without a controller.
+std::string estimator_of(const std::string& arm) { return arm.substr(arm.find('.') + 1); }
+
+/// Whether the pair is of different filters: its arms are no controllers of one estimator, or what the filter believes
+/// differs.
+bool is_of_filters(const ChosenPair& chosen, const std::vector<KeyDifference>& differences) {
+    const std::string &a = chosen.a.arm.name, &b = chosen.b.arm.name;
+    return controller_of(a) == a || controller_of(b) == b || estimator_of(a) != estimator_of(b) ||
+           std::ranges::any_of(differences,
+                               [](const KeyDifference& one) { return one.key.starts_with("filter."); });
+}
+
+/// Moves the log score to the front: of filters trace(P) is what each says of itself.
+void lead_with_log_score(std::vector<ComparedColumn>& columns) {
+    const auto score = std::ranges::find(columns, "log_score", &ComparedColumn::name);
+    if (score != columns.end()) std::rotate(columns.begin(), score, score + 1);
+}
+
 ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
     ComparedPair pair;
@@ -56,6 +75,7 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
         pair.b = side_of(chosen.b, chosen.file_b, counted(common.of_b(statuses(chosen.b))));
         pair.differences = shown_differences(a.scenario, b.scenario);
     }
+    if (is_of_filters(chosen, pair.differences)) lead_with_log_score(pair.comparison.columns);
     for (const ComparedColumn& column : pair.comparison.columns) {
         pair.a.mean.push_back(column.paired.mean_a);
         pair.b.mean.push_back(column.paired.mean_b);
@@ -63,19 +83,20 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     return pair;
 }
 
-/// Whether a difference is shown, as one of `comparisons`: Bonferroni over their t intervals, and the bootstrap's own
-/// 95 % where there is one.
+/// Whether a difference is shown, as one of `comparisons`, whose levels are Bonferroni's: by its t interval, widened by
+/// what pairs that were not seen could add. At the level of a side, a share of 1 - level^(1/n) may have been missed
+/// [as for NEES, statistics/mean_bounds.hpp]; each such pair is taken to be nine standard deviations away.
 Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
     const PairedComparison& paired = pair.comparison.columns.front().paired;
     if (pair.not_run()) return Conclusion::not_run;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
     if (paired.pairs < 2) return Conclusion::not_shown;
     const Summary& difference = paired.difference;
-    const double half = t_quantile(0.05 / static_cast<double>(comparisons), static_cast<double>(paired.pairs - 1)) *
-                        difference.standard_error;
-    const bool resampled = pair.keep == Keep::trials;
-    if (difference.mean + half < 0 && (!resampled || paired.bootstrap95.high < 0)) return Conclusion::lower;
-    if (difference.mean - half > 0 && (!resampled || paired.bootstrap95.low > 0)) return Conclusion::higher;
+    const double level = 0.05 / static_cast<double>(comparisons), pairs_counted = static_cast<double>(paired.pairs),
+                 half = t_quantile(level, pairs_counted - 1) * difference.standard_error +
+                        unseen_share(level / 2, pairs_counted) * unseen_size * difference.standard_deviation;
+    if (difference.mean + half < 0) return Conclusion::lower;
+    if (difference.mean - half > 0) return Conclusion::higher;
     return Conclusion::not_shown;
 }
 

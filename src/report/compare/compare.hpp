@@ -34,7 +34,8 @@ struct ArmsChoice {
 /// that file; of two, A alone is of the first and B alone of the second; else each names its file. Throws InputError.
 ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
 
-/// The conclusion from the pairs on the first column, trace(P).
+/// The conclusion from the pairs on the first column: trace(P) where the arms are controllers of one filter, and the
+/// log score where they are different filters.
 enum class Conclusion {
     lower,      ///< A's mean is lower
     higher,     ///< A's mean is higher
@@ -82,10 +83,9 @@ struct CompareReport {
 /// a choice: of one file, every planned arm with its baseline (baseline_of); of several, each later file's arms with
 /// the first file's of the same name (later - first). Arms of several files are called `STEM:arm`.
 ///
-/// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors, m
-/// the number of comparisons, so that all conclusions hold together at 95 %, and where the bootstrap's 95 % interval
-/// leaves 0 out too: trace(P) is heavy-tailed. Where no trial is kept there is no bootstrap, and the t interval
-/// decides.
+/// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors and
+/// what pairs that were not seen could add [docs/statistics.md, Comparison], m the number of comparisons, so that all
+/// conclusions hold together at 95 %.
 ///
 /// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
 /// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and

@@ -117,9 +117,13 @@ std::string conclusion_text(const ComparedPair& pair) {
     const int digits = decimals_of(paired);
     const double mean = paired.difference.mean;
     const Interval& interval = paired.difference.ci95;
-    const std::string text = comparison.columns.front().name + ": ", both = comparison.a + " and " + comparison.b;
+    const bool is_score = comparison.columns.front().name == "log_score";
+    const std::string text = is_score ? "log score (lower is better): " : comparison.columns.front().name + ": ",
+                      both = comparison.a + " and " + comparison.b;
     if (pair.not_run()) return text + not_run_text(pair);
-    if (paired.pairs == 0) return text + "no pairs, nothing to compare";
+    if (paired.pairs == 0)
+        return text + (is_score ? "nothing to compare without covariances of the whole state"
+                                : "no pairs, nothing to compare");
     if (pair.conclusion == Conclusion::not_shown && !std::isfinite(mean))
         return text + "no difference shown (the mean of " + comparison.name() + " is not finite)";
     if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
@@ -128,6 +132,9 @@ std::string conclusion_text(const ComparedPair& pair) {
                (paired.pairs == 1                       ? ", one pair"
                 : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
                                                       : "") + ")" +
+               (mean - half_width(interval) > 0 || mean + half_width(interval) < 0
+                    ? "; so few pairs may lack some that differ far more"
+                    : "") +
                despite(comparison);
     const bool lower = pair.conclusion == Conclusion::lower;
     const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;

@@ -85,7 +85,8 @@ Snapshot snapshot_of(const std::string& path, RunState state, const Study& study
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
     std::vector<std::size_t> watched;
     for (std::size_t c = 0; c < columns.size(); ++c)
-        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P") watched.push_back(c);
+        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P" && columns[c].name != "log_score")
+            watched.push_back(c);
     return watched;
 }
 

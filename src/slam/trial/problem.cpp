@@ -232,6 +232,7 @@ void Problem::fill_filter() {
     filter.variance_initial_position = squared(noise.initial_position);
     filter.measurement_factor = factors.measurement;
     filter.covariance_factor = factors.covariance;
+    filter.log_covariance_factor = log(factors.covariance);
     filter.gate = -2 * log(1 - factors.gate);  // the quantile of chi-square with two degrees of freedom
 }
 

@@ -27,6 +27,7 @@ template <class Real>
 struct Sums {
     Real unseen = Real(0), pose_error = Real(0), nees = Real(0), nis = Real(0), rows = Real(0), trace = Real(0);
     Real traces = Real(0);  ///< over the steps
+    ScaledProduct<Real> determinants;  ///< of P, the product over the steps
 };
 
 /// x^ - x, heading wrapped. [n].
@@ -85,10 +86,11 @@ bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real sq
 }
 
 /// Normalised errors of a belief: NEES of every group, in the order of Layout's, with each group's own P;
-/// e_i/sqrt(P_ii).
+/// e_i/sqrt(P_ii); det P.
 template <class Layout, class Real>
 struct StepEvaluation {
     Real nees[Layout::largest_group_count], standardised_error[Layout::capacity];
+    ScaledProduct<Real> determinant;
     Mask<Real> positive_definite{};
 };
 
@@ -101,7 +103,7 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
     evaluation.positive_definite = all_lanes<Real>();
     const auto evaluate = [&](auto first, auto last, auto&& keep) CREDENCE_INLINE_LAMBDA {
         const auto visit = [&](auto i, const SquaredError<Real>& result) {
-            keep(i, result.value);
+            keep(i, result);
             if (i == first)
                 evaluation.positive_definite = both(evaluation.positive_definite, result.positive_definite);
         };
@@ -111,25 +113,28 @@ CREDENCE_INLINE void evaluate_groups(const Belief<Real, capacity>& belief, const
         const auto of_axis = i - (Layout::by_axis ? i % 2 : 0);  // one root serves both axes
         evaluation.standardised_error[i] = error[i] / sqrt(P.entry[of_axis][of_axis]);
     };
-    evaluate(zero, n, [&](auto i, Real value) {
-        if (i == 0) nees[Layout::group_all] = value;
-        if (i == Layout::pose_size) nees[Layout::group_features] = value;
-        if (i == n - two) nees[Layout::group_feature(layout.features() - one)] = value;
+    evaluate(zero, n, [&](auto i, const SquaredError<Real>& result) {
+        if (i == 0) {
+            nees[Layout::group_all] = result.value;
+            evaluation.determinant = result.determinant;
+        }
+        if (i == Layout::pose_size) nees[Layout::group_features] = result.value;
+        if (i == n - two) nees[Layout::group_feature(layout.features() - one)] = result.value;
         // Computed here, the roots overlap with the elimination, which waits for its pivots.
         standardise(i);
         if (i + 1 < n && (n - i) % 2 == 0) standardise(i + one);
     });
-    evaluate(zero, Layout::pose_size, [&](auto i, Real value) {
-        if (i == 0) nees[Layout::group_pose] = value;
+    evaluate(zero, Layout::pose_size, [&](auto i, const SquaredError<Real>& result) {
+        if (i == 0) nees[Layout::group_pose] = result.value;
         if constexpr (Layout::has_heading)
-            if (i == Layout::position) nees[Layout::group_position] = value;
+            if (i == Layout::position) nees[Layout::group_position] = result.value;
     });
     if constexpr (Layout::has_heading)
         nees[Layout::group_heading] = evaluation.standardised_error[0] * evaluation.standardised_error[0];
     each(zero, layout.features() - one, [&](auto j) {
         const auto f = Layout::feature(j);
-        evaluate(f, f + two, [&](auto i, Real value) {
-            if (i == f) nees[Layout::group_feature(j)] = value;
+        evaluate(f, f + two, [&](auto i, const SquaredError<Real>& result) {
+            if (i == f) nees[Layout::group_feature(j)] = result.value;
         });
     });
 }
@@ -205,19 +210,24 @@ CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout
     sums.pose_error = sums.pose_error + squared_error;
     sums.trace = trace_P;
     sums.traces = sums.traces + trace_P;
+    sums.determinants.multiply(evaluation.determinant);
     if (trouble(belief, layout, whole + update.nis, positive_definite))
         note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
 }
 
 /// The trial's columns in the order of ColumnIndex; those of a failed trial are filled by the engine.
 template <class Real>
-void write_columns(const Sums<Real>& sums, const Outcome<Real>& outcome, int n, int steps, Real* columns) {
+void write_columns(const CommonView& problem, const Sums<Real>& sums, const Outcome<Real>& outcome, Real* columns) {
+    const int n = problem.state_size, steps = problem.poses - 1;
+    const double log_scale = n * (log_two_pi + problem.filter.log_covariance_factor);
     columns[column_trace_P] = sums.trace;
     columns[column_unseen] = sums.unseen;
     columns[column_pose_error] = sums.pose_error;
     columns[column_nees_ratio] = sums.nees / Real(steps * n);
     columns[column_nis_ratio] = sums.nis / sums.rows;
     columns[column_mean_trace_P] = sums.traces / Real(steps);
+    columns[column_log_score] =
+        Real(0.5) * (Real(log_scale) + (sums.determinants.log() + sums.nees) / Real(steps));
     columns[column_status] = outcome.status;
     columns[column_status_pose] = outcome.pose;
 }

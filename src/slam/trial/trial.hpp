@@ -83,7 +83,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         evaluate_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, all_series);
         observer.updated(k, layout, belief, all_series);
     }
-    write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
+    write_columns(problem, sums, outcome, columns);
 }
 
 }  // namespace CREDENCE_TARGET

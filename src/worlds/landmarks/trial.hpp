@@ -72,7 +72,7 @@ void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observ
         all_series[(problem.series_count - 1) * (problem.poses - 1) + k - 1] = work.update.unsettled;
         observer.updated(k, layout, belief, all_series);
     }
-    write_columns(sums, outcome, layout.size(), problem.poses - 1, columns);
+    write_columns(problem, sums, outcome, columns);
 }
 
 }  // namespace CREDENCE_TARGET

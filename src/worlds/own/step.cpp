@@ -1,6 +1,6 @@
 #include "worlds/own/step.hpp"
 
-#include "base/nan.hpp"
+#include <credence/detail/elementary.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -120,6 +120,8 @@ std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const V
     all_series[b] = solved_[b].squaredNorm();
     all_series[places_.squared_error + b] = e.squaredNorm();
     all_series[places_.variance + b] = P.trace();
+    if (b == 0 && shape_.has_joint())
+        log_score_ = (static_cast<double>(e.size()) * log_two_pi + factors_[b].log_determinant() + all_series[b]) / 2;
     return {};
 }
 
@@ -173,14 +175,16 @@ std::string StepEvaluator::evaluate_group(std::size_t b, const CheckedStep& step
 /// Of variances alone only a single component has a NEES.
 std::string StepEvaluator::evaluate_variances(std::size_t b, const CheckedStep& step, double* all_series) {
     const ComponentGroup& group = shape_.groups[b];
-    double square = 0, variance = 0;
+    double square = 0, variance = 0, score = 0;
     for (int i = 0; i < group.count; ++i) {
         const int j = group.component(i);
         if (!step.here.empty() && !step.here[static_cast<std::size_t>(j)]) continue;
         if (!(step.variances(j) > 0)) return step.variances(j) < 0 ? "a variance is negative" : "a variance is 0";
         square += step.e(j) * step.e(j);
         variance += step.variances(j);
+        score += log_two_pi + log_of_normal(step.variances(j)) + step.e(j) * step.e(j) / step.variances(j);
     }
+    if (b == 0) log_score_ = score / 2;
     all_series[places_.squared_error + b] = square;
     all_series[places_.variance + b] = variance;
     all_series[b] = square / variance;

@@ -3,6 +3,7 @@
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]; NaN in rows not observed
 
+#include "base/nan.hpp"
 #include "numeric/decompositions.hpp"
 #include "scenario/state_series.hpp"
 
@@ -126,6 +127,10 @@ public:
     /// After `evaluate`: replaces the series that have no value at this step by NaN.
     void forget_unknown(double* all_series) const;
 
+    /// After `evaluate`: the log score of the state as it is at this step [columns.hpp], of
+    /// variances the sum of their components' own; NaN without either.
+    double log_score() const { return log_score_; }
+
     /// After `evaluate`: what rounding may have done to NEES, by group, as a share of it; 0 where that is too little to
     /// matter.
     const std::vector<double>& rounding() const { return rounding_; }
@@ -155,6 +160,7 @@ private:
     std::vector<CholeskyFactor> factors_;  ///< by group
     std::vector<Eigen::VectorXd> solved_;
     std::vector<double> rounding_;         ///< by group
+    double log_score_ = nan;
     std::vector<VariancePlace> variance_places_;  ///< by component, of a record with covariances of groups; else empty
     std::vector<std::size_t> unknown_;            ///< series without a value at the last step
     Eigen::MatrixXd part_P_;

@@ -97,6 +97,7 @@ std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& repor
     columns.push_back(real("nees_ratio", "mean over the steps of NEES / state dimension", "1"));
     columns.push_back(real("nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1"));
     columns.push_back(real("mean_trace_P", "mean over the steps of the trace of the covariance", unit));
+    columns.push_back(log_score_column());
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }

@@ -3,6 +3,7 @@
 // whiten. Sizes up to 4 are written out.
 
 #include <credence/detail/each.hpp>
+#include <credence/detail/elementary.hpp>
 #include <credence/detail/lane.hpp>
 
 namespace credence {
@@ -35,6 +36,7 @@ struct ChosenRows {
 template <class Real>
 struct Whitened {
     Real squared_norm = Real(0);    ///< e' S^-1 e
+    ScaledProduct<Real> determinant{};
     Mask<Real> sound{};             ///< no pivot is so small that rounding could have made it
 };
 
@@ -51,6 +53,7 @@ CREDENCE_INLINE Whitened<Real> whiten(const Matrix& S, Count n, Real* L, Real* e
         const Real size = pivot;
         each(zero, j, [&](auto k) CREDENCE_INLINE_LAMBDA { pivot = fnma(L[j * n + k], L[j * n + k], pivot); });
         result.sound = both(result.sound, pivot > Real(sound_pivot) * size);
+        result.determinant.multiply(pivot);
         const Real reciprocal = Real(1) / sqrt(pivot);
         Real y = e[j];
         each(zero, j, [&](auto k) CREDENCE_INLINE_LAMBDA { y = fnma(L[j * n + k], e[k], y); });

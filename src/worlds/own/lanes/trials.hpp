@@ -103,6 +103,8 @@ public:
         write(total(0) / Real(steps_of_trial) / Real(state_size));
         write(largest_innovation > 0 ? total(view_.nis) / total(view_.nis + 1) : Real(__builtin_nan("")));
         write(total(view_.variance) / Real(steps_of_trial));
+        write(Real(0.5) *
+              (Real(state_size * log_two_pi) + (determinants_.log() + total(0)) / Real(steps_of_trial)));
         write(outcome.status);
         write(outcome.pose);
     }
@@ -184,7 +186,9 @@ private:
             squared_error = fma(e, e, squared_error);
             variance = variance + P.at(j, j);
         }
-        *series(b) = norm(of_group, count);
+        const Whitened<Real> whitened = whiten_checked(of_group, count);
+        *series(b) = whitened.squared_norm;
+        if (b == 0) determinants_.multiply(whitened.determinant);
         *series(view_.squared_error + b) = squared_error;
         *series(view_.variance + b) = variance;
     }
@@ -207,7 +211,9 @@ private:
         }
         *series(view_.nis + 1) = rows;
         *series(view_.nis) =
-            step.rows > 0 ? norm(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows) : Real(0);
+            step.rows > 0
+                ? whiten_checked(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows).squared_norm
+                : Real(0);
         if (errors_ == nullptr) return;
         for (int i = 0; i < largest_innovation; ++i) {
             const bool is_row = i < step.rows;
@@ -218,11 +224,11 @@ private:
 
     /// e' M^-1 e of e_ [n], which becomes L^-1 e; notes where M is not positive definite.
     template <class Matrix>
-    Real norm(const Matrix& M, int n) {
+    Whitened<Real> whiten_checked(const Matrix& M, int n) {
         const Whitened<Real> whitened = whiten_any<Real>(M, n, L_, e_);
         const Mask<Real> open = both(counts(), negated(whitened.sound));
         if (any(open)) note(look_closer(M, n, open), Status::covariance_not_positive_definite);
-        return whitened.squared_norm;
+        return whitened;
     }
 
     /// The lanes of `open` in which M is not positive definite.
@@ -265,6 +271,7 @@ private:
     Real* all_series_;
     Real *errors_, *moments_;
     Real *L_, *e_, *observed_;
+    ScaledProduct<Real> determinants_;  ///< of P, the product over the steps
 };
 
 }  // namespace CREDENCE_TARGET
