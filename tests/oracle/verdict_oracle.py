@@ -146,14 +146,24 @@ def part_of(matrices, components):
     return matrices[:, components][:, :, components]
 
 
+def parts(S):
+    """Of each trial the part that it is in: the sum of SplitMix64 of its squared errors, in single precision."""
+    total = np.zeros(len(S), dtype=np.uint64)
+    for number in np.diagonal(S, axis1=1, axis2=2).astype(np.float32).view(np.uint32).T:
+        hashes = number.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
+        for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+            hashes = (hashes ^ (hashes >> np.uint64(shift))) * np.uint64(factor)
+        total += hashes ^ (hashes >> np.uint64(31))
+    return (total % np.uint64(FOLDS)).astype(int)
+
+
 def crossed(x, components, which, limits):
-    """One number per trial, its direction found on the other parts (trial i is in part i mod FOLDS), and the
-    directions."""
+    """One number per trial, its direction found on the other parts, and the directions."""
     S, C = part_of(x.squares, components), part_of(x.predicted, components)
     basis = resolved_basis(C.sum(0), limits)
     a, b = np.empty(x.trials), np.empty(x.trials)
     directions = []
-    part = x.index % FOLDS
+    part = parts(S)
     for fold in range(FOLDS):
         train, test = part != fold, part == fold
         v = generalised(S[train].mean(0), C[train].mean(0), basis)[1][:, which]

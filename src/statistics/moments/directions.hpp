@@ -3,8 +3,8 @@
 // [docs/theory/statistics.md, Verdict]. NEES alone sees only the trace of P^-1 E[e e'].
 //
 // A direction is a generalised eigenvector, sum S v = lambda sum C v. For a finding, the one for the trials of a part
-// (index mod 3) is found on the other parts: it has no bias of selection, whatever the distribution. For an acceptance
-// it is that of all trials: selection then errs on the safe side.
+// is found on the other parts: it has no bias of selection, whatever the distribution. For an acceptance it is that of
+// all trials: selection then errs on the safe side.
 
 #include <limits>
 

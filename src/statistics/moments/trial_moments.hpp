@@ -43,7 +43,7 @@ struct TrialMoments {
     const double* C(std::size_t i) const { return S(i) + triangle_size(components); }
 };
 
-/// Number of parts of the trials, by their index in the study; a direction is found on the others.
+/// Number of parts of the trials; a direction is found on the others.
 inline constexpr int fold_count = 3;
 
 /// S and C of one group of components, which need not be contiguous, by trial. A trial in which a component is absent
@@ -51,7 +51,7 @@ inline constexpr int fold_count = 3;
 struct GroupMoments {
     std::vector<int> components;  ///< of the state; d of them
     Eigen::MatrixXd S, C;         ///< [trials, d(d+1)/2]
-    std::vector<int> fold;        ///< [trials]: index in the study mod fold_count
+    std::vector<int> fold;        ///< [trials]: the part that each is in
 
     int dimension() const { return static_cast<int>(components.size()); }
     double trials() const { return static_cast<double>(fold.size()); }
