@@ -108,6 +108,14 @@ struct Suspicion {
     TrialsNeeded trials;               ///< that would show it, if mean and spread stay; over the mean's 90 % interval
 };
 
+/// The smallest margins for which the acceptance would hold: what the trials show, whatever was asked for. NaN where
+/// nothing is shown.
+struct Reached {
+    double nees = 0;       ///< every NEES/dimension is within 1 -+ nees
+    double direction = 0;  ///< the squared error of every direction, over what P says, is within 1 -+ direction
+    double bias = 0;       ///< every mean error is within so many sigmas
+};
+
 struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
@@ -116,6 +124,7 @@ struct Consistency {
     /// normal. The verdict does not depend on them, except for that on a single trial.
     std::vector<Finding> cautions;
     DirectionsFound directions;
+    Reached reached;
     std::vector<std::string> hints;    ///< what such findings often come from
     bool chart_doubted = false;        ///< a hint says that the errors may be in another chart than P
     std::vector<std::string> reasons;  ///< undecided only: what could not be shown, and why

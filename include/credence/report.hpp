@@ -104,7 +104,8 @@ std::string report_html(const Report& report, const PageOrigin& origin);
 /// passes.
 enum class Requirement { consistent, no_finding };
 
-/// Throws Failure naming the arms that do not meet it. An arm without a trial that can be judged meets neither.
-void require(const Report& report, Requirement requirement);
+/// Throws Failure naming the arms that do not meet it. An arm without a trial that can be judged meets neither; if
+/// `strict`, one with a note [Consistency::cautions] meets neither.
+void require(const Report& report, Requirement requirement, bool strict = false);
 
 }  // namespace credence

@@ -70,6 +70,24 @@ class Verdict:
         """Whether the verdict is ``consistent``."""
         return self.verdict == "consistent"
 
+    @property
+    def findings(self) -> list[dict[str, Any]]:
+        """What speaks against the filter, each with what it is ``about``, ``where``, ``value`` and ``interval``."""
+        return list(self["findings"])
+
+    @property
+    def reached(self) -> dict[str, float | None]:
+        """The smallest margins that the runs show at 95 %, whatever was asked for: ``nees`` and ``direction`` as
+        shares of 1, ``bias`` in sigmas; None where nothing is shown."""
+        return dict(self["reached"])
+
+    @property
+    def log_score(self) -> dict[str, Any]:
+        """The negative log-likelihood of the truth under the belief in nats a step, lower is better: ``mean``, ``se``,
+        ``ci95``, ``median``, ``sd`` over the runs, each the mean over its steps. A proper score [Gneiting and Raftery
+        2007]."""
+        return dict(self["log_score"])
+
 
 def _array(array: npt.NDArray[Any]) -> tuple[Numbers, float]:
     """Doubles and singles as they are; anything else as doubles. With the precision of the type."""
@@ -230,8 +248,11 @@ def judge(
         return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 
 
-def assert_consistent(*arguments: Any, within: float | str | None = None, **named: Any) -> None:
-    """Raise AssertionError with the text of the report if the filter is refuted.
+def assert_consistent(
+    *arguments: Any, within: float | str | None = None, strict: bool = False, **named: Any
+) -> Verdict:
+    """Raise AssertionError with the text of the report if the filter is refuted; else return the verdict, whose
+    `reached` says what was shown.
 
     It takes the arguments of `judge`.
 
@@ -240,6 +261,8 @@ def assert_consistent(*arguments: Any, within: float | str | None = None, **name
     within : float or str
         The margin within which the filter must be shown to be ``consistent``, which takes some hundreds of runs. By
         default ``undecided`` passes: fifty runs that speak against nothing are no proof.
+    strict : bool
+        Notes of the report, such as innovations that are correlated, count as findings.
     """
     __tracebackhide__ = True  # pytest then shows the line that asserts
     if within is not None:
@@ -249,3 +272,6 @@ def assert_consistent(*arguments: Any, within: float | str | None = None, **name
         raise AssertionError(f"the filter is not consistent\n\n{verdict}")
     if within is not None and not verdict.is_consistent:
         raise AssertionError(f"the filter is not shown to be consistent within {within}\n\n{verdict}")
+    if strict and verdict["cautions"]:
+        raise AssertionError(f"the report has notes\n\n{verdict}")
+    return verdict

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import textwrap
 import numpy as np
 import pytest
 import records
+from scipy import stats
 
 import credence
 
@@ -232,3 +234,55 @@ def test_planar_poses_in_space_are_judged_in_the_plane():
         "Groups of nothing else are left out: tilt.",
     ]
     assert {**space.json[0], "not_judged": None} == {**flat.json[0], "not_judged": None}
+
+
+def test_reached_is_the_smallest_margin_that_is_accepted():
+    errors, covariances = np.random.default_rng(4).normal(size=(900, 20, 2)), np.broadcast_to(np.eye(2), (900, 20, 2, 2))
+    reached = credence.judge(errors, covariances).reached
+
+    def verdict(scale):
+        margins = (scale * reached[name] for name in ("nees", "direction", "bias"))
+        margin, direction, bias = margins
+        return credence.judge(errors, covariances, margin=margin, margin_direction=direction, bias=bias).verdict
+
+    assert verdict(1.0001) == "consistent"
+    assert verdict(0.9999) == "undecided"
+    few = credence.judge(errors[:50], covariances[:50])
+    assert few.reached["direction"] is None
+    assert 0 < few.reached["nees"] < 0.2
+    assert f"NEES/dim within {math.ceil(1000 * few.reached['nees']) / 10:g} % of 1" in str(few)
+
+
+def test_the_log_score_is_that_of_scipy():
+    rng = np.random.default_rng(5)
+    factor = np.array([[1, 0, 0], [0.5, 0.8, 0], [0.1, -0.3, 2]])
+    errors, covariance = rng.normal(size=(40, 6, 3)) @ factor.T, factor @ factor.T * 1.3
+    score = credence.judge(errors, np.broadcast_to(covariance, (40, 6, 3, 3))).log_score
+    expected = -stats.multivariate_normal.logpdf(errors, cov=covariance).mean(axis=1)
+    assert score["mean"] == pytest.approx(expected.mean(), rel=1e-12)
+    assert score["sd"] == pytest.approx(expected.std(ddof=1), rel=1e-9)
+
+
+def test_a_fault_of_every_third_trial_is_found_in_any_order():
+    rng = np.random.default_rng(6)
+    for _ in range(5):
+        errors = rng.normal(size=(600, 10, 2))
+        errors[::3, :, 1] = 0.8 * errors[::3, :, 0] + 0.6 * errors[::3, :, 1]
+        verdicts = [
+            credence.judge(one, np.broadcast_to(np.eye(2), (600, 10, 2, 2)))
+            for one in (errors, errors[rng.permutation(600)], errors[rng.permutation(600)][:, :, ::-1])
+        ]
+        assert {one.verdict for one in verdicts} == {"mixed"}
+        assert len({tuple(finding["about"] for finding in one.findings) for one in verdicts}) == 1
+
+
+def test_strict_makes_notes_fail():
+    rng = np.random.default_rng(7)
+    n = 400
+    errors, covariance = rng.normal(size=(n, 30, 1)), np.ones((n, 30, 1, 1))
+    white = rng.normal(size=(n, 30, 1))
+    correlated = white + 0.5 * np.roll(white, 1, axis=1)
+    given = {"innovation": correlated, "innovation_covariance": np.full((n, 30, 1, 1), 1.25)}
+    assert credence.assert_consistent(errors, covariance, **given).verdict == "consistent"
+    with pytest.raises(AssertionError, match="has notes"):
+        credence.assert_consistent(errors, covariance, strict=True, **given)

@@ -290,6 +290,8 @@ Option require_option() {
             {"consistent", "no-finding"}};
 }
 
+Option strict_option() { return {"strict", "", "notes count as findings for --require"}; }
+
 Option failed_option(const std::string& what) {
     return {"failed", "SHARE", "where more than this share of the trials failed, " + what + " (default 1%)"};
 }

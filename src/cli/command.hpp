@@ -90,6 +90,7 @@ Option margin_option();
 Option margin_direction_option();
 Option bias_option();
 Option require_option();
+Option strict_option();
 /// --failed; `what`: the consequence of too many failed trials.
 Option failed_option(const std::string& what);
 Option output_option(const std::string& help, const std::string& value = "FILE");

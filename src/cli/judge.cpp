@@ -35,6 +35,7 @@ const Command& judge_command() {
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          require_option(),
+         strict_option(),
          {"quiet", "", "no progress"},
          output_option("write there, not to the standard output"),
          overwrite_option()}};

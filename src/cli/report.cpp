@@ -23,6 +23,7 @@ const Command& report_command() {
          failed_option("the verdict is `failed`"),
          format_option({"text", "json", "csv", "html"}),
          require_option(),
+         strict_option(),
          output_option("write there, not to the standard output"),
          overwrite_option()}};
     return command;
@@ -32,6 +33,8 @@ ReportRequest read_report_request(const Parsed& parsed) {
     const ReportRequest request{parsed.choice("format"), parse_limits(parsed)};
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require");
+    else if (parsed.has("strict"))
+        throw InputError("--strict says nothing without --require. Add --require no-finding or --require consistent.");
     return request;
 }
 
@@ -61,7 +64,8 @@ int give_report(const Parsed& parsed, const ReportRequest& request, const Report
                 const RunFacts& run) {
     write_output(parsed, rendered(report, request.format, path, run));
     if (parsed.has("require"))
-        require(report, parsed.choice("require") == "consistent" ? Requirement::consistent : Requirement::no_finding);
+        require(report, parsed.choice("require") == "consistent" ? Requirement::consistent : Requirement::no_finding,
+                parsed.has("strict"));
     return 0;
 }
 

@@ -137,13 +137,16 @@ Report together(std::vector<Report> reports) {
     return all;
 }
 
-void require(const Report& report, Requirement requirement) {
+void require(const Report& report, Requirement requirement, bool strict) {
     std::vector<std::string> others;
     const bool proof = requirement == Requirement::consistent;
     for (const ArmReport& arm : report.arms) {
         const bool open = arm.consistency.verdict == Verdict::undecided && arm.evidence.trials > 0 && !proof;
         if (arm.consistency.verdict != Verdict::consistent && !open)
             others.push_back(arm.scenario + "/" + arm.arm + " " + verdict_clause(arm));
+        else if (strict && !arm.consistency.cautions.empty())
+            others.push_back(arm.scenario + "/" + arm.arm + " has a note (" +
+                             sentence(arm.consistency.cautions.front()) + ")");
     }
     if (!others.empty())
         throw Failure(std::string("required ") + (proof ? "consistent" : "no finding") + ", but " + joined(others) +

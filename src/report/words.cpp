@@ -89,6 +89,20 @@ std::string suspicion_text(const ArmReport& arm, const Suspicion& suspicion) {
            number(suspicion.trials.high, 0) + ")";
 }
 
+/// `shown at 95 %: NEES/dim within 12 % of 1, directions within 31 %, bias within 0.21 sigma`
+std::string reached_text(const ArmReport& arm) {
+    const Reached& reached = arm.consistency.reached;
+    std::vector<std::string> parts;
+    const auto add = [&](const std::string& of, double margin, const std::string& unit) {
+        const double scale = margin < 1 ? 100 : margin < 10 ? 10 : 1, size = std::ceil(margin * scale) / scale;
+        if (!std::isnan(margin)) parts.push_back(of + " within " + short_number(size) + unit);
+    };
+    add("NEES/dim", 100 * reached.nees, " % of 1");
+    add("directions", 100 * reached.direction, " %");
+    add("bias", reached.bias, " sigma");
+    return parts.empty() ? "" : "shown at 95 %: " + joined(parts);
+}
+
 /// The suspicions, those that need the fewest trials first.
 std::vector<std::string> suspicion_texts(const ArmReport& arm) {
     constexpr std::size_t most = 3;
@@ -111,6 +125,7 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     std::vector<std::string> reasons = verdict.reasons;
     std::ranges::copy(suspicion_texts(arm), std::back_inserter(reasons));
     if (const std::string text = needed_text(arm); !text.empty()) reasons.push_back(text);
+    if (const std::string text = reached_text(arm); !text.empty()) reasons.push_back(text);
     return reasons;
 }
 
@@ -204,6 +219,7 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     }
     for (const Finding& caution : verdict.cautions) reasons.push_back({"note, " + sentence(caution), {}});
     for (const std::string& text : undecided_reasons(arm)) reasons.push_back({text, {}});
+    if (verdict.verdict == Verdict::consistent) reasons.push_back({reached_text(arm), {}});
     return reasons;
 }
 

@@ -61,6 +61,10 @@ double degrees_over_steps(const PositiveSample& sample, int dimension, double st
 
 Acceptance accept_mean(const PositiveSample& sample, double margin) { return accept_means(sample, sample, margin); }
 
+double margin_shown(const PositiveSample& smallest, const PositiveSample& largest) {
+    return std::max(1 - lower_bound(smallest, levels::acceptance), upper_bound(largest, levels::acceptance, 0) - 1);
+}
+
 Acceptance accept_means(const PositiveSample& smallest, const PositiveSample& largest, double margin) {
     if (!(lower_bound(smallest, levels::acceptance) >= 1 - margin)) return Acceptance::more_trials;
     if (upper_bound(largest, levels::acceptance, 0) <= 1 + margin) return Acceptance::shown;

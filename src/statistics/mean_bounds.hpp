@@ -65,6 +65,9 @@ double degrees_over_steps(const PositiveSample& sample, int dimension, double st
 enum class Acceptance { shown, more_trials, tails };
 Acceptance accept_mean(const PositiveSample& sample, double margin);
 
+/// The smallest margin for which the latter is shown.
+double margin_shown(const PositiveSample& smallest, const PositiveSample& largest);
+
 /// The same of all means from that of `smallest` to that of `largest`.
 Acceptance accept_means(const PositiveSample& smallest, const PositiveSample& largest, double margin);
 

@@ -1,5 +1,6 @@
 #include "verdict/judgement.hpp"
 
+#include "base/nan.hpp"
 #include "statistics/mean_bounds.hpp"
 #include "statistics/tails.hpp"
 
@@ -37,6 +38,7 @@ private:
             std::snprintf(text, sizeof text, "rounding alone may change it by %.2g %%", 100 * group_.rounding);
         else
             std::snprintf(text, sizeof text, "P cannot be distinguished from a singular one");
+        judgement_.reach(&Reached::nees, std::numeric_limits<double>::infinity());
         judgement_.not_shown("conditioning: NEES of " + group_.name + " is left out, because " + text, false);
     }
 
@@ -52,6 +54,7 @@ private:
                 {Subject::size, Fault{}, group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
         else if (std::optional<Suspicion> looks = suspicion_of(sample, level, margin()))
             judgement_.suspect({Subject::size, looks->what, group_.name, looks->value, "NEES/dim", looks->trials});
+        judgement_.reach(&Reached::nees, margin_shown(sample, sample));
         const std::string what = "NEES/dim of " + group_.name;
         const Acceptance acceptance = accept_mean(sample, margin());
         if (claim.tails)
@@ -145,6 +148,10 @@ void Judgement::accept(Acceptance acceptance, const std::string& what) {
     (acceptance == Acceptance::tails ? tails_ : unknown_).push_back(what);
 }
 
+void Judgement::reach(double Reached::* margin, double value) {
+    reached_.*margin = std::max(reached_.*margin, std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
+}
+
 void Judgement::not_shown(const std::string& why, bool more_trials_help) {
     all_shown_ = false;
     more_trials_help_ = more_trials_help_ && more_trials_help;
@@ -158,6 +165,10 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     verdict.limits = limits_;
     verdict.findings = std::move(findings_);
     verdict.directions = std::move(directions);
+    for (double Reached::* margin : {&Reached::nees, &Reached::direction, &Reached::bias}) {
+        const double reached = reached_.*margin;
+        verdict.reached.*margin = reached > 0 && std::isfinite(reached) ? reached : nan;
+    }
     if (above_ && below_) verdict.verdict = Verdict::mixed;
     else if (above_) verdict.verdict = Verdict::optimistic;
     else if (below_) verdict.verdict = Verdict::pessimistic;

@@ -21,6 +21,8 @@ public:
     void add_bias(Finding finding);
     /// Whether something was shown to lie within its margin; `what` names it.
     void accept(Acceptance acceptance, const std::string& what);
+    /// What was shown in one group, component or all directions; infinite where nothing was.
+    void reach(double Reached::* margin, double value);
     /// `consistent` is withheld, for this reason, which more trials may remove or not.
     void not_shown(const std::string& why, bool more_trials_help);
     void suspect(Suspicion suspicion);
@@ -35,6 +37,7 @@ private:
     std::vector<Finding> findings_;
     std::vector<std::string> reasons_, unknown_, tails_;
     std::vector<Suspicion> suspicions_;
+    Reached reached_;
     bool above_ = false, below_ = false, all_shown_ = true, more_trials_help_ = true;
 };
 

@@ -223,6 +223,8 @@ TEST_CASE("judge: --require no-finding passes on what is not refuted, and fails 
     CHECK(code("few", "consistent") == 1);
     CHECK(code("few", "no-finding") == 0);
     CHECK(code("wrong", "no-finding") == 1);
+    CHECK(code("right", "no-finding --strict") == 0);
+    CHECK(here.credence("judge right.h5 --quiet --strict").exit_code == 2);
     CHECK_THAT(here.credence("judge wrong.h5 --quiet --require no-finding").err,
                Contains("required no finding, but wrong/record is optimistic."));
     std::fill(record.covariance.begin(), record.covariance.end(), 0);

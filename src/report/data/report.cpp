@@ -133,6 +133,8 @@ Json arm_json(const Report& report, const ArmReport& arm) {
                             {"autocorrelation_time", segments.autocorrelation_time > 0
                                                          ? Json(segments.autocorrelation_time)
                                                          : Json()}};
+    const Reached& reached = arm.consistency.reached;
+    json["reached"] = {{"nees", reached.nees}, {"direction", reached.direction}, {"bias", reached.bias}};
     json["directions"] = directions_json(arm.consistency.directions);
     json["hints"] = arm.consistency.hints;
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};

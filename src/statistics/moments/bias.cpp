@@ -1,5 +1,6 @@
 #include "statistics/moments/bias.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "statistics/mean_bounds.hpp"
@@ -19,6 +20,7 @@ BiasClaim claim_on_bias(const Moments& z, double largest_error, int components, 
     claim.finding = claim.interval.low > margin || claim.interval.high < -margin;
     const Interval inside = t_interval(z, 2 * levels::acceptance);
     claim.accepted = inside.low >= -margin && inside.high <= margin;
+    claim.shown = std::max(-inside.low, inside.high);
     return claim;
 }
 

@@ -14,6 +14,7 @@ struct BiasClaim {
     bool known_exactly = false;  ///< no bias; S and C of the component are no evidence and are to be left out
     bool finding = false;        ///< outside the margin
     bool accepted = false;       ///< inside the margin, at 95 %
+    double shown = 0;            ///< the smallest margin inside which it is, at 95 %
 };
 
 /// `z`: moments over the trials of the component's mean standardised error; `largest_error`: |e| over all trials and
