@@ -104,6 +104,10 @@ struct Record {
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {},
                    int segments = segments_auto);
 
+/// Throws InputError naming what shows that the runs of a record are not those of the first: other numbers of runs,
+/// steps or components, another `truth`, other `time` or `steps`. What only one of them has shows nothing.
+void require_same_runs(const std::string& first, const std::string& path);
+
 /// An array in memory that stands for a dataset of a record.
 struct RecordArray {
     enum class Type { real32, real64 };

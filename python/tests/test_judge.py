@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 
+import h5py
 import numpy as np
 import pytest
 import records
@@ -286,3 +287,29 @@ def test_strict_makes_notes_fail():
     assert credence.assert_consistent(errors, covariance, **given).verdict == "consistent"
     with pytest.raises(AssertionError, match="has notes"):
         credence.assert_consistent(errors, covariance, strict=True, **given)
+
+
+def test_records_of_other_runs_are_not_compared(tmp_path):
+    rng = np.random.default_rng(8)
+    truth = rng.normal(size=(60, 30, 2))
+
+    def record(name, truth, time):
+        path = tmp_path / name
+        with h5py.File(path, "w") as file:
+            file["truth"], file["estimate"], file["time"] = truth, truth + rng.normal(size=truth.shape), time
+            file["covariance"] = np.broadcast_to(np.eye(2), (*truth.shape, 2))
+            file.attrs.update(manifold="R2", chart="local")
+        return path
+
+    time = np.arange(30.0)
+    first, same = record("first.h5", truth, time), record("same.h5", truth, time)
+    assert "log score" in str(credence.compare(first, same))
+    moved = truth.copy()
+    moved[17, 3, 1] += 1e-9
+    for other, said in (
+        (record("moved.h5", moved, time), "/truth: differs from that of the first record in entry 17"),
+        (record("later.h5", truth, time + 0.5), "/time: differs from that of the first record in entry 0"),
+        (record("short.h5", truth[:, :20], time[:20]), r"/estimate: is \[60, 20, 2\], not \[60, 30, 2\]"),
+    ):
+        with pytest.raises(credence.InputError, match=said):
+            credence.compare(first, other)

@@ -49,6 +49,7 @@ std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
     if (records && paths.size() == 1) throw InputError("compare takes several records of the same runs. Give another.");
     std::vector<StudyFile> files;
     for (const std::string& path : paths) {
+        if (records && path != paths.front()) require_same_runs(paths.front(), path);
         files.push_back({path, records ? study_of(read_record(path, {}, segments_off)) : read_results(path, 0).study});
         if (records && files.back().study.trials != files.front().study.trials)
             throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +

@@ -4,6 +4,7 @@
 
 #include "files/hdf5/slab.hpp"
 #include "record/read.hpp"
+#include "record/same_runs.hpp"
 
 namespace credence {
 
@@ -110,6 +111,17 @@ Record read_in_chart(const std::string& path, const std::function<void(const Pro
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
     return read_in_chart(path, progress, segments, false);
+}
+
+void require_same_runs(const std::string& first, const std::string& path) {
+    const std::string what = "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n]";
+    hdf5::read_file(first, what, [&](const Handle& root) {
+        hdf5::read_file(path, what, [&](const Handle& other) {
+            require_same_runs(FileSource(root), FileSource(other));
+            return true;
+        });
+        return true;
+    });
 }
 
 }  // namespace credence
