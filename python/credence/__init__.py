@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from credence._core import Failure, InputError
     from credence.arm import Arm
     from credence.judging import Verdict, assert_consistent, judge
+    from credence._trials import Run
     from credence.pictures import animate, plot
     from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
+    from credence.simulating import Simulation, simulate
     from credence.study import Scenario, Study, open
     from credence.trajectory import Trajectory, open_trajectories
 
@@ -28,7 +30,9 @@ _modules = {
     "InputError": "_core",
     "Interrupted": "program",
     "Report": "program",
+    "Run": "_trials",
     "Scenario": "study",
+    "Simulation": "simulating",
     "Study": "study",
     "Trajectory": "trajectory",
     "Verdict": "judging",
@@ -44,6 +48,7 @@ _modules = {
     "resume": "program",
     "run": "program",
     "show": "program",
+    "simulate": "simulating",
 }
 
 __all__ = [
@@ -53,7 +58,9 @@ __all__ = [
     "InputError",
     "Interrupted",
     "Report",
+    "Run",
     "Scenario",
+    "Simulation",
     "Study",
     "Trajectory",
     "Verdict",
@@ -69,6 +76,7 @@ __all__ = [
     "resume",
     "run",
     "show",
+    "simulate",
 ]
 
 

@@ -17,6 +17,7 @@ from credence import _core
 from credence._calls import errors_of_arguments, framed, progress_bar, said
 
 if TYPE_CHECKING:
+    from credence.simulating import Simulation
     from credence.study import Study
     from credence.trajectory import Trajectory
 
@@ -33,11 +34,12 @@ class Interrupted(KeyboardInterrupt):
 
     Attributes
     ----------
-    study : Study
-        The trials that were done; ``credence.resume(study)`` goes on with them.
+    study : Study, Simulation or None
+        The trials that were done; ``credence.resume(study)`` goes on with those of a Study, and ``simulate`` with
+        ``resume=True`` with those beside its output.
     """
 
-    def __init__(self, message: str, study: Study) -> None:
+    def __init__(self, message: str, study: Any) -> None:
         super().__init__(message)
         self.study = study
 
@@ -106,7 +108,7 @@ def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
         yield [os.fspath(given)]
 
 
-def _path_of(study: Study | File) -> str:
+def _path_of(study: Any) -> str:
     """The path of a results file. That of a study still leads to the file that it has open."""
     if isinstance(study, (str, os.PathLike)):
         return os.fspath(study)
@@ -314,7 +316,7 @@ class Printed:
         What the command prints with ``--format json``, the same bits.
     """
 
-    def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
+    def __init__(self, command: str, studies: Sequence[Any], words: Sequence[str]) -> None:
         with errors_of_arguments():
             self._said = _core.Said([command, *map(_path_of, studies), *words])
         self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
@@ -368,14 +370,15 @@ def report(
 
 
 def compare(
-    *studies: Study | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
+    *studies: Study | Simulation | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
 ) -> Comparison:
     """Compare arms or runs trial by trial, A - B.
 
     Parameters
     ----------
-    *studies : Study or path
-        One study, whose arms are compared; several with the same seed and world; or records of the same runs.
+    *studies : Study, Simulation or path
+        One study or simulation, whose arms are compared; several studies with the same seed and world; or records of
+        the same runs.
     arms : tuple of str, or str
         A and B: ``("greedy", "fixed")``; by default every planned arm against its baseline, or the arms of further
         studies against those of the first.
@@ -386,6 +389,8 @@ def compare(
     -------
     Comparison
     """
+    if len(studies) == 1 and hasattr(studies[0], "compare"):  # a Simulation
+        return studies[0].compare(arms, failed)
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
     return Comparison("compare", studies, _option_words(arms=both, failed=failed))
 
