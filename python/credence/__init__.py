@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
+    from credence._trials import Run
     from credence.arm import Arm
     from credence.judging import Verdict, assert_consistent, judge
-    from credence._trials import Run
     from credence.pictures import animate, plot
-    from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
+    from credence.program import Comparison, Interrupted, Report, compare, merge, replay, report, resume, run, show
     from credence.simulating import Simulation, simulate
     from credence.study import Scenario, Study, open
     from credence.trajectory import Trajectory, open_trajectories
@@ -40,6 +40,7 @@ _modules = {
     "assert_consistent": "judging",
     "compare": "program",
     "judge": "judging",
+    "merge": "program",
     "open": "study",
     "open_trajectories": "trajectory",
     "plot": "pictures",
@@ -68,6 +69,7 @@ __all__ = [
     "assert_consistent",
     "compare",
     "judge",
+    "merge",
     "open",
     "open_trajectories",
     "plot",

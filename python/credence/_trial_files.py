@@ -86,7 +86,9 @@ class Trials:
         if at == 0:
             raise InputError(f"{self.path}: is no file of simulated trials. Remove it, or choose another output.")
         if at < size:
-            warnings.warn(f"{self.path}: its last {size - at} bytes are no whole chunk; its trials run again.", stacklevel=6)
+            warnings.warn(
+                f"{self.path}: its last {size - at} bytes are no whole chunk; its trials run again.", stacklevel=6
+            )
             self._file.truncate(at)
         self._file.seek(at)
 
@@ -118,7 +120,7 @@ class Trials:
             left = left[self._file.write(left) :]
 
     def append(self, frame: Frame) -> None:
-        """Add a chunk. What was added is safe from the end of the process, and after a second from that of the machine."""
+        """Add a chunk. It is safe from the end of the process at once, and from that of the machine within a second."""
         at = self._file.seek(0, os.SEEK_END)
         try:
             self._write(frame.data)
@@ -169,7 +171,9 @@ def _difference(layout: dict[str, Any], segment: dict[str, Any]) -> str:
     first = layout["trials"][0]
     if mine.keys() != other.keys():
         name = min(mine.keys() ^ other.keys())
-        return f"{printable(name)} is in {'this' if name in mine else 'that'} run, and not in both (that is trial {first})"
+        return (
+            f"{printable(name)} is in {'this' if name in mine else 'that'} run, and not in both (that is trial {first})"
+        )
     for name, (dtype, shape) in mine.items():
         if shape[1:] != other[name][1][1:] or dtype != other[name][0]:
             shapes = (f"{np.dtype(one[0]).name} {one[1]}" for one in (mine[name], other[name]))

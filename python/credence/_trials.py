@@ -239,7 +239,9 @@ def _number_array(name: str, given: object) -> Array:
     """A copy, because the function may use its array again: doubles and singles as they are, else doubles."""
     array = np.array(given)
     if array.dtype.kind not in "fiub":
-        raise InputError(f"{printable(name)}: is an array of {array.dtype}, not of numbers. Give floating-point numbers.")
+        raise InputError(
+            f"{printable(name)}: is an array of {array.dtype}, not of numbers. Give floating-point numbers."
+        )
     return array if array.dtype in (np.float64, np.float32) else array.astype(np.float64)
 
 
@@ -318,7 +320,9 @@ def take(result: object, known: _Texts, batch: int = 0) -> Taken:
     if batch and {len(array) for array in arrays.values()} != {batch}:
         found = ", ".join(f"{printable(name)} {_shape(array)}" for name, array in arrays.items())
         raise InputError(f"the function got {batch} generators and returned {found}. Give each a leading dimension.")
-    if "steps" in arrays and not np.all((arrays["steps"] >= 1) & (arrays["steps"] <= steps) & (arrays["steps"] % 1 == 0)):
+    if "steps" in arrays and not np.all(
+        (arrays["steps"] >= 1) & (arrays["steps"] <= steps) & (arrays["steps"] % 1 == 0)
+    ):
         raise InputError(f"steps: is not a whole number from 1 to {steps}. Give how many of its steps the run has.")
     return Taken(arrays, known.of(result))
 
@@ -353,8 +357,15 @@ class _Chunk:
         last["trials"].append(trial)
         last["parts"].append(list(run.arrays.values()))
 
-    def frame(self, numbers: Sequence[int], seconds: float, metrics: Sequence[str], repeats: Mapping[str, bool]) -> bytes:
-        header: dict[str, Any] = {"numbers": list(numbers), "seconds": seconds, "repeats": dict(repeats), "segments": []}
+    def frame(
+        self, numbers: Sequence[int], seconds: float, metrics: Sequence[str], repeats: Mapping[str, bool]
+    ) -> bytes:
+        header: dict[str, Any] = {
+            "numbers": list(numbers),
+            "seconds": seconds,
+            "repeats": dict(repeats),
+            "segments": [],
+        }
         body: list[bytes] = []
         for segment in self.segments:
             arrays = {name: np.array(each) for (name, _, _), each in zip(segment["form"], zip(*segment["parts"]))}

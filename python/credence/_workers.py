@@ -78,15 +78,16 @@ def _workers_of(executor: Any) -> int:
         if isinstance(count, int) and count > 0:
             return count
     with contextlib.suppress(Exception):  # dask.distributed
-        return max(1, sum(executor._client.ncores().values()))
+        return max(1, int(sum(executor._client.ncores().values())))
     return os.cpu_count() or 1
 
 
 @dataclass
 class Task(Generic[Payload]):
-    """What a worker has to do, and how often its worker was lost."""
+    """What a worker has to do, whether it does nothing beside it, and how often it was lost with a worker."""
 
     payload: Payload
+    is_alone: bool = False
     lost: int = 0
 
 
@@ -149,8 +150,8 @@ class Workers(Generic[Payload]):
     ) -> Iterator[tuple[Payload, Any]]:
         """Yield payloads with their results as they come, in any order; None where a worker was lost too often.
 
-        A task whose worker is lost runs again by itself, so that a task that ends its worker is told from those beside
-        it; at the last try its `parts` run one by one, so that only the part that does so is given up.
+        A task whose worker is lost runs again in its `parts`, one by one and nothing beside them, so that a part that
+        ends its worker is told from those that only were beside it: the part that is lost three times is given up.
 
         Parameters
         ----------
@@ -165,7 +166,7 @@ class Workers(Generic[Payload]):
         running: dict[Future[Any], Task[Payload]] = {}
         try:
             while True:
-                while len(running) < self.window and not any(task.lost for task in running.values()):
+                while len(running) < self.window and not any(task.is_alone for task in running.values()):
                     if again and running:
                         break
                     if again:
@@ -197,13 +198,13 @@ class Workers(Generic[Payload]):
                     else:
                         yield task.payload, result
                         continue
-                    task.lost += 1
-                    if task.lost >= TRIES:
-                        yield task.payload, None
-                    elif task.lost == TRIES - 1:
-                        again.extend(Task(part, task.lost) for part in parts(task.payload))
+                    pieces = parts(task.payload)
+                    if len(pieces) > 1:
+                        again.extend(Task(piece, True) for piece in pieces)
+                    elif task.lost + 1 < TRIES:
+                        again.append(Task(task.payload, True, task.lost + 1))
                     else:
-                        again.append(task)
+                        yield task.payload, None
                 if is_broken:
                     self._replace()
         finally:

@@ -108,7 +108,7 @@ def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
         yield [os.fspath(given)]
 
 
-def _path_of(study: Any) -> str:
+def _path_of(study: Study | File) -> str:
     """The path of a results file. That of a study still leads to the file that it has open."""
     if isinstance(study, (str, os.PathLike)):
         return os.fspath(study)
@@ -168,6 +168,8 @@ def run(
     overwrite: bool = False,
     keep: str | None = None,
     force: bool = False,
+    executor: Any = None,
+    shards: int | None = None,
     progress: bool | None = None,
 ) -> Study:
     """Run a study: every scenario under all its arms. The results are those of ``credence run``, bit for bit.
@@ -183,7 +185,7 @@ def run(
     seed : int
         The root seed, from 0 to 2^64 - 1 (1). The same scenarios and seed give the same results.
     threads : int
-        Threads (all processors).
+        Threads (all processors; with an executor one for each shard).
     set : dict
         Values of keys in place of the scenario's: ``{"noise.heading": 0.01}``.
     sweep : dict
@@ -199,6 +201,11 @@ def run(
         ``"trials"``, one number a trial of every column, or ``"aggregates"``, their totals alone.
     force : bool
         Whether a run starts for which memory or disk are too small.
+    executor : int or executor
+        Where shards of the study run, as of `simulate`; their files are merged [docs/cluster.md]. The files of the
+        scenarios are sent along. Not with `until`, whose analyses need all trials.
+    shards : int
+        How many there are (as many as the executor has workers). Each has every so-many-th block of 256 trials.
     progress : bool
         Whether a bar of tqdm is drawn; by default on a terminal and in a notebook.
 
@@ -215,15 +222,56 @@ def run(
     Interrupted
         A KeyboardInterrupt: the run was stopped. Its `study` has what was done.
     """
-    options = _option_words(
-        trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force
-    ) + _setting_words(set, sweep)
+    settings = _setting_words(set, sweep)
+    if executor is not None:
+        if until is not None:
+            raise _core.InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
+        if output is not None and os.path.exists(output) and not overwrite:
+            raise _core.InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
+        options = _option_words(trials=trials, seed=seed, threads=threads or 1, keep=keep, force=force) + settings
+        from credence._shards import shards_of
+
+        with _scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
+            merge_options = _option_words(overwrite=overwrite)
+            return _written(["merge", *parts, *merge_options], output, False)
+    elif shards is not None:
+        raise _core.InputError("shards: say nothing without an executor. Give both, or leave it out.")
+    options = _option_words(trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force)
     with _scenario_files(path_or_text) as paths:
-        words = ["run", *paths, *options, *_goal_words(until)]
-        if output is not None:
-            return _finish(words, os.fspath(output), progress)
-        folder = tempfile.mkdtemp(prefix="credence-")
-        return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
+        return _written(["run", *paths, *options, *settings, *_goal_words(until)], output, progress)
+
+
+def merge(
+    paths: Sequence[File], output: File | None = None, *, overwrite: bool = False, progress: bool | None = None
+) -> Study:
+    """Make one results file of the shards of a study: the same bits as those of one run [docs/cluster.md].
+
+    Parameters
+    ----------
+    paths : list of path
+        The results files of all shards.
+    output, overwrite, progress
+        As of `run`.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        A ValueError: shards are not of one study, or blocks are missing.
+    """
+    words = ["merge", *(os.fspath(path) for path in paths), *_option_words(overwrite=overwrite)]
+    return _written(words, output, progress)
+
+
+def _written(words: list[str], output: File | None, progress: bool | None) -> Study:
+    """Run a command that writes a results file, a temporary one without `output`."""
+    if output is not None:
+        return _finish(words, os.fspath(output), progress)
+    folder = tempfile.mkdtemp(prefix="credence-")
+    return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
 
 
 def resume(
@@ -316,7 +364,7 @@ class Printed:
         What the command prints with ``--format json``, the same bits.
     """
 
-    def __init__(self, command: str, studies: Sequence[Any], words: Sequence[str]) -> None:
+    def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
         with errors_of_arguments():
             self._said = _core.Said([command, *map(_path_of, studies), *words])
         self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
@@ -389,10 +437,14 @@ def compare(
     -------
     Comparison
     """
-    if len(studies) == 1 and hasattr(studies[0], "compare"):  # a Simulation
-        return studies[0].compare(arms, failed)
+    simulations = [study for study in studies if hasattr(study, "compare")]
+    if simulations and len(studies) == 1:
+        return simulations[0].compare(arms, failed)
+    if simulations:
+        raise _core.InputError("cannot compare a simulation with others (it has several records). Give their paths.")
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
-    return Comparison("compare", studies, _option_words(arms=both, failed=failed))
+    files = [study for study in studies if not hasattr(study, "compare")]
+    return Comparison("compare", files, _option_words(arms=both, failed=failed))
 
 
 def show(

@@ -73,7 +73,7 @@ class Goal(NamedTuple):
 
 
 def _goal(name: str, width: object, arms: Arms) -> Goal:
-    given = f"invalid until={printable(f'{name}={width}')}"
+    given = f"invalid until={printable(f'{name}={width}' if name else str(width))}"
     parts = re.fullmatch(r"([^\[\]=]+)(?:\[(.+)\])?", name.strip())
     number = str(width).strip()
     try:
@@ -86,7 +86,9 @@ def _goal(name: str, width: object, arms: Arms) -> Goal:
     if parts[2] is not None:
         pairs = [(a, b) for a in arms for b in arms if a != b and f"{a}-{b}" == parts[2]]
         if not pairs:
-            raise _core.InputError(f"{given} (there are no two such arms). Write NUMBER[A-B] with two of {', '.join(arms)}.")
+            raise _core.InputError(
+                f"{given} (there are no two such arms). Write NUMBER[A-B] with two of {', '.join(arms)}."
+            )
         pair = pairs[0]
     is_relative = number.endswith("%")
     return Goal(parts[1].strip(), pair, size / 100 if is_relative else size, is_relative)
@@ -118,11 +120,44 @@ def _arms(given: Mapping[str, Mapping[str, Any]] | None) -> Arms:
             why = f"{printable(name)} is no name of letters, digits and . + -"
             raise _core.InputError(f"invalid arms ({why}). Give one that can be a part of a file's name.")
         if not isinstance(options, Mapping):
-            raise _core.InputError(f"invalid arms ({name} has no dict of options). Give one, such as {{'kf': {{'q': 0.2}}}}.")
+            raise _core.InputError(
+                f"invalid arms ({name} has no dict of options). Give one, such as {{'kf': {{'q': 0.2}}}}."
+            )
         arms[name] = dict(options)
     if not arms:
         raise _core.InputError("invalid arms (there is none). Name one, or leave arms out.")
     return arms
+
+
+class _Files:
+    """The files of a study: the record of each arm, mine.h5 or mine.kf.h5 of the arm kf, and the trials.
+
+    Temporary ones are removed with this object, which whoever reads them has.
+    """
+
+    def __init__(self, output: File | None, arms: Mapping[str, Any] | None) -> None:
+        folder = tempfile.mkdtemp(prefix="credence-") if output is None else None
+        whole = Path(folder, f"{ONLY_ARM}.h5") if folder else Path(os.path.abspath(os.fspath(output or "")))
+        self.trials = whole.with_name(f"{whole.name}.trials")
+        self.records = {ONLY_ARM: whole}
+        if arms is not None:
+            self.records = {name: whole.with_name(f"{whole.stem}.{name}{whole.suffix}") for name in arms}
+        self._remove = weakref.finalize(self, _remove, folder, os.getpid()) if folder else None
+
+    def refuse_what_exists(self) -> None:
+        for path in (self.trials, *self.records.values()):
+            if path.exists():
+                raise _core.InputError(f"cannot write {path} (it exists). Remove it, say resume=True, or name another.")
+
+    def remove_temporary(self) -> None:
+        if self._remove is not None:
+            self._remove()
+
+
+def _remove(folder: str, owner: int) -> None:
+    """Remove a temporary folder, unless this process is a fork of its owner."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 class SimulatedArm:
@@ -137,8 +172,8 @@ class SimulatedArm:
         Its trials without a result. Those whose numbers are not finite are counted by the verdict.
     """
 
-    def __init__(self, name: str, path: str, failures: list[Failure], limit: float | str) -> None:
-        self.name, self.path, self.failures, self._limit = name, path, failures, limit
+    def __init__(self, name: str, path: str, failures: list[Failure], limit: float | str, folder: object) -> None:
+        self.name, self.path, self.failures, self._limit, self._folder = name, path, failures, limit, folder
         self._verdict: Verdict | None = None
 
     def judge(self, **options: Any) -> Verdict:
@@ -185,7 +220,9 @@ class SimulatedArm:
                 for what, dataset in group.items():
                     arguments.setdefault(f"group_{what}", {})[name] = np.asarray(dataset[()])
             sized = {"all": file.get("nees"), **{name: one.get("nees") for name, one in file.get("group", {}).items()}}
-            sizes = {name: int(one.attrs["dimension"]) for name, one in sized.items() if one and "dimension" in one.attrs}
+            sizes = {
+                name: int(one.attrs["dimension"]) for name, one in sized.items() if one and "dimension" in one.attrs
+            }
             arguments.update({name: str(file.attrs[name]) for name in named if name in file.attrs})
         return arguments | ({"dimension": sizes} if sizes else {})
 
@@ -207,14 +244,12 @@ class Simulation:
         Whether trial 0 gave the same numbers twice.
     """
 
-    def __init__(
-        self, paths: Mapping[str, Path], trials: int, seed: int, failures: list[Failure], limit: float | str, same: bool
-    ) -> None:
-        self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, same
+    def __init__(self, files: _Files, trials: int, seed: int, failures: list[Failure], limit: float | str) -> None:
+        self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, True
         self._limit = limit
         self._arms = {
-            name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit)
-            for name, path in paths.items()
+            name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
+            for name, path in files.records.items()
         }
 
     def arm(self, name: str) -> SimulatedArm:
@@ -249,7 +284,9 @@ class Simulation:
         names = list(self._arms) if arms is None else list(arms.split(",") if isinstance(arms, str) else arms)[::-1]
         if len(names) < 2 or (arms is not None and len(names) != 2):
             raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
-        return compare(*(self.arm(name.strip()).path for name in names), failed=self._limit if failed is None else failed)
+        return compare(
+            *(self.arm(name.strip()).path for name in names), failed=self._limit if failed is None else failed
+        )
 
     def _said(self, form: str) -> str:
         paths = [arm.path for arm in self._arms.values()]
@@ -261,7 +298,8 @@ class Simulation:
         lines = [self._said("text").rstrip("\n")]
         if self.failures:
             first = self.failures[0]
-            lines.append(f"\n{len(self.failures)} without a result, the first: trial {first.trial} of {first.arm}: {first.reason}")
+            where = f"the first: trial {first.trial} of {first.arm}"
+            lines.append(f"\n{len(self.failures)} without a result, {where}: {first.reason}")
             lines += [first.traceback.rstrip("\n")] if first.traceback else []
         return "\n".join(lines) + "\n"
 
@@ -365,7 +403,9 @@ class _Engine:
         if self._seconds == 0:
             return 1
         by_time = int(CHUNK_SECONDS / self._seconds)
-        return max(1, min(by_time, CHUNK_BYTES // self._bytes, CHUNK_TRIALS, left // (4 * workers) if workers > 1 else left))
+        return max(
+            1, min(by_time, CHUNK_BYTES // self._bytes, CHUNK_TRIALS, left // (4 * workers) if workers > 1 else left)
+        )
 
     def _add(self, frame: Frame) -> None:
         header = frame.header
@@ -454,13 +494,6 @@ def _refuse_missing(module: str, why: str) -> None:
         raise _core.InputError(f"{module} is not installed ({why}). Install it: pip install {module}.")
 
 
-def _paths(output: Path, arms: Mapping[str, Any] | None) -> dict[str, Path]:
-    """The record of each arm: mine.h5, or mine.kf.h5 of the arm kf."""
-    if arms is None:
-        return {ONLY_ARM: output}
-    return {name: output.with_name(f"{output.stem}.{name}{output.suffix}") for name in arms}
-
-
 def simulate(
     run: Callable[..., Any],
     *,
@@ -529,7 +562,9 @@ def simulate(
         A KeyboardInterrupt: Ctrl-C was pressed. What was done is kept beside `output`.
     """
     if not callable(run):
-        raise _core.InputError(f"invalid run (a {type(run).__name__} cannot be called). Give a function of a generator.")
+        raise _core.InputError(
+            f"invalid run (a {type(run).__name__} cannot be called). Give a function of a generator."
+        )
     plan, root = _arms(arms), _whole("seed", seed, 0, 2**64 - 1)
     ceiling = _whole("trials", trials, 1, 2**53)
     size = 0 if batch is False else BATCH if batch is True else _whole("batch", batch, 1, 2**20)
@@ -541,31 +576,15 @@ def simulate(
         _refuse_missing("scipy", "until needs its quantiles")
     if output is None and resume:
         raise _core.InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
-    folder = tempfile.mkdtemp(prefix="credence-") if output is None else None
-    whole = Path(folder, f"{ONLY_ARM}.h5") if folder else Path(os.path.abspath(os.fspath(output or "")))
-    paths, kept = _paths(whole, arms), whole.with_name(f"{whole.name}.trials")
-    work = Work(run, plan, root, size, timeout)
+    files = _Files(output, arms)
     try:
-        for path in () if resume else (kept, *paths.values()):
-            if path.exists():
-                raise _core.InputError(f"cannot write {path} (it exists). Remove it, say resume=True, or name another.")
-        study = _simulated(work, executor, ceiling, goals, failed, progress, paths, kept)
+        if not resume:
+            files.refuse_what_exists()
+        return _simulated(Work(run, plan, root, size, timeout), executor, ceiling, goals, failed, progress, files)
     except BaseException as error:
-        partial = getattr(error, "study", None)
-        if folder is not None and partial is None:
-            shutil.rmtree(folder, ignore_errors=True)
-        elif folder is not None:
-            weakref.finalize(partial, _remove, folder, os.getpid())
+        if getattr(error, "study", None) is None:
+            files.remove_temporary()
         raise
-    if folder is not None:
-        weakref.finalize(study, _remove, folder, os.getpid())
-    return study
-
-
-def _remove(folder: str, owner: int) -> None:
-    """Remove a temporary folder, unless this process is a fork of its owner."""
-    if os.getpid() == owner:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _simulated(
@@ -575,16 +594,20 @@ def _simulated(
     goals: list[Goal],
     failed: float | str,
     progress: bool | None,
-    paths: Mapping[str, Path],
-    kept: Path,
+    files: _Files,
 ) -> Simulation:
     """Run the trials, write the records, and return them; of an interrupted study those that are done."""
 
     def written(numbers: Array, lost: list[Failure]) -> Simulation:
-        failures = write_records(file, paths, numbers, work.seed, lost)
-        return Simulation(paths, len(numbers), work.seed, failures, failed, engine.is_repeatable)
+        failures = write_records(file, files.records, numbers, work.seed, lost)
+        study = Simulation(files, len(numbers), work.seed, failures, failed)
+        study.is_repeatable = engine.is_repeatable
+        return study
 
-    with contextlib.closing(Trials(kept, work.seed, work.arms, work.batch)) as file, progress_bar(progress) as drawn:
+    with (
+        contextlib.closing(Trials(files.trials, work.seed, work.arms, work.batch)) as file,
+        progress_bar(progress) as drawn,
+    ):
         bar = _Bar(drawn, ceiling)
         metrics = {goal.metric for goal in goals} | ({"nees_ratio"} if bar.is_shown else set())
         work = replace(work, metrics=tuple(sorted(metrics)), ends_hung_process=isinstance(executor, int))
@@ -596,7 +619,7 @@ def _simulated(
         except KeyboardInterrupt:
             workers.close()
             done = np.array(sorted(one for one in file.done if one < ceiling), dtype=np.int64)
-            said = f"the simulation was stopped with {len(done)} of {ceiling} trials done; {kept} has them"
+            said = f"the simulation was stopped with {len(done)} of {ceiling} trials done; {files.trials} has them"
             raise Interrupted(said, written(done, []) if len(done) else None) from None
         finally:
             workers.close()
