@@ -65,4 +65,15 @@ STUDIES = (
         Filter("wrong: P of half the angle", "optimistic", {"variances": "simulated", "span": 0.5}, of_half_angles,
                ONE_FACTOR),
     )),
+    Study("filterpy", "manoeuvring target, IMM", "filterpy_imm", 2000, 400, (
+        Filter("as documented, the truth changes modes as it is told", "consistent"),
+        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("the quiet mode alone, the truth as before", "optimistic", {"quiet": True}),
+    )),
+    Study("simdkalman", "level and trend", "simdkalman_series", 2000, 500, (
+        Filter("as documented, filtered", "consistent"),
+        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("as documented, smoothed", "consistent", {"result": "smoothed"}),
+        Filter("filtered, from a known state", "pessimistic", {"start": "known"}),
+    ), batch=True),
 )

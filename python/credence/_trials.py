@@ -130,6 +130,21 @@ class Run:
         self.steps = steps
         self.columns = dict(columns or {})
 
+    @classmethod
+    def of_record(cls, arguments: Mapping[str, Any]) -> Run:
+        """The only run of a record: of arguments of `judge` with one trial, as `credence.adapters` makes them."""
+
+        def one(name: str, value: Any) -> Any:
+            if isinstance(value, Mapping) and name in ("group_covariance", "group_nees"):
+                return {group: one("", array) for group, array in value.items()}
+            if not isinstance(value, np.ndarray) or (name == "time" and value.ndim == 1):
+                return value
+            if len(value) != 1:
+                raise InputError(f"{name}: has {len(value)} trials. Give one, as a Run is one.")
+            return value[0]
+
+        return cls(**{name: one(name, value) for name, value in arguments.items() if name != "steps"})
+
 
 def seed_sequence(seed: int, trial: int) -> np.random.SeedSequence:
     """NumPy's hash of a seed and a trial: what ``SeedSequence(seed).spawn(n)[trial]`` is."""

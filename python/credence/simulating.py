@@ -160,6 +160,20 @@ def _remove(folder: str, owner: int) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _entries(name: str, text: str) -> Any:
+    """An attribute of a record: groups as a dict of their members, names as a list, the others as they are."""
+    if name in ("manifold", "chart", "quaternion"):
+        return text
+    entries = [entry.split() for entry in text.split(",")]
+    if not name.endswith("groups"):
+        return [" ".join(entry) for entry in entries]
+    groups: dict[str, list[int]] = {}
+    for group, *members in entries:
+        ends = [[int(end) for end in member.split(":")] for member in members]
+        groups[group] = [one for end in ends for one in (range(*end) if len(end) == 2 else end)]
+    return groups
+
+
 class SimulatedArm:
     """One arm of a simulation: its record, and what is said of it.
 
@@ -207,7 +221,7 @@ class SimulatedArm:
             return {name: np.asarray(column[()]) for name, column in file.get("column", {}).items()}
 
     def record(self) -> dict[str, Any]:
-        """The arguments of `credence.judge`, so that they can be judged again after a change."""
+        """The arguments of `credence.judge`, so that they can be judged again after a change. Groups are dicts."""
         import h5py
 
         named = ("manifold", "chart", "quaternion", "groups", "row_groups", "component_names", "component_units")
@@ -223,7 +237,9 @@ class SimulatedArm:
             sizes = {
                 name: int(one.attrs["dimension"]) for name, one in sized.items() if one and "dimension" in one.attrs
             }
-            arguments.update({name: str(file.attrs[name]) for name in named if name in file.attrs})
+            for name in named:
+                if name in file.attrs:
+                    arguments[name] = _entries(name, str(file.attrs[name]))
         return arguments | ({"dimension": sizes} if sizes else {})
 
     def __repr__(self) -> str:

@@ -84,7 +84,8 @@ def test_the_generator_is_as_documented():
     assert study.generator(17).bit_generator.state["state"]["key"].tolist() == key.tolist()
     expected = documented.standard_normal((filters.STEPS, filters.N))
     assert np.array_equal(study.arm("run").read("error")[17], expected)
-    said = re.search(r"The first three standard normal numbers of trial 17 of seed 1 are `([^`]+)`", PAGE.read_text())
+    page = " ".join(PAGE.read_text().split())
+    said = re.search(r"The first three standard normal numbers of trial 17 of seed 1 are `([^`]+)`", page)
     assert said is not None
     assert said[1].split(", ") == [repr(number) for number in expected.ravel()[:3].tolist()]
 
@@ -480,10 +481,7 @@ def test_nees_that_is_followed_is_that_of_the_verdict():
     ratios = _trials.metric("nees_ratio", {"error": error, "covariance": covariance})
     assert ratios[0] == 1
     assert np.isnan(ratios[1])
-    assert (
-        _trials.metric("nees_ratio", {"error": error, "covariance": covariance, "steps": np.array([3, 1])})[1]
-        == 1
-    )
+    assert _trials.metric("nees_ratio", {"error": error, "covariance": covariance, "steps": np.array([3, 1])})[1] == 1
     growing = {"error": np.array([[[2.0, np.nan], [2.0, 1.0]]]), "covariance": np.broadcast_to(np.eye(2), (1, 2, 2, 2))}
     assert _trials.metric("nees_ratio", growing).tolist() == [3.0]
 
@@ -584,3 +582,21 @@ def test_a_batch_systems_signal_keeps_what_is_done():
         process.wait()
     assert process.returncode == 3
     assert re.search(r"credence simulate: the simulation was stopped with \d+ of 100000 trials done; .*--resume", err)
+
+
+# The page.
+
+
+def test_the_example_of_the_page_comes_to_its_verdicts():
+    block = re.search(r"```python\n(# tracker.py\n.+?)```", PAGE.read_text(), re.DOTALL)
+    assert block is not None
+    pathlib.Path("tracker.py").write_text(block[1])
+    done = subprocess.run([sys.executable, "tracker.py"], capture_output=True, text=True, check=True, timeout=PATIENCE)
+    said = dict(re.findall(r"^ +tracker_(\w+)/record +(\w+)", done.stdout, re.MULTILINE))
+    assert said == {"right": "consistent", "calm": "optimistic"}
+    assert "tracker.calm:record - tracker.right:record" in done.stdout
+    words = re.search(r"`python -m credence (simulate tracker:run [^`]+)`", " ".join(PAGE.read_text().split()))
+    assert words is not None
+    code, again, _ = command(*words[1].replace("1500", "100").replace("tracker.h5", "again.h5").split()[1:])
+    assert code == 0
+    assert "again_calm/record  optimistic" in again

@@ -276,3 +276,27 @@ def test_parts_are_merged(tmp_path, program):
     assert is_same_study(credence.merge(parts), credence.run(path, trials=600))
     with pytest.raises(credence.Failure, match="lacks blocks 1 of 3"):
         credence.merge(parts[:1])
+
+
+# The batch scripts of experiments/cluster, on this machine.
+
+
+@pytest.mark.parametrize("kind", ["dask", "mpi"])
+def test_the_batch_scripts_give_the_same_bits(tmp_path, kind):
+    pytest.importorskip("distributed" if kind == "dask" else "mpi4py")
+    if kind == "mpi" and shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    script = HERE.parents[1] / "experiments" / "cluster" / f"simulate_{kind}.sh"
+    (tmp_path / "mine.py").write_text((HERE / "filters.py").read_text())
+    given = {"FUNCTION": "mine:drawn", "TRIALS": "300", "OUTPUT": "out/a.h5", "PYTHON": sys.executable}
+    given |= {
+        "OPTIONS": "--arm right --arm calm scale=0.5",
+        "MPIRUN": "mpirun --allow-run-as-root --oversubscribe -n 3",
+    }
+    done = subprocess.run(
+        ["bash", str(script)], cwd=tmp_path, env={**os.environ, **given}, check=False, timeout=120, capture_output=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert b"right" in done.stdout
+    credence.simulate(filters.drawn, trials=300, arms=ARMS, output=tmp_path / "b.h5")
+    assert is_same(tmp_path / "out" / "a.h5", tmp_path / "b.h5")
