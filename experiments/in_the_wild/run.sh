@@ -16,6 +16,6 @@ if [ -z "${CREDENCE_PYTHON:-}" ]; then
   python_venv build/in-the-wild python/requirements.txt .
   CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
 fi
-export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # trials have processes; sums of matrices do not depend on threads
 if [ "${1:-}" = --causes ]; then exec "$CREDENCE_PYTHON" experiments/in_the_wild/causes.py; fi
 exec "$CREDENCE_PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"

@@ -26,6 +26,7 @@ import credence
 
 ARMS = {"right": {}, "calm": {"scale": 0.5}}
 HERE = pathlib.Path(__file__).parent
+MPIRUN = "mpirun --allow-run-as-root --oversubscribe -n 3"
 LOOP = {"kf": {"hang": "loop"}}
 KILLS = int(os.environ.get("CREDENCE_KILLS", "5"))
 TRIALS = 400
@@ -95,7 +96,7 @@ def test_mpi4py(tmp_path, whole):
         "    with MPIPoolExecutor() as executor:\n"
         f"        credence.simulate(filters.drawn, trials={TRIALS}, arms={ARMS}, output='a.h5', executor=executor)\n"
     )
-    words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "3", sys.executable, "-m", "mpi4py.futures"]
+    words = [*MPIRUN.split(), sys.executable, "-m", "mpi4py.futures"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
     subprocess.run([*words, str(script)], cwd=tmp_path, env=environment, check=True, timeout=120)
     assert is_same(tmp_path / "a.h5", whole)
