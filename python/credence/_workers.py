@@ -22,20 +22,26 @@ TRIES = 3  # of a task whose worker is lost
 PR_SET_PDEATHSIG = 1
 _cannot_be_sent = (pickle.PicklingError, AttributeError, TypeError, ImportError)
 
+BREAKS = 30  # of the pool, after which a task that it never began is given up as well
+
 _shared: Any = None  # in a process of our own: what all tasks share, which a fork need not pickle
+_is_at_work: Any = None  # likewise: whether a task is being done, for the process that waits
 
 
-def _begin(shared: object) -> None:
+def _begin(shared: object, is_at_work: Any) -> None:
     """Begin a process of our own. Ctrl-C is for the process that waits, at whose death this one ends as well."""
-    global _shared
-    _shared = shared
+    global _shared, _is_at_work
+    _shared, _is_at_work = shared, is_at_work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):  # Linux
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 def _call_shared(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    return function(_shared, *arguments)
+    _is_at_work.value = 1
+    result = function(_shared, *arguments)
+    _is_at_work.value = 0
+    return result
 
 
 class _Here:
@@ -47,10 +53,10 @@ class _Here:
         return future
 
 
-def _own_processes(count: int, shared: object) -> ProcessPoolExecutor:
+def _own_processes(count: int, shared: object, is_at_work: Any) -> ProcessPoolExecutor:
     """Processes that are forks of this one, so that the function of a notebook or a closure will do."""
     kind = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
-    return ProcessPoolExecutor(count, multiprocessing.get_context(kind), _begin, (shared,))
+    return ProcessPoolExecutor(count, multiprocessing.get_context(kind), _begin, (shared, is_at_work))
 
 
 def _another(broken: Any) -> Any:
@@ -84,11 +90,12 @@ def _workers_of(executor: Any) -> int:
 
 @dataclass
 class Task(Generic[Payload]):
-    """What a worker has to do, whether it does nothing beside it, and how often it was lost with a worker."""
+    """What a worker has to do, whether nothing is done beside it, and how often it was lost so."""
 
     payload: Payload
     is_alone: bool = False
-    lost: int = 0
+    lost: int = 0  # while it was being done
+    breaks: int = 0  # in all
 
 
 class Workers(Generic[Payload]):
@@ -110,12 +117,13 @@ class Workers(Generic[Payload]):
         if executor is not None and not self.own and not callable(getattr(executor, "submit", None)):
             what = f"invalid executor of {type(executor).__name__} (it has no submit)"
             raise InputError(f"{what}. Give a number of processes, or an executor of concurrent.futures.")
+        self._is_at_work = multiprocessing.RawValue("q", 0)
         self.replaced = False  # whether the executor in use is one of ours in place of a broken one
         self.executor: Any = _Here() if executor is None else executor
         self.count = 1 if executor is None else executor if self.own else _workers_of(executor)
         self.window = 1 if executor is None else 2 * self.count + 1  # tasks that wait or run
         if self.own:
-            self.executor = _own_processes(self.count, shared)
+            self.executor = _own_processes(self.count, shared, self._is_at_work)
 
     def submit(self, arguments: tuple[Any, ...]) -> Future[Any]:
         if self.own:
@@ -133,7 +141,8 @@ class Workers(Generic[Payload]):
     def _replace(self) -> None:
         """A pool of processes is broken as a whole when one of them is lost: go on with another."""
         broken = self.executor
-        self.executor = _own_processes(self.count, self.shared) if self.own else _another(broken)
+        self._is_at_work.value = 0
+        self.executor = _own_processes(self.count, self.shared, self._is_at_work) if self.own else _another(broken)
         if self.executor is None:
             self.executor = broken
             kind = type(broken).__name__
@@ -198,11 +207,13 @@ class Workers(Generic[Payload]):
                     else:
                         yield task.payload, result
                         continue
-                    pieces = parts(task.payload)
-                    if len(pieces) > 1:
-                        again.extend(Task(piece, True) for piece in pieces)
-                    elif task.lost + 1 < TRIES:
-                        again.append(Task(task.payload, True, task.lost + 1))
+                    if not task.is_alone:
+                        again.extend(Task(part, True) for part in parts(task.payload))
+                        continue
+                    task.lost += 1 if not self.own or self._is_at_work.value else 0
+                    task.breaks += 1
+                    if task.lost < TRIES and task.breaks < BREAKS:
+                        again.append(task)
                     else:
                         yield task.payload, None
                 if is_broken:
