@@ -358,7 +358,7 @@ class _Engine:
         self.is_repeatable = True
         self._seconds = 0.0  # of one trial; 0 before any is done
         self._bytes = 1
-        self._checked = 0 in trials.done
+        self._checked = False
         self._failed_first: dict[str, set[int]] = {arm: set() for arm in work.arms}
         self._count_failures(trials.failures())
 
@@ -465,6 +465,7 @@ class _Engine:
     def _compare_with_what_is_kept(self, workers: Workers[Payload]) -> None:
         """Run trial 0 once more, and refuse to add to trials that another function or another library made."""
         kept = next(frame for frame in self.trials.frames() if 0 in frame.header["numbers"])
+        self._check_first(kept)
         numbers = list(range(self.work.batch)) if self.work.batch else [0]
         payloads: list[Payload] = [(numbers, [0], False)]
         for _, data in workers.results(lambda: payloads.pop() if payloads else None, lambda payload: payload):
@@ -508,6 +509,15 @@ class _Engine:
 def _refuse_missing(module: str, why: str) -> None:
     if importlib.util.find_spec(module) is None:
         raise _core.InputError(f"{module} is not installed ({why}). Install it: pip install {module}.")
+
+
+def _refuse_bad_limit(failed: float | str) -> None:
+    """Refuse a share that `judge` would refuse in the end."""
+    one = (np.ones((1, 1)), float(np.finfo(float).eps))
+    with errors_of_arguments(said_of_arrays):
+        _core.judge(
+            {"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": str(failed)}, b"", None
+        )
 
 
 def simulate(
@@ -587,6 +597,7 @@ def simulate(
     if timeout is not None and not timeout > 0:
         raise _core.InputError(f"invalid timeout={timeout} (must be above 0). Give seconds, or None.")
     goals = _goals(until, plan)
+    _refuse_bad_limit(failed)
     _refuse_missing("h5py", "trials are kept in HDF5 files")
     if goals:
         _refuse_missing("scipy", "until needs its quantiles")

@@ -224,6 +224,7 @@ def test_only_the_same_trials_are_taken():
     assert re.search(r"kept.h5.trials: its trials have seed=1, not 2. Give the same", refusal(again(seed=2)))
     assert re.search(r"its trials have arms=", refusal(again(arms={"right": {}, "calm": {"scale": 0.4}})))
     assert re.search(r"its trials have batch=0, not 256", refusal(again(filters.many, batch=True)))
+    assert re.search(r"until: the trials have no number speed. Take one of rmse", refusal(again(until={"speed": 1})))
     changed = refusal(again(lambda rng, scale=1: filters.drawn(rng, scale * 1.0000001)))
     assert re.search(r"trial 0 of right gives other numbers than those that are kept. Take the function", changed)
     assert re.search(
@@ -389,6 +390,8 @@ def test_what_cannot_be_judged_is_refused_at_trial_0(run, said):
         ({"arms": {"x": 3}}, "invalid arms (x has no dict of options)"),
         ({"executor": 0}, "invalid executor=0 "),
         ({"executor": "dask"}, "invalid executor of str (it has no submit). "),
+        ({"failed": "some"}, "invalid failed=some "),
+        ({"failed": 2}, "invalid failed=2 "),
         ({"resume": True}, "cannot resume (there is no output). "),
         ({"until": {"nees_ratio": "-1%"}}, "invalid until=nees_ratio=-1% (no half-width above 0). "),
         ({"until": "nees_ratio"}, "invalid until=nees_ratio"),
