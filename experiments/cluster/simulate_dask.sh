@@ -19,6 +19,7 @@ mkdir -p "$(dirname "$OUTPUT")"
 folder=$(mktemp -d -p "$(dirname "$OUTPUT")" dask-XXXXXX)
 export DASK_SCHEDULER_FILE=$folder/scheduler.json PYTHONPATH=$PWD${PYTHONPATH:+:$PYTHONPATH}
 processes=()
+# shellcheck disable=SC2317  # the trap calls it
 end() {
   kill "${processes[@]}" 2>/dev/null || true
   wait "${processes[@]}" 2>/dev/null || true

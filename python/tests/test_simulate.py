@@ -420,6 +420,17 @@ def test_a_run_says_what_does_not_fit():
     assert "column/a: is no number of a trial" in said(np.ones((4, 2)), np.ones((4, 2)), columns={"a": [1, 2]})
 
 
+def test_a_run_is_made_of_a_record_of_one_trial():
+    given = records.corpus()["names"]
+    one = {name: value[:1] if isinstance(value, np.ndarray) else value for name, value in given.items()}
+    run = credence.Run.of_record({**one, "steps": np.array([records.STEPS]), "time": np.arange(records.STEPS)})
+    assert np.array_equal(run.arrays["error"], given["error"][0])
+    assert run.arrays["time"].shape == (records.STEPS,)
+    assert run.texts == {name: given[name] for name in ("component_names", "component_units")}
+    assert run.steps is None
+    assert "error: has 40 trials. Give one" in refusal(lambda: credence.Run.of_record(given))
+
+
 # Batches, precision, and what a simulation says.
 
 
