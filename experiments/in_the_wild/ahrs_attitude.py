@@ -19,7 +19,7 @@ def noises(sensors):
     return np.array([np.radians(GYRO), *unit]) ** 2
 
 
-def trial(rng, variances="its own", span=np.pi):
+def run(rng, variances="its own", span=np.pi):
     sensors = Sensors(num_samples=101, freq=100.0, gyr_noise=GYRO, span=(-span, span), rng=rng)
     given = {"noises": noises(sensors)} if variances == "simulated" else {}
     ekf = EKF(frequency=100.0, magnetic_ref=sensors.reference_magnetic_vector, P=P0, **given)
@@ -31,20 +31,16 @@ def trial(rng, variances="its own", span=np.pi):
         w, x, y, z = q
         turn = 2 * np.array([[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]])  # rotation vector of dq, in the body
         told.append((np.array(sensors.quaternions[k]), q, turn @ ekf.P @ turn.T))
-    return tuple(map(np.array, zip(*told)))
-
-
-def record(trials):
-    truth, estimate, covariance = map(np.array, zip(*trials))
+    truth, estimate, covariance = zip(*told)
     shape = {"manifold": "SO3", "chart": "local", "quaternion": "wxyz", "component_names": ["rx", "ry", "rz"]}
-    return {"truth": truth, "estimate": estimate, "covariance": covariance, **shape}
+    return credence.Run(truth=truth, estimate=estimate, covariance=covariance, **shape)
 
 
-def own_nees(trials):
-    truth, estimate = ([Rotation.from_quat(trial[i], scalar_first=True) for trial in trials] for i in (0, 1))
-    error = [(true.inv() * estimated).as_rotvec() for true, estimated in zip(truth, estimate)]
-    return nees(np.array(error), np.array([covariance for _, _, covariance in trials]))
+def own_nees(record):
+    states = ([Rotation.from_quat(run, scalar_first=True) for run in record[name]] for name in ("truth", "estimate"))
+    error = [(true.inv() * estimated).as_rotvec() for true, estimated in zip(*states)]
+    return nees(np.array(error), record["covariance"])
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record([trial(np.random.default_rng([1, i])) for i in range(500)])))
+    print(credence.simulate(run, trials=500))

@@ -14,6 +14,8 @@ import numpy as np
 from ahrs.filters import EKF
 from common import nees
 
+import credence
+
 SEED, TRIALS = 2027, 400
 
 
@@ -27,10 +29,10 @@ class ExactlyIntegrated(EKF):  # type: ignore[misc]
 
 
 def attitude(filter_class: type[EKF]) -> float:
-    generators = (np.random.default_rng([SEED, i]) for i in range(TRIALS))
+    arms = {"simulated": {"variances": "simulated"}}
     with mock.patch.object(ahrs_attitude, "EKF", filter_class):
-        trials = [ahrs_attitude.trial(each, variances="simulated") for each in generators]
-    return float(np.mean(ahrs_attitude.own_nees(trials))) / 3
+        study = credence.simulate(ahrs_attitude.run, trials=TRIALS, seed=SEED, arms=arms)
+    return float(np.mean(ahrs_attitude.own_nees(study.arm("simulated").record()))) / 3
 
 
 def derivative_at(rotation_vector: np.ndarray) -> np.ndarray:
@@ -66,7 +68,7 @@ def factors_in_isam2(only_new_factors: bool) -> int:
         return made[0]
 
     with mock.patch.object(gtsam, "ISAM2", keep):
-        gtsam_isam2.trial(np.random.default_rng([SEED, 0]), only_new_factors=only_new_factors)
+        gtsam_isam2.run(np.random.default_rng([SEED, 0]), only_new_factors=only_new_factors)
     return int(made[0].getFactorsUnsafe().size())
 
 

@@ -35,6 +35,7 @@ class Study:
     trials: int
     trials_short: int
     filters: tuple[Filter, ...]
+    batch: bool = False  # whether its function takes many generators
 
 
 def halved(record: Record) -> Record:

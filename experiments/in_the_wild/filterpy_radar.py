@@ -31,7 +31,7 @@ def variance(x, kind, noise):
     return 0.05 * slant_range(x) if kind == "ekf" else 10
 
 
-def trial(rng, kind, noise="example", start="example"):
+def run(rng, kind, noise="example", start="example"):
     mean, spread, Q = EXAMPLE[kind]
     if kind == "ekf":
         filter, observe = ExtendedKalmanFilter(3, 1), {"HJacobian": jacobian, "Hx": slant_range}
@@ -50,17 +50,13 @@ def trial(rng, kind, noise="example", start="example"):
         z = radar.get_range(0.05)
         filter.update(np.array([z]), R=variance(filter.x, kind, noise), **observe)
         told.append(([radar.pos, radar.vel, radar.alt], filter.x.copy(), filter.P.copy()))
-    return tuple(map(np.array, zip(*told)))
+    truth, estimate, covariance = map(np.array, zip(*told))
+    return credence.Run(estimate - truth, covariance, component_names=["down_range", "speed", "altitude"])
 
 
-def record(trials):
-    truth, estimate, covariance = map(np.array, zip(*trials))
-    return {"error": estimate - truth, "covariance": covariance, "component_names": ["down_range", "speed", "altitude"]}
-
-
-def own_nees(trials):
-    return np.array([NEES(*trial) for trial in trials])
+def own_nees(record):
+    return np.array([NEES(0 * error, error, P) for error, P in zip(record["error"], record["covariance"])])
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record([trial(np.random.default_rng([1, i]), "ekf") for i in range(500)])))
+    print(credence.simulate(run, trials=500, arms={"ekf": {"kind": "ekf"}}))

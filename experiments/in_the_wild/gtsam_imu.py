@@ -7,6 +7,7 @@ import credence
 
 GYRO, ACCELEROMETER, DT = np.radians(0.5) / 60, 0.1 / 60, 0.01  # rad/s/√Hz, m/s²/√Hz, s
 BIAS = gtsam.imuBias.ConstantBias(np.array([0, 0.1, 0]), np.zeros(3))
+GROUPS = {"rotation": range(3), "position": range(3, 6), "velocity": range(6, 9)}
 LOOP = gtsam.ConstantTwistScenario(np.array([0, -np.radians(30), 0]), np.array([2.0, 0, 0]))
 
 
@@ -36,22 +37,17 @@ def integrate(noise, seconds, scale=1.0):
     return result
 
 
-def trial(rng, chart="state", seconds=12, scale=1.0):
+def run(rng, chart="state", seconds=12, scale=1.0):
     told = integrate(rng.standard_normal((1200, 6)), seconds, scale)
     if chart == "state":  # of predict(), at the estimate, against the scenario's truth
         error = [-state.localCoordinates(LOOP.navState(float(k))) for k, (_, state, _) in enumerate(told, start=1)]
     else:  # of preintegrated(), against the same sums without noise
         exact = integrate(np.zeros((1200, 6)), seconds)
         error = [increment - without_noise for (increment, _, _), (without_noise, _, _) in zip(told, exact)]
-    return np.array(error), np.array([covariance for _, _, covariance in told])
-
-
-def record(trials):
-    error, covariance = map(np.array, zip(*trials))
-    groups = {"rotation": range(3), "position": range(3, 6), "velocity": range(6, 9)}
-    names = [f"{group[0]}{axis}" for group in groups for axis in "xyz"]
-    return {"error": error, "covariance": covariance, "groups": groups, "component_names": names}
+    covariance = [covariance for _, _, covariance in told]
+    names = [f"{group[0]}{axis}" for group in GROUPS for axis in "xyz"]
+    return credence.Run(error, covariance, groups=GROUPS, component_names=names)
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record([trial(np.random.default_rng([1, i])) for i in range(500)])))
+    print(credence.simulate(run, trials=500))

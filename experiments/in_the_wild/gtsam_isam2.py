@@ -24,7 +24,7 @@ def closes(odometry, estimate, last):
             return k
 
 
-def trial(rng, only_new_factors=False, marginals_of="graph"):
+def run(rng, only_new_factors=False, marginals_of="graph"):
     prior, odometry = (gtsam.noiseModel.Diagonal.Sigmas(sigmas) for sigmas in (PRIOR, ODOMETRY))
     isam = gtsam.ISAM2(gtsam.ISAM2Params())
     graph, new, estimate = gtsam.NonlinearFactorGraph(), gtsam.NonlinearFactorGraph(), gtsam.Values()
@@ -44,17 +44,14 @@ def trial(rng, only_new_factors=False, marginals_of="graph"):
         new, initial, estimate = gtsam.NonlinearFactorGraph(), gtsam.Values(), isam.calculateEstimate()
         marginals = gtsam.Marginals(graph, estimate) if marginals_of == "graph" else isam
         told.append((truth[now], estimate.atPose2(now), marginals.marginalCovariance(now)))
-    return list(zip(*told))
+    return credence.Run.of_record(adapters.from_gtsam_poses(*([each] for each in zip(*told))))
 
 
-def record(trials):
-    return adapters.from_gtsam_poses(*zip(*trials))
-
-
-def own_nees(trials):
-    error = np.array([[e.localCoordinates(t) for t, e in zip(truth, estimate)] for truth, estimate, _ in trials])
-    return nees(error, np.array([covariance for _, _, covariance in trials]))
+def own_nees(record):
+    trials = zip(record["truth"], record["estimate"])
+    error = [[gtsam.Pose2(*e).localCoordinates(gtsam.Pose2(*t)) for t, e in zip(*poses)] for poses in trials]
+    return nees(np.array(error), record["covariance"])
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record([trial(np.random.default_rng([1, i])) for i in range(1000)])))
+    print(credence.simulate(run, trials=1000))

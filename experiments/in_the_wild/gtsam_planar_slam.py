@@ -9,10 +9,12 @@ import credence
 
 PRIOR, ODOMETRY, SIGHT = np.array([0.3, 0.3, 0.1]), np.array([0.2, 0.2, 0.1]), np.array([0.1, 0.2])  # m, rad; rad, m
 KEYS = [X(1), X(2), X(3), L(4), L(5)]
+GROUPS = {"x1": range(3), "x2": range(3, 6), "x3": range(6, 9), "l1": range(9, 11), "l2": range(11, 13)}
+NAMES = [f"{group}{axis}" for group, members in GROUPS.items() for axis in "xyt"[: len(members)]]
 GUESS = [(-0.25, 0.20, 0.15), (2.30, 0.10, -0.20), (4.10, 0.10, 0.10), (1.80, 2.10), (4.10, 1.80)]
 
 
-def trial(rng):
+def run(rng):
     prior, odometry, sight = (gtsam.noiseModel.Diagonal.Sigmas(sigmas) for sigmas in (PRIOR, ODOMETRY, SIGHT))
     graph, truth, initial = gtsam.NonlinearFactorGraph(), gtsam.Values(), gtsam.Values()
     pose = Pose2.Expmap(PRIOR * rng.standard_normal(3))
@@ -34,15 +36,10 @@ def trial(rng):
     estimate = gtsam.LevenbergMarquardtOptimizer(graph, initial).optimize()
     back = estimate.localCoordinates(truth)  # in the chart of the marginals: tangent at the estimate
     marginals = gtsam.Marginals(graph, estimate)
-    return -np.concatenate([back.at(key) for key in KEYS]), marginals.jointMarginalCovariance(KEYS).fullMatrix()
-
-
-def record(trials):
-    error, covariance = map(np.array, zip(*trials))
-    groups = {"x1": range(3), "x2": range(3, 6), "x3": range(6, 9), "l1": range(9, 11), "l2": range(11, 13)}
-    names = [f"{group}{axis}" for group, members in groups.items() for axis in "xyt"[: len(members)]]
-    return {"error": error[:, None], "covariance": covariance[:, None], "groups": groups, "component_names": names}
+    error = -np.concatenate([back.at(key) for key in KEYS])
+    covariance = marginals.jointMarginalCovariance(KEYS).fullMatrix()
+    return credence.Run(error[None], covariance[None], groups=GROUPS, component_names=NAMES)
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record(trial(np.random.default_rng([1, i])) for i in range(1000))))
+    print(credence.simulate(run, trials=1000))

@@ -1,6 +1,6 @@
 """Runs the studies, prints their table, and fails where a verdict, a NEES or a wrong filter is not as it must be.
 
-    python run.py [--short] [--page] [--reports FOLDER] [NAME…]        NAME: a part of a study's library or name
+    python run.py [--short] [--page] [--reports FOLDER] [--keep FOLDER] [NAME…]   NAME: a part of a library's or study's
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import re
 import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -41,7 +40,7 @@ class Row:
     text: str
     cells: tuple[str, ...]
     apart: float  # between credence's NEES and the library's, relative; NaN where there is no other
-    seconds: float  # of processor time
+    seconds: float
 
     @property
     def name(self) -> str:
@@ -90,48 +89,47 @@ def cells(study: Study, chosen: Filter, trials: int, verdict: credence.Verdict) 
     return (study.library, study.name, chosen.name, *size, verdict.verdict, ratio, worst_direction(verdict))
 
 
-def other_nees(chosen: Filter, module: Any, trials: list[Any], record: Record) -> np.ndarray | None:
+def other_nees(chosen: Filter, module: Any, record: Record) -> np.ndarray | None:
     """NEES by trial and step without credence: the library's own where it has one, else NumPy's."""
     if chosen.fault is None and hasattr(module, "own_nees"):
-        own: np.ndarray = module.own_nees(trials)
+        own: np.ndarray = module.own_nees(record)
         return own
     return nees(record["error"], record["covariance"]) if "error" in record else None
 
 
-def judge_filter(study: Study, chosen: Filter, module: Any, trials: list[Any], short: bool) -> Row:
-    begun = time.process_time()
-    record = module.record(trials)
+def judge_filter(study: Study, chosen: Filter, module: Any, record: Record, short: bool) -> Row:
+    begun = time.perf_counter()
     if chosen.fault is not None:
         record = chosen.fault(record)
     verdict = credence.judge(**record, **(LIMITS_SHORT if short else LIMITS))
-    other, apart = other_nees(chosen, module, trials, record), float("nan")
+    other, apart = other_nees(chosen, module, record), float("nan")
     if other is not None:
         ours = np.array(whole_state(verdict)["anees"]["ratio"]) * whole_state(verdict)["dimension"]
         apart = float(np.max(np.abs(ours / other.mean(axis=0) - 1)))
-    shown = cells(study, chosen, len(trials), verdict)
-    return Row(study, chosen, verdict.verdict, str(verdict), shown, apart, time.process_time() - begun)
+    shown = cells(study, chosen, len(record["covariance"]), verdict)
+    return Row(study, chosen, verdict.verdict, str(verdict), shown, apart, time.perf_counter() - begun)
 
 
-def judge_alike(study: Study, filters: list[Filter], short: bool) -> list[Row]:
-    """Filters of one study that have the same options, and so share their trials.
-
-    Trial i has a generator of its own, so that a longer study begins with the trials of a shorter one.
-    """
-    begun, module = time.process_time(), importlib.import_module(study.module)
-    count = study.trials_short if short else filters[0].trials or study.trials
-    trials = [module.trial(np.random.default_rng([SEED, i]), **filters[0].options) for i in range(count)]
-    seconds = time.process_time() - begun
-    rows = [judge_filter(study, chosen, module, trials, short) for chosen in filters]
-    return [replace(rows[0], seconds=seconds + rows[0].seconds), *rows[1:]]
-
-
-def judge_all(studies: list[Study], short: bool) -> list[Row]:
-    tasks = []
-    for study in studies:
-        for _, alike in itertools.groupby(study.filters, key=lambda chosen: chosen.options):
-            tasks.append((study, list(alike), short))
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        return [row for rows in pool.map(judge_alike, *zip(*tasks)) for row in rows]
+def judge_study(study: Study, short: bool, kept: pathlib.Path | None) -> Iterator[Row]:
+    """The rows of a study. Filters of the same options share their trials, which a folder keeps if it is given."""
+    module = importlib.import_module(study.module)
+    for options, alike in itertools.groupby(study.filters, key=lambda chosen: chosen.options):
+        filters, begun = list(alike), time.perf_counter()
+        name = re.sub(r"[^a-z0-9]+", "-", f"{study.name} {' '.join(map(str, options.values()))}".lower()).strip("-")
+        simulated = credence.simulate(
+            module.run,
+            trials=study.trials_short if short else filters[0].trials or study.trials,
+            seed=SEED,
+            arms={"filter": options},
+            executor=None if study.batch else os.cpu_count(),
+            batch=study.batch,
+            output=kept and kept / f"{study.module}-{name}.h5",
+            resume=kept is not None,
+        )
+        record, seconds = simulated.arm("filter").record(), time.perf_counter() - begun
+        rows = [judge_filter(study, chosen, module, record, short) for chosen in filters]
+        yield replace(rows[0], seconds=seconds + rows[0].seconds)
+        yield from rows[1:]
 
 
 def print_table(rows: list[Row], page: bool) -> None:
@@ -150,6 +148,7 @@ def main() -> int:
     parser.add_argument("--short", action="store_true", help="fewer trials and wider margins, two minutes in all")
     parser.add_argument("--page", action="store_true", help="print the table as docs/theory/in-the-wild.md has it")
     parser.add_argument("--reports", type=pathlib.Path, help="write the text reports to this folder")
+    parser.add_argument("--keep", type=pathlib.Path, help="keep the trials in this folder, and go on with those there")
     parser.add_argument("names", nargs="*", metavar="NAME", help="a part of a study's library or name")
     given = parser.parse_args()
     wanted = [
@@ -159,7 +158,9 @@ def main() -> int:
     ]
     if not wanted:
         parser.error(f"unknown study {', '.join(given.names)}. Give a part of a library's or study's name.")
-    rows = judge_all(wanted, given.short)
+    if given.keep:
+        given.keep.mkdir(parents=True, exist_ok=True)
+    rows = [row for study in wanted for row in judge_study(study, given.short, given.keep)]
     print_table(rows, given.page)
     if given.reports:
         given.reports.mkdir(parents=True, exist_ok=True)

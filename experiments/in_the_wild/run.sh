@@ -2,7 +2,7 @@
 # Judges filters that others wrote, from the examples of their libraries, beside wrong ones that must be caught. Prints a
 # table, and writes the reports to results/in_the_wild; the exit code is 1 where a verdict is not the expected one, where
 # NEES differs from the library's by more than 1e-9, or where a wrong filter is not named. docs/theory/in-the-wild.md
-# has the table. Some eight minutes of processor time, with --short less than two.
+# has the table. Some ten minutes of processor time, with --short some two.
 #
 #   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
 #   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
@@ -16,6 +16,6 @@ if [ -z "${CREDENCE_PYTHON:-}" ]; then
   python_venv build/in-the-wild python/requirements.txt .
   CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
 fi
-export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # each study has a process; sums of matrices do not depend on threads
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # trials have processes; sums of matrices do not depend on threads
 if [ "${1:-}" = --causes ]; then exec "$CREDENCE_PYTHON" experiments/in_the_wild/causes.py; fi
 exec "$CREDENCE_PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"

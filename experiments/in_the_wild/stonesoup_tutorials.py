@@ -27,7 +27,7 @@ TUTORIALS = {
 }
 
 
-def trial(rng, kind, start="known"):
+def run(rng, kind, start="known"):
     sensor, predictor, updater = TUTORIALS[kind]
     predictor, updater = predictor(MOTION), updater(sensor)
     np.random.seed(rng.integers(2**32))  # the tutorials draw from NumPy's global generator
@@ -40,12 +40,9 @@ def trial(rng, kind, start="known"):
         prediction = predictor.predict(posterior, timestamp=detection.timestamp)
         posterior = updater.update(SingleHypothesis(prediction, detection))
         told.append((truth, posterior))
-    return list(zip(*told))
-
-
-def record(trials):
-    return adapters.from_stonesoup(*zip(*trials)) | {"component_names": ["x", "vx", "y", "vy"]}
+    names = {"component_names": ["x", "vx", "y", "vy"]}
+    return credence.Run.of_record(adapters.from_stonesoup(*([each] for each in zip(*told))) | names)
 
 
 if __name__ == "__main__":
-    print(credence.judge(**record([trial(np.random.default_rng([1, i]), "kf") for i in range(1000)])))
+    print(credence.simulate(run, trials=1000, arms={"kf": {"kind": "kf"}}))

@@ -10,6 +10,7 @@ from common import Filter, Study, halved, in_world_frame, of_half_angles, withou
 INCREMENT = {"chart": "increment"}
 SIMULATED = {"noise": "simulated"}
 ONE_FACTOR = "every direction is off by a factor of about"
+DIRECTIONS = "pessimistic (directions): all"
 OTHER_CHART = "their directions are wrong: is the error in the chart and frame of P, and is a correlation missing"
 
 
@@ -31,7 +32,8 @@ def tutorial(number: int, kind: str) -> Study:
     return Study("Stone Soup", f"tutorial {number}, {kind.upper()}", "stonesoup_tutorials", 1000, 200, (
         Filter("as documented, from a known state", "pessimistic", {"kind": kind}),
         Filter("the truth drawn from the prior", "consistent", {"kind": kind, "start": "drawn"}),
-        Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, OTHER_CHART),
+        Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, OTHER_CHART,
+               says_short=DIRECTIONS),
     ))
 
 
@@ -42,7 +44,7 @@ STUDIES = (
     )),
     Study("GTSAM", "iSAM2 with a loop closure", "gtsam_isam2", 4000, 2000, (
         Filter("as documented, P of gtsam.Marginals", "consistent"),
-        Filter("wrong: errors in the world's frame", "mixed", {}, in_world_frame, OTHER_CHART),
+        Filter("wrong: errors in the world's frame", "mixed", {}, in_world_frame, OTHER_CHART, says_short=DIRECTIONS),
         Filter("as documented, P of iSAM2 itself", "optimistic", {"marginals_of": "isam"}),
         Filter("only new factors, P of iSAM2", "consistent", {"marginals_of": "isam", "only_new_factors": True}),
     )),
@@ -65,4 +67,15 @@ STUDIES = (
         Filter("wrong: P of half the angle", "optimistic", {"variances": "simulated", "span": 0.5}, of_half_angles,
                ONE_FACTOR),
     )),
+    Study("filterpy", "manoeuvring target, IMM", "filterpy_imm", 2000, 400, (
+        Filter("as documented, the truth changes modes as it is told", "consistent"),
+        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("the quiet mode alone, the truth as before", "optimistic", {"quiet": True}),
+    )),
+    Study("simdkalman", "level and trend", "simdkalman_series", 2000, 500, (
+        Filter("as documented, filtered", "consistent"),
+        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("as documented, smoothed", "consistent", {"result": "smoothed"}),
+        Filter("filtered, from a known state", "pessimistic", {"start": "known"}),
+    ), batch=True),
 )

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
+    from credence._trials import Run
     from credence.arm import Arm
     from credence.judging import Verdict, assert_consistent, judge
     from credence.pictures import animate, plot
-    from credence.program import Comparison, Interrupted, Report, compare, replay, report, resume, run, show
+    from credence.program import Comparison, Interrupted, Report, compare, merge, replay, report, resume, run, show
+    from credence.simulating import Simulation, simulate
     from credence.study import Scenario, Study, open
     from credence.trajectory import Trajectory, open_trajectories
 
@@ -28,7 +30,9 @@ _modules = {
     "InputError": "_core",
     "Interrupted": "program",
     "Report": "program",
+    "Run": "_trials",
     "Scenario": "study",
+    "Simulation": "simulating",
     "Study": "study",
     "Trajectory": "trajectory",
     "Verdict": "judging",
@@ -36,6 +40,7 @@ _modules = {
     "assert_consistent": "judging",
     "compare": "program",
     "judge": "judging",
+    "merge": "program",
     "open": "study",
     "open_trajectories": "trajectory",
     "plot": "pictures",
@@ -44,6 +49,7 @@ _modules = {
     "resume": "program",
     "run": "program",
     "show": "program",
+    "simulate": "simulating",
 }
 
 __all__ = [
@@ -53,7 +59,9 @@ __all__ = [
     "InputError",
     "Interrupted",
     "Report",
+    "Run",
     "Scenario",
+    "Simulation",
     "Study",
     "Trajectory",
     "Verdict",
@@ -61,6 +69,7 @@ __all__ = [
     "assert_consistent",
     "compare",
     "judge",
+    "merge",
     "open",
     "open_trajectories",
     "plot",
@@ -69,6 +78,7 @@ __all__ = [
     "resume",
     "run",
     "show",
+    "simulate",
 ]
 
 

@@ -54,8 +54,8 @@ def _tqdm(shown: bool | None) -> Any:
 
 
 @contextlib.contextmanager
-def progress_bar(shown: bool | None) -> Iterator[Callable[[int, int], object] | None]:
-    """Yield a function of the trials done and of their total, which draws a bar; None where nothing is drawn.
+def progress_bar(shown: bool | None) -> Iterator[Callable[..., object] | None]:
+    """Yield a function of the trials done, of their total and of what is said beside, which draws a bar; or None.
 
     With `shown` None it is drawn on a terminal and in a notebook only.
     """
@@ -65,8 +65,9 @@ def progress_bar(shown: bool | None) -> Iterator[Callable[[int, int], object] | 
         return
     with tqdm(unit=" trials", unit_scale=True, leave=False, delay=0.5) as bar:
 
-        def draw(done: int, total: int) -> None:
+        def draw(done: int, total: int, said: str = "") -> None:
             bar.total = total
+            bar.set_postfix_str(said, refresh=False)
             bar.update(done - bar.n)
 
         yield draw

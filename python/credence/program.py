@@ -17,6 +17,7 @@ from credence import _core
 from credence._calls import errors_of_arguments, framed, progress_bar, said
 
 if TYPE_CHECKING:
+    from credence.simulating import Simulation
     from credence.study import Study
     from credence.trajectory import Trajectory
 
@@ -33,11 +34,12 @@ class Interrupted(KeyboardInterrupt):
 
     Attributes
     ----------
-    study : Study
-        The trials that were done; ``credence.resume(study)`` goes on with them.
+    study : Study, Simulation or None
+        The trials that were done; ``credence.resume(study)`` goes on with those of a Study, and ``simulate`` with
+        ``resume=True`` with those beside its output.
     """
 
-    def __init__(self, message: str, study: Study) -> None:
+    def __init__(self, message: str, study: Any) -> None:
         super().__init__(message)
         self.study = study
 
@@ -166,6 +168,8 @@ def run(
     overwrite: bool = False,
     keep: str | None = None,
     force: bool = False,
+    executor: Any = None,
+    shards: int | None = None,
     progress: bool | None = None,
 ) -> Study:
     """Run a study: every scenario under all its arms. The results are those of ``credence run``, bit for bit.
@@ -181,7 +185,7 @@ def run(
     seed : int
         The root seed, from 0 to 2^64 - 1 (1). The same scenarios and seed give the same results.
     threads : int
-        Threads (all processors).
+        Threads (all processors; with an executor one for each shard).
     set : dict
         Values of keys in place of the scenario's: ``{"noise.heading": 0.01}``.
     sweep : dict
@@ -197,6 +201,11 @@ def run(
         ``"trials"``, one number a trial of every column, or ``"aggregates"``, their totals alone.
     force : bool
         Whether a run starts for which memory or disk are too small.
+    executor : int or executor
+        Where shards of the study run, as of `simulate`; their files are merged [docs/cluster.md]. The files of the
+        scenarios are sent along. Not with `until`, whose analyses need all trials.
+    shards : int
+        How many there are (as many as the executor has workers). Each has every so-many-th block of 256 trials.
     progress : bool
         Whether a bar of tqdm is drawn; by default on a terminal and in a notebook.
 
@@ -213,15 +222,56 @@ def run(
     Interrupted
         A KeyboardInterrupt: the run was stopped. Its `study` has what was done.
     """
-    options = _option_words(
-        trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force
-    ) + _setting_words(set, sweep)
+    settings = _setting_words(set, sweep)
+    if executor is not None:
+        if until is not None:
+            raise _core.InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
+        if output is not None and os.path.exists(output) and not overwrite:
+            raise _core.InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
+        options = _option_words(trials=trials, seed=seed, threads=threads or 1, keep=keep, force=force) + settings
+        from credence._shards import shards_of
+
+        with _scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
+            merge_options = _option_words(overwrite=overwrite)
+            return _written(["merge", *parts, *merge_options], output, False)
+    elif shards is not None:
+        raise _core.InputError("shards: say nothing without an executor. Give both, or leave it out.")
+    options = _option_words(trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force)
     with _scenario_files(path_or_text) as paths:
-        words = ["run", *paths, *options, *_goal_words(until)]
-        if output is not None:
-            return _finish(words, os.fspath(output), progress)
-        folder = tempfile.mkdtemp(prefix="credence-")
-        return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
+        return _written(["run", *paths, *options, *settings, *_goal_words(until)], output, progress)
+
+
+def merge(
+    paths: Sequence[File], output: File | None = None, *, overwrite: bool = False, progress: bool | None = None
+) -> Study:
+    """Make one results file of the shards of a study: the same bits as those of one run [docs/cluster.md].
+
+    Parameters
+    ----------
+    paths : list of path
+        The results files of all shards.
+    output, overwrite, progress
+        As of `run`.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        A ValueError: shards are not of one study, or blocks are missing.
+    """
+    words = ["merge", *(os.fspath(path) for path in paths), *_option_words(overwrite=overwrite)]
+    return _written(words, output, progress)
+
+
+def _written(words: list[str], output: File | None, progress: bool | None) -> Study:
+    """Run a command that writes a results file, a temporary one without `output`."""
+    if output is not None:
+        return _finish(words, os.fspath(output), progress)
+    folder = tempfile.mkdtemp(prefix="credence-")
+    return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
 
 
 def resume(
@@ -368,14 +418,15 @@ def report(
 
 
 def compare(
-    *studies: Study | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
+    *studies: Study | Simulation | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
 ) -> Comparison:
     """Compare arms or runs trial by trial, A - B.
 
     Parameters
     ----------
-    *studies : Study or path
-        One study, whose arms are compared; several with the same seed and world; or records of the same runs.
+    *studies : Study, Simulation or path
+        One study or simulation, whose arms are compared; several studies with the same seed and world; or records of
+        the same runs.
     arms : tuple of str, or str
         A and B: ``("greedy", "fixed")``; by default every planned arm against its baseline, or the arms of further
         studies against those of the first.
@@ -386,8 +437,14 @@ def compare(
     -------
     Comparison
     """
+    simulations = [study for study in studies if hasattr(study, "compare")]
+    if simulations and len(studies) == 1:
+        return simulations[0].compare(arms, failed)
+    if simulations:
+        raise _core.InputError("cannot compare a simulation with others (it has several records). Give their paths.")
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
-    return Comparison("compare", studies, _option_words(arms=both, failed=failed))
+    files = [study for study in studies if not hasattr(study, "compare")]
+    return Comparison("compare", files, _option_words(arms=both, failed=failed))
 
 
 def show(

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import credence
+
 FOLDER = Path(__file__).parents[2] / "experiments" / "in_the_wild"
 STUDIES = sorted(path for path in FOLDER.glob("*_*.py"))
 NOT_CODE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
@@ -70,24 +72,19 @@ class Simulated(ModuleType):
         super().__init__("simulated")
         self.variance, self.nees_factor = variance, nees_factor
 
-    def trial(self, rng: np.random.Generator) -> np.ndarray:
-        errors: np.ndarray = rng.standard_normal((5, 2))
-        return errors
+    def run(self, rng: np.random.Generator) -> credence.Run:
+        return credence.Run(rng.standard_normal((5, 2)), np.broadcast_to(self.variance * np.eye(2), (5, 2, 2)))
 
-    def record(self, trials: list[np.ndarray]) -> dict[str, Any]:
-        covariance = np.broadcast_to(self.variance * np.eye(2), (len(trials), 5, 2, 2))
-        return {"error": np.array(trials), "covariance": covariance}
-
-    def own_nees(self, trials: list[np.ndarray]) -> np.ndarray:
-        nees: np.ndarray = self.nees_factor * np.sum(np.square(trials), axis=-1) / self.variance
+    def own_nees(self, record: dict[str, Any]) -> np.ndarray:
+        nees: np.ndarray = self.nees_factor * np.sum(np.square(record["error"]), axis=-1) / self.variance
         return nees
 
 
 def complaints(in_the_wild: dict[str, ModuleType], module: ModuleType, **of_filter: Any) -> list[str]:
     common, run = in_the_wild["common"], in_the_wild["run"]
     study = common.Study("library", "name", "module", 600, 600, (common.Filter("filter", **of_filter),))
-    trials = [module.trial(np.random.default_rng([1, i])) for i in range(600)]
-    return list(run.judge_filter(study, study.filters[0], module, trials, short=True).complaints(short=True))
+    record = credence.simulate(module.run, trials=600).arm("run").record()
+    return list(run.judge_filter(study, study.filters[0], module, record, short=True).complaints(short=True))
 
 
 def test_what_is_right_passes(in_the_wild: dict[str, ModuleType]) -> None:

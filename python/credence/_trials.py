@@ -1,0 +1,526 @@
+"""One trial of somebody's filter: what it returns, where its random numbers come from, and chunks of trials as bytes.
+
+This is what a worker needs. A chunk of trials goes from a worker to the study, and into the file that keeps it, as one
+frame of bytes with a checksum.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import hashlib
+import json
+import os
+import signal
+import struct
+import threading
+import time
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from credence import InputError
+from credence._names import dimensions, printable, texts_and_lists
+
+Array = npt.NDArray[Any]
+Arms = dict[str, dict[str, Any]]
+
+BATCH = 256  # trials that a function of many generators gets at once
+_MAGIC = b"crtrial1"
+_SUM = 16  # bytes of a frame's checksum
+# Dimensions of an array of one run, that of its steps among them.
+_ranks = {
+    "error": (2,),
+    "covariance": (2, 3),
+    "innovation": (2,),
+    "innovation_covariance": (3,),
+    "truth": (2,),
+    "estimate": (2,),
+    "nees": (1,),
+    "time": (1,),
+}
+
+
+class Run:
+    """One run of a filter, as `simulate` takes it from the function that makes it.
+
+    Every form of `judge` has its argument, without the dimension of trials: K steps, n components, m innovations. With
+    ``batch=True`` all arrays, `steps` and `columns` have a leading dimension, that of the generators that were given.
+
+    Parameters
+    ----------
+    error : array [step, n]
+        Estimate - truth, in the chart of the covariance; NaN where a component is not in the state.
+    covariance : array [step, n, n] or [step, n]
+        Joint covariances, or variances alone, in the square of the units of `error`.
+    innovation, innovation_covariance : arrays [step, m] and [step, m, m]
+        Both or neither; NaN in rows that were not observed.
+    truth, estimate : arrays [step, q]
+        In place of `error`: states on a `manifold`.
+    nees : array [step]
+        The NEES of the whole state and nothing else, with its `dimension`.
+    group_covariance, group_nees : dict of arrays [step, d, d] and [step]
+        Covariances, or the NEES, of groups by their names.
+    time : array [step]
+        Times of the steps (s).
+    steps : int
+        How many steps the run has, where runs differ for a reason of their own. A run that has another number of steps
+        than the first one and does not say so has failed.
+    groups, row_groups, component_names, component_units, dimension, manifold, chart, quaternion
+        As of `judge`, the same in every run.
+    columns : dict of float
+        Further numbers of the trial, such as ``{"rmse": 0.2}``.
+    """
+
+    __slots__ = ("arrays", "columns", "steps", "texts")
+
+    def __init__(
+        self,
+        error: object = None,
+        covariance: object = None,
+        *,
+        innovation: object = None,
+        innovation_covariance: object = None,
+        groups: object = None,
+        row_groups: object = None,
+        component_names: object = None,
+        component_units: object = None,
+        steps: object = None,
+        time: object = None,
+        truth: object = None,
+        estimate: object = None,
+        manifold: str | None = None,
+        chart: str | None = None,
+        quaternion: str | None = None,
+        group_covariance: Mapping[str, object] | None = None,
+        nees: object = None,
+        group_nees: Mapping[str, object] | None = None,
+        dimension: object = None,
+        columns: Mapping[str, object] | None = None,
+    ) -> None:
+        arrays = {
+            "error": error,
+            "covariance": covariance,
+            "innovation": innovation,
+            "innovation_covariance": innovation_covariance,
+            "truth": truth,
+            "estimate": estimate,
+            "nees": nees,
+            "time": time,
+        }
+        self.arrays = {name: array for name, array in arrays.items() if array is not None}
+        for what, groups_own in (("covariance", group_covariance), ("nees", group_nees)):
+            for name, array in (groups_own or {}).items():
+                self.arrays[f"group/{name}/{what}"] = array
+        texts = {
+            "groups": groups,
+            "row_groups": row_groups,
+            "component_names": component_names,
+            "component_units": component_units,
+            "manifold": manifold,
+            "chart": chart,
+            "quaternion": quaternion,
+            "dimension": dimension,
+        }
+        self.texts = {name: text for name, text in texts.items() if text is not None}
+        self.steps = steps
+        self.columns = dict(columns or {})
+
+    @classmethod
+    def of_record(cls, arguments: Mapping[str, Any]) -> Run:
+        """The only run of a record: of arguments of `judge` with one trial, as `credence.adapters` makes them."""
+
+        def one(name: str, value: Any) -> Any:
+            if isinstance(value, Mapping) and name in ("group_covariance", "group_nees"):
+                return {group: one("", array) for group, array in value.items()}
+            if not isinstance(value, np.ndarray) or (name == "time" and value.ndim == 1):
+                return value
+            if len(value) != 1:
+                raise InputError(f"{name}: has {len(value)} trials. Give one, as a Run is one.")
+            return value[0]
+
+        return cls(**{name: one(name, value) for name, value in arguments.items() if name != "steps"})
+
+
+def seed_sequence(seed: int, trial: int) -> np.random.SeedSequence:
+    """NumPy's hash of a seed and a trial: what ``SeedSequence(seed).spawn(n)[trial]`` is."""
+    return np.random.SeedSequence(seed, spawn_key=(trial,))
+
+
+def generator(seed: int, trial: int) -> np.random.Generator:
+    """The generator of a trial, a pure function of seed and trial.
+
+    It is ``Generator(Philox(key=key))`` with the two words ``key = SeedSequence(seed, spawn_key=(trial,))
+    .generate_state(2, numpy.uint64)``. ``rng.spawn`` gives generators that are functions of seed and trial, too.
+    """
+    return np.random.Generator(np.random.Philox(seed_sequence(seed, trial)))
+
+
+class TimeReached(BaseException):
+    """A trial took longer than it may; no ``except Exception`` of the trial itself hides it."""
+
+
+class Failure(NamedTuple):
+    """A trial that has no result.
+
+    Attributes
+    ----------
+    arm : str
+    trial : int
+    reason : str
+        One sentence, such as ``ValueError: x is singular``.
+    traceback : str
+        That of the exception, from the function on; empty where there is none.
+    """
+
+    arm: str
+    trial: int
+    reason: str
+    traceback: str = ""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a worker must know to run trials."""
+
+    run: Callable[..., Any]
+    arms: Arms
+    seed: int
+    batch: int  # generators that the function gets at once; 0: one generator by itself
+    timeout: float | None  # of a trial (s)
+    metrics: tuple[str, ...] = ()  # numbers that the study follows while it runs
+    ends_hung_process: bool = False  # whether the process is the study's own, and may be ended
+
+
+@contextlib.contextmanager
+def _raised_in_this_thread(seconds: float) -> Iterator[None]:
+    """Raise TimeReached in a thread that gets no signals, as those of Dask; a call of C code is not interrupted."""
+    import ctypes
+
+    running, lock, thread = [True], threading.Lock(), threading.get_ident()
+
+    def end() -> None:
+        with lock:
+            if running:
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(TimeReached))
+
+    timer = threading.Timer(seconds, end)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        with lock:
+            running.clear()
+        timer.cancel()
+
+
+@contextlib.contextmanager
+def limited(seconds: float | None, ends_process: bool) -> Iterator[None]:
+    """Raise TimeReached in what is done within, where it takes longer.
+
+    Where that does not help, as in a loop of C code, a process that may be ended is ended after twice the time.
+    """
+    if seconds is None:
+        yield
+        return
+    if threading.current_thread() is not threading.main_thread():
+        with _raised_in_this_thread(seconds):
+            yield
+        return
+
+    def reached(*_: object) -> None:
+        raise TimeReached
+
+    before = signal.signal(signal.SIGALRM, reached)
+    if ends_process:
+        with open(os.devnull, "w") as nowhere:
+            faulthandler.dump_traceback_later(2 * seconds + 1, exit=True, file=nowhere)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+        if ends_process:
+            faulthandler.cancel_dump_traceback_later()
+
+
+def _number_array(name: str, given: object) -> Array:
+    """A copy, because the function may use its array again: doubles and singles as they are, else doubles."""
+    array = np.array(given)
+    if array.dtype.kind not in "fiub":
+        raise InputError(
+            f"{printable(name)}: is an array of {array.dtype}, not of numbers. Give floating-point numbers."
+        )
+    return array if array.dtype in (np.float64, np.float32) else array.astype(np.float64)
+
+
+def _shape(array: Array) -> str:
+    return str(list(array.shape))
+
+
+@dataclass
+class _Texts:
+    """Names and groups as a record has them; they are the same in most runs, and worked out once."""
+
+    given: dict[str, Any] = field(default_factory=dict)
+    groups: tuple[str, ...] = ()
+    taken: dict[str, Any] = field(default_factory=lambda: {"texts": {}, "lists": {}, "dimensions": {}})
+
+    def of(self, run: Run) -> dict[str, Any]:
+        own = tuple(path.split("/")[1] for path in run.arrays if path.startswith("group/") and path.endswith("/nees"))
+        with contextlib.suppress(ValueError):  # of arrays, which have no single answer
+            if run.texts == self.given and own == self.groups:
+                return self.taken
+        named = {name: text for name, text in run.texts.items() if name != "dimension"}
+        plain, lists = texts_and_lists(named)
+        sizes = dimensions(run.texts.get("dimension"), run.texts.get("groups"), "nees" in run.arrays, own)
+        self.given, self.groups = dict(run.texts), own
+        self.taken = {"texts": plain, "lists": lists, "dimensions": sizes}
+        return self.taken
+
+
+class Taken(NamedTuple):
+    """One run or many as plain arrays, with what must be the same in all runs of an arm."""
+
+    arrays: dict[str, Array]  # [step, ...], those of columns and of steps []
+    texts: dict[str, Any]
+
+
+def _checked_steps(arrays: Mapping[str, Array], behind: int) -> int:
+    """How many steps the arrays have; InputError where they do not fit each other."""
+    first = next(iter(arrays))
+    steps, sizes = arrays[first].shape[behind], {"error": 0, "innovation": 0}
+    for name, array in arrays.items():
+        last = name.rsplit("/", 1)[-1]
+        if array.ndim - behind not in _ranks[last]:
+            expected = " or ".join(f"{rank}" for rank in _ranks[last])
+            why = f"is {_shape(array)}, and has {array.ndim - behind} dimensions in place of {expected}"
+            raise InputError(f"{printable(name)}: {why}. Give an array whose first dimension is that of the steps.")
+        if array.shape[behind] != steps:
+            why = f"is {_shape(array)}, and {printable(first)} is {_shape(arrays[first])}"
+            raise InputError(f"{printable(name)}: {why}. Give the same steps of both.")
+        kind = "innovation" if last.startswith("innovation") else "error"
+        if "/" not in name and last in ("error", "covariance", "innovation", "innovation_covariance"):
+            size = sizes[kind] = sizes[kind] or array.shape[-1]
+            if {size} != set(array.shape[behind + 1 :]):
+                shapes = f"is {_shape(array)}, and {kind} has {size} components"
+                raise InputError(f"{printable(name)}: {shapes}. Give arrays that fit each other.")
+    return int(steps)
+
+
+def take(result: object, known: _Texts, batch: int = 0) -> Taken:
+    """The arrays of what the function returned; InputError or TypeError where it cannot be used."""
+    if not isinstance(result, Run):
+        raise TypeError(f"the function returned {type(result).__name__}, not a credence.Run")
+    behind = 1 if batch else 0
+    arrays = {name: _number_array(name, array) for name, array in result.arrays.items()}
+    if not arrays.keys() & {"error", "estimate", "nees"} and not any(name.startswith("group/") for name in arrays):
+        raise InputError("a Run has neither error, nor truth and estimate, nor nees. Give one of them.")
+    steps = _checked_steps(arrays, behind)
+    if steps == 0:
+        raise InputError("a Run has no steps. Give one at least.")
+    numbers = {f"column/{name}": value for name, value in result.columns.items()}
+    if result.steps is not None:
+        numbers["steps"] = result.steps
+    for name, value in numbers.items():
+        arrays[name] = _number_array(name, value).astype(np.float64)
+        if arrays[name].ndim != behind or "/" in name[7:]:
+            raise InputError(f"{printable(name)}: is no number of a trial, or its name has a slash. Give a number.")
+    if batch and {len(array) for array in arrays.values()} != {batch}:
+        found = ", ".join(f"{printable(name)} {_shape(array)}" for name, array in arrays.items())
+        raise InputError(f"the function got {batch} generators and returned {found}. Give each a leading dimension.")
+    if "steps" in arrays and not np.all(
+        (arrays["steps"] >= 1) & (arrays["steps"] <= steps) & (arrays["steps"] % 1 == 0)
+    ):
+        raise InputError(f"steps: is not a whole number from 1 to {steps}. Give how many of its steps the run has.")
+    return Taken(arrays, known.of(result))
+
+
+def _sentence(error: BaseException) -> str:
+    """The exception in one line."""
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said}"[:500] if said else type(error).__name__
+
+
+def _traceback(error: BaseException) -> str:
+    """The traceback from the function on, without the frames of this module."""
+    frames = error.__traceback__
+    while frames is not None and frames.tb_frame.f_globals.get("__name__") == __name__:
+        frames = frames.tb_next
+    return "".join(traceback.format_exception(type(error), error, frames))
+
+
+class _Chunk:
+    """Collects trials: those of the same form become one segment, whose arrays have a dimension of trials."""
+
+    def __init__(self) -> None:
+        self.segments: list[dict[str, Any]] = []
+        self.failures: list[Failure] = []
+
+    def add(self, arm: str, trial: int, run: Taken) -> None:
+        form = [[name, array.dtype.str, list(array.shape)] for name, array in run.arrays.items()]
+        last = next((one for one in reversed(self.segments) if one["arm"] == arm), None)
+        if last is None or last["form"] != form or last["texts"] != run.texts:
+            last = {"arm": arm, "form": form, "texts": run.texts, "trials": [], "parts": []}
+            self.segments.append(last)
+        last["trials"].append(trial)
+        last["parts"].append(list(run.arrays.values()))
+
+    def frame(
+        self, numbers: Sequence[int], seconds: float, metrics: Sequence[str], repeats: Mapping[str, bool]
+    ) -> bytes:
+        header: dict[str, Any] = {
+            "numbers": list(numbers),
+            "seconds": seconds,
+            "repeats": dict(repeats),
+            "segments": [],
+        }
+        body: list[bytes] = []
+        for segment in self.segments:
+            arrays = {name: np.array(each) for (name, _, _), each in zip(segment["form"], zip(*segment["parts"]))}
+            body += [array.tobytes() for array in arrays.values()]
+            values = {name: metric(name, arrays).tolist() for name in metrics}
+            kept = {key: segment[key] for key in ("arm", "form", "texts", "trials")}
+            header["segments"].append({**kept, "values": values})
+        header["failures"] = [list(one) for one in self.failures]
+        return framed(header, body)
+
+
+def _chunk(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> _Chunk:
+    """Run trials under every arm. With batches `numbers` is one whole batch, of which those in `keep` are kept."""
+    chunk, texts = _Chunk(), {arm: _Texts() for arm in work.arms}
+    for group in [numbers] if work.batch else [[number] for number in numbers]:
+        for arm, options in work.arms.items():
+            generators = [generator(work.seed, number) for number in group]
+            try:
+                with limited(work.timeout, work.ends_hung_process):
+                    result = work.run(generators if work.batch else generators[0], **options)
+                taken = take(result, texts[arm], len(group) if work.batch else 0)
+            except (Exception, SystemExit) as error:
+                reason, told = _sentence(error), _traceback(error)
+                chunk.failures += [Failure(arm, number, reason, told) for number in group if number in keep]
+                continue
+            except TimeReached as error:
+                reason, told = f"it took longer than timeout={work.timeout:g} s", _traceback(error)
+                chunk.failures += [Failure(arm, number, reason, told) for number in group if number in keep]
+                continue
+            for i, number in enumerate(group):
+                if not work.batch:
+                    chunk.add(arm, number, taken)
+                elif number in keep:
+                    chunk.add(arm, number, Taken({name: array[i] for name, array in taken.arrays.items()}, taken.texts))
+    return chunk
+
+
+def run_chunk(work: Work, numbers: Sequence[int], keep: Sequence[int], twice: bool = False) -> bytes:
+    """Run a chunk of trials, and return it as a frame; with `twice` it says whether a second time gives the same."""
+    begun = time.perf_counter()
+    chunk = _chunk(work, numbers, keep)
+    seconds = time.perf_counter() - begun
+    repeats = {}
+    if twice:
+        again = _chunk(work, numbers, keep)
+        repeats = {arm: same(chunk.frame([], 0, (), {}), again.frame([], 0, (), {}), arm) for arm in work.arms}
+    return chunk.frame(keep, seconds, work.metrics, repeats)
+
+
+def framed(header: Mapping[str, Any], body: Sequence[bytes]) -> bytes:
+    """A frame: its mark, the lengths of both parts, both parts, and the BLAKE2b checksum of all of that."""
+    text = json.dumps(header).encode()
+    parts = [_MAGIC, struct.pack("<QQ", len(text), sum(map(len, body))), text, *body]
+    total = hashlib.blake2b(digest_size=_SUM)
+    for part in parts:
+        total.update(part)
+    return b"".join([*parts, total.digest()])
+
+
+class Frame:
+    """A frame that was read: its header, and its arrays when they are asked for."""
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data
+        length, self._body = struct.unpack_from("<Q", data, len(_MAGIC))[0], len(_MAGIC) + 16
+        self.header: dict[str, Any] = json.loads(data[self._body : self._body + length])
+        self._body += length
+
+    def segments(self) -> Iterator[tuple[dict[str, Any], dict[str, Array]]]:
+        """Each segment with its arrays [trial, ...]."""
+        at = self._body
+        for segment in self.header["segments"]:
+            arrays = {}
+            for name, dtype, shape in segment["form"]:
+                whole = (len(segment["trials"]), *shape)
+                arrays[name] = np.frombuffer(self.data, dtype, int(np.prod(whole)), at).reshape(whole)
+                at += arrays[name].nbytes
+            yield segment, arrays
+
+    def failures(self) -> list[Failure]:
+        return [Failure(*one) for one in self.header["failures"]]
+
+
+def frame_at(data: memoryview) -> int:
+    """The length of the whole frame with which the bytes begin; 0 where there is none."""
+    start = len(_MAGIC) + 16
+    if len(data) < start + _SUM or bytes(data[: len(_MAGIC)]) != _MAGIC:
+        return 0
+    end = start + sum(struct.unpack_from("<QQ", data, len(_MAGIC)))
+    if len(data) < end + _SUM:
+        return 0
+    is_whole = hashlib.blake2b(data[:end], digest_size=_SUM).digest() == bytes(data[end : end + _SUM])
+    return end + _SUM if is_whole else 0
+
+
+def same(first: bytes, second: bytes, arm: str, trials: Sequence[int] | None = None) -> bool:
+    """Whether two frames say the same of an arm's trials, bit for bit; of failures only that they are failures."""
+
+    def told(data: bytes) -> dict[int, Any]:
+        frame = Frame(data)
+        found: dict[int, Any] = {one.trial: "failed" for one in frame.failures() if one.arm == arm}
+        for segment, arrays in frame.segments():
+            for i, trial in enumerate(segment["trials"] if segment["arm"] == arm else ()):
+                found[trial] = [segment["form"], segment["texts"], [array[i].tobytes() for array in arrays.values()]]
+        return {trial: one for trial, one in found.items() if trials is None or trial in trials}
+
+    return told(first) == told(second)
+
+
+def metric(name: str, arrays: Mapping[str, Array]) -> Array:
+    """A number a trial [trial]: ``nees_ratio``, the NEES of all steps over their dimensions, or a column.
+
+    NaN where a covariance is singular, and everywhere if the arrays do not have it.
+    """
+    if name != "nees_ratio":
+        column = arrays.get(f"column/{name}")
+        return np.full(len(next(iter(arrays.values()))), np.nan) if column is None else column
+    error, covariance = arrays.get("error"), arrays.get("covariance")
+    if error is None or covariance is None:
+        return np.full(len(next(iter(arrays.values()))), np.nan)
+    there = ~np.isnan(error)
+    if "steps" in arrays:
+        there &= (np.arange(error.shape[1]) < arrays["steps"][:, None])[..., None]
+    if covariance.ndim == 3:
+        terms = np.where(there, error**2 / np.where(there, covariance, 1), 0)
+    else:
+        if not there.all():  # a component that is not there is one of its own, with an error of 0
+            both = there[..., :, None] & there[..., None, :]
+            covariance, error = np.where(both, covariance, np.eye(error.shape[-1])), np.where(there, error, 0)
+        terms = error * _solved(covariance, error)
+    sizes = there.sum(axis=(1, 2))
+    with np.errstate(all="ignore"):
+        return np.where(sizes > 0, terms.reshape(len(terms), -1).sum(axis=1) / sizes, np.nan)
+
+
+def _solved(covariance: Array, error: Array) -> Array:
+    """P^-1 e of each trial and step [trial, step, n]; NaN in a trial with a singular P."""
+    try:
+        return np.asarray(np.linalg.solve(covariance, error[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        if len(error) == 1:
+            return np.full_like(error, np.nan)
+        return np.concatenate([_solved(covariance[i : i + 1], error[i : i + 1]) for i in range(len(error))])

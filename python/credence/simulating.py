@@ -1,0 +1,653 @@
+"""Many trials of a filter in Python, on any executor, to verdicts.
+
+    def run(rng, *, q=0.2):                                 # one run of a filter
+        ...
+        return credence.Run(error, covariance)
+
+    study = credence.simulate(run, trials=2000, arms={"right": {}, "calm": {"q": 0.04}}, executor=8)
+    study.verdicts                                          # {"right": <Verdict consistent>, "calm": <Verdict ...>}
+
+docs/python.md says where random numbers come from, what is kept, and what becomes of trials that fail.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import math
+import os
+import re
+import shutil
+import tempfile
+import warnings
+import weakref
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from credence import _core
+from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
+from credence._names import printable
+from credence._trial_files import Trials, write_records
+from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, run_chunk, same
+from credence._workers import TRIES, Workers
+from credence.judging import Verdict, judge
+from credence.program import Interrupted
+
+if TYPE_CHECKING:
+    from credence.program import Comparison
+
+    File = str | os.PathLike[str]
+    Goals = str | Sequence[str] | Mapping[str, object]
+    Payload = tuple[list[int], list[int], bool]  # numbers, those of them that are kept, whether twice
+
+__all__ = ["Run", "SimulatedArm", "Simulation", "simulate"]
+
+FIRST_ANALYSIS = 256  # trials
+ALPHA = 0.05
+HOPELESS = 20  # an arm whose first trials all fail, this many, stops the study
+CHUNK_SECONDS, CHUNK_BYTES, CHUNK_TRIALS = 0.25, 2**25, 1024
+ONLY_ARM = "run"
+
+
+class Goal(NamedTuple):
+    """A mean that is to be known to a half-width: of a number, or of its differences between two arms."""
+
+    metric: str
+    arms: tuple[str, str] | None
+    width: float
+    is_relative: bool
+
+    def is_met(self, values: Array, alpha: float) -> bool:
+        """Whether Student's interval of this level is narrow enough."""
+        from scipy import stats
+
+        values = values[~np.isnan(values)]
+        if values.size < 2:
+            return False
+        half = stats.t.ppf(1 - alpha / 2, values.size - 1) * values.std(ddof=1) / math.sqrt(values.size)
+        return bool(half <= self.width * (abs(values.mean()) if self.is_relative else 1))
+
+
+def _goal(name: str, width: object, arms: Arms) -> Goal:
+    given = f"invalid until={printable(f'{name}={width}' if name else str(width))}"
+    parts = re.fullmatch(r"([^\[\]=]+)(?:\[(.+)\])?", name.strip())
+    number = str(width).strip()
+    try:
+        size = float(number.removesuffix("%"))
+    except ValueError:
+        size = math.nan
+    if parts is None or not (size > 0 and math.isfinite(size)):
+        raise _core.InputError(f'{given} (no half-width above 0). Give one, such as {{"nees_ratio": "1%"}}.')
+    pair = None
+    if parts[2] is not None:
+        pairs = [(a, b) for a in arms for b in arms if a != b and f"{a}-{b}" == parts[2]]
+        if not pairs:
+            raise _core.InputError(
+                f"{given} (there are no two such arms). Write NUMBER[A-B] with two of {', '.join(arms)}."
+            )
+        pair = pairs[0]
+    is_relative = number.endswith("%")
+    return Goal(parts[1].strip(), pair, size / 100 if is_relative else size, is_relative)
+
+
+def _goals(until: Goals | None, arms: Arms) -> list[Goal]:
+    if until is None:
+        return []
+    if isinstance(until, Mapping):
+        return [_goal(name, width, arms) for name, width in until.items()]
+    texts = [until] if isinstance(until, str) else list(until)
+    return [_goal(name, width, arms) for name, _, width in (text.rpartition("=") for text in texts)]
+
+
+def _whole(name: str, value: object, least: int, most: int) -> int:
+    is_whole = isinstance(value, (int, np.integer, float)) and not isinstance(value, bool) and value == value // 1
+    if not is_whole or not least <= value <= most:  # type: ignore[operator]
+        limits = f"must be a whole number from {least} to {most}"
+        raise _core.InputError(f"invalid {name}={printable(value)} ({limits}). Give one in that range.")
+    return int(value)  # type: ignore[call-overload,no-any-return]
+
+
+def _arms(given: Mapping[str, Mapping[str, Any]] | None) -> Arms:
+    if given is None:
+        return {ONLY_ARM: {}}
+    arms = {}
+    for name, options in given.items():
+        if not isinstance(name, str) or not re.fullmatch(r"\w[\w.+-]*", name):
+            why = f"{printable(name)} is no name of letters, digits and . + -"
+            raise _core.InputError(f"invalid arms ({why}). Give one that can be a part of a file's name.")
+        if not isinstance(options, Mapping):
+            raise _core.InputError(
+                f"invalid arms ({name} has no dict of options). Give one, such as {{'kf': {{'q': 0.2}}}}."
+            )
+        arms[name] = dict(options)
+    if not arms:
+        raise _core.InputError("invalid arms (there is none). Name one, or leave arms out.")
+    return arms
+
+
+class _Files:
+    """The files of a study: the record of each arm, mine.h5 or mine.kf.h5 of the arm kf, and the trials.
+
+    Temporary ones are removed with this object, which whoever reads them has.
+    """
+
+    def __init__(self, output: File | None, arms: Mapping[str, Any] | None) -> None:
+        folder = tempfile.mkdtemp(prefix="credence-") if output is None else None
+        whole = Path(folder, f"{ONLY_ARM}.h5") if folder else Path(os.path.abspath(os.fspath(output or "")))
+        self.trials = whole.with_name(f"{whole.name}.trials")
+        self.records = {ONLY_ARM: whole}
+        if arms is not None:
+            self.records = {name: whole.with_name(f"{whole.stem}.{name}{whole.suffix}") for name in arms}
+        self._remove = weakref.finalize(self, _remove, folder, os.getpid()) if folder else None
+
+    def refuse_what_exists(self) -> None:
+        for path in (self.trials, *self.records.values()):
+            if path.exists():
+                raise _core.InputError(f"cannot write {path} (it exists). Remove it, say resume=True, or name another.")
+
+    def remove_temporary(self) -> None:
+        if self._remove is not None:
+            self._remove()
+
+
+def _remove(folder: str, owner: int) -> None:
+    """Remove a temporary folder, unless this process is a fork of its owner."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _entries(name: str, text: str) -> Any:
+    """An attribute of a record: groups as a dict of their members, names as a list, the others as they are."""
+    if name in ("manifold", "chart", "quaternion"):
+        return text
+    entries = [entry.split() for entry in text.split(",")]
+    if not name.endswith("groups"):
+        return [" ".join(entry) for entry in entries]
+    groups: dict[str, list[int]] = {}
+    for group, *members in entries:
+        ends = [[int(end) for end in member.split(":")] for member in members]
+        groups[group] = [one for end in ends for one in (range(*end) if len(end) == 2 else end)]
+    return groups
+
+
+class SimulatedArm:
+    """One arm of a simulation: its record, and what is said of it.
+
+    Attributes
+    ----------
+    name : str
+    path : str
+        The record [docs/judge.md], which ``credence judge`` reads.
+    failures : list of Failure
+        Its trials without a result. Those whose numbers are not finite are counted by the verdict.
+    """
+
+    def __init__(self, name: str, path: str, failures: list[Failure], limit: float | str, folder: object) -> None:
+        self.name, self.path, self.failures, self._limit, self._folder = name, path, failures, limit, folder
+        self._verdict: Verdict | None = None
+
+    def judge(self, **options: Any) -> Verdict:
+        """The verdict with other options of `credence.judge`, such as `margin`."""
+        return judge(self.path, **{"failed": self._limit, "progress": False, **options})
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict with the options of the simulation."""
+        if self._verdict is None:
+            self._verdict = self.judge()
+        return self._verdict
+
+    def read(self, name: str) -> Array:
+        """An array of the record, such as ``"error"`` [trial, step, n] or ``"trial"`` [trial]."""
+        import h5py
+
+        with h5py.File(self.path, "r") as file:
+            if name not in file:
+                found: list[str] = []
+                file.visititems(lambda place, what: found.append(place) if isinstance(what, h5py.Dataset) else None)
+                raise KeyError(f"{self.name} has no {name}. It has {', '.join(found)}")
+            return np.asarray(file[name][()])
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """{column: its values [trial]}, NaN for trials without a result."""
+        import h5py
+
+        with h5py.File(self.path, "r") as file:
+            return {name: np.asarray(column[()]) for name, column in file.get("column", {}).items()}
+
+    def record(self) -> dict[str, Any]:
+        """The arguments of `credence.judge`, so that they can be judged again after a change. Groups are dicts."""
+        import h5py
+
+        named = ("manifold", "chart", "quaternion", "groups", "row_groups", "component_names", "component_units")
+        arguments: dict[str, Any] = {}
+        with h5py.File(self.path, "r") as file:
+            for name, dataset in file.items():
+                if isinstance(dataset, h5py.Dataset) and name not in ("trial", "failure"):
+                    arguments[name] = np.asarray(dataset[()])
+            for name, group in file.get("group", {}).items():
+                for what, dataset in group.items():
+                    arguments.setdefault(f"group_{what}", {})[name] = np.asarray(dataset[()])
+            sized = {"all": file.get("nees"), **{name: one.get("nees") for name, one in file.get("group", {}).items()}}
+            sizes = {
+                name: int(one.attrs["dimension"]) for name, one in sized.items() if one and "dimension" in one.attrs
+            }
+            for name in named:
+                if name in file.attrs:
+                    arguments[name] = _entries(name, str(file.attrs[name]))
+        return arguments | ({"dimension": sizes} if sizes else {})
+
+    def __repr__(self) -> str:
+        return f"<credence.SimulatedArm {self.name}: {self.path}>"
+
+
+class Simulation:
+    """Trials of a filter under one arm or several. ``str()`` is what ``credence judge`` says of them.
+
+    Attributes
+    ----------
+    trials : int
+        Trials of each arm, failed ones too.
+    seed : int
+    failures : list of Failure
+        Trials without a result, each with ``arm``, ``trial``, ``reason`` and ``traceback``.
+    is_repeatable : bool
+        Whether trial 0 gave the same numbers twice.
+    """
+
+    def __init__(self, files: _Files, trials: int, seed: int, failures: list[Failure], limit: float | str) -> None:
+        self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, True
+        self._limit = limit
+        self._arms = {
+            name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
+            for name, path in files.records.items()
+        }
+
+    def arm(self, name: str) -> SimulatedArm:
+        """One arm; KeyError where there is none of this name."""
+        if name not in self._arms:
+            raise KeyError(f"the simulation has no arm {name}. It has {', '.join(self._arms)}")
+        return self._arms[name]
+
+    @property
+    def arms(self) -> list[str]:
+        """The names of the arms, in their order."""
+        return list(self._arms)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """{arm: its verdict}."""
+        return {name: arm.verdict for name, arm in self._arms.items()}
+
+    @property
+    def columns(self) -> dict[str, dict[str, Array]]:
+        """{arm: {column: its values [trial]}}, NaN for trials without a result."""
+        return {name: arm.columns for name, arm in self._arms.items()}
+
+    def generator(self, trial: int) -> np.random.Generator:
+        """The generator that a trial got, so that the trial can be run again by itself."""
+        return generator(self.seed, trial)
+
+    def compare(self, arms: str | tuple[str, str] | None = None, failed: float | str | None = None) -> Comparison:
+        """What `credence.compare` says of the arms: A - B of those named, else of every arm and the first."""
+        from credence.program import compare
+
+        names = list(self._arms) if arms is None else list(arms.split(",") if isinstance(arms, str) else arms)[::-1]
+        if len(names) < 2 or (arms is not None and len(names) != 2):
+            raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
+        return compare(
+            *(self.arm(name.strip()).path for name in names), failed=self._limit if failed is None else failed
+        )
+
+    def _said(self, form: str) -> str:
+        paths = [arm.path for arm in self._arms.values()]
+        words = ["judge", *paths, f"--failed={self._limit}", f"--format={form}", "--quiet"]
+        with errors_of_arguments():
+            return _core.command(words, None)[1]
+
+    def __str__(self) -> str:
+        lines = [self._said("text").rstrip("\n")]
+        if self.failures:
+            first = self.failures[0]
+            where = f"the first: trial {first.trial} of {first.arm}"
+            lines.append(f"\n{len(self.failures)} without a result, {where}: {first.reason}")
+            lines += [first.traceback.rstrip("\n")] if first.traceback else []
+        return "\n".join(lines) + "\n"
+
+    def _repr_html_(self) -> str:
+        return framed(self._said("html"))
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{name} {verdict.verdict}" for name, verdict in self.verdicts.items())
+        return f"<credence.Simulation of {self.trials:,} trials, {len(self.failures)} without a result: {said}>"
+
+
+class _Bar:
+    """Progress: trials that are done, their rate, the time left, and NEES/n so far."""
+
+    def __init__(self, bar: Any, total: int) -> None:
+        self._bar, self._total = bar, total
+        self._sums: dict[str, tuple[int, float]] = {}
+
+    @property
+    def is_shown(self) -> bool:
+        return self._bar is not None
+
+    def show(self, done: int, frame: Frame | None = None) -> None:
+        if self._bar is None:
+            return
+        for segment in frame.header["segments"] if frame else ():
+            values = [value for value in segment["values"].get("nees_ratio", []) if math.isfinite(value)]
+            count, total = self._sums.get(segment["arm"], (0, 0.0))
+            self._sums[segment["arm"]] = (count + len(values), total + sum(values))
+        said = ", ".join(f"{arm} {total / count:.3f}" for arm, (count, total) in self._sums.items() if count)
+        self._bar(done, self._total, f"NEES/n {said}" if said else "")
+
+
+class _Engine:
+    """Runs the trials of a study that its file does not have."""
+
+    def __init__(self, work: Work, trials: Trials, ceiling: int, goals: list[Goal], bar: _Bar) -> None:
+        self.work, self.trials, self.ceiling, self.goals, self.bar = work, trials, ceiling, goals, bar
+        self.lost: list[Failure] = []
+        self.is_repeatable = True
+        self._seconds = 0.0  # of one trial; 0 before any is done
+        self._bytes = 1
+        self._checked = False
+        self._failed_first: dict[str, set[int]] = {arm: set() for arm in work.arms}
+        self._count_failures(trials.failures())
+
+    def run(self, workers: Workers[Payload]) -> int:
+        """Run what is missing; return how many trials the study has."""
+        if 0 in self.trials.done:
+            self._compare_with_what_is_kept(workers)
+        if not self.goals:
+            self._run_to(workers, self.ceiling)
+            return self.ceiling
+        analysis, count = 1, min(FIRST_ANALYSIS, self.ceiling)
+        while True:
+            self._run_to(workers, count)
+            if count == self.ceiling or self._are_met(count, ALPHA / 2**analysis):
+                return count
+            analysis, count = analysis + 1, min(2 * count, self.ceiling)
+
+    def _numbers(self, count: int) -> Iterator[list[int]]:
+        """Trials that are missing: one by one, or by batches."""
+        if not self.work.batch:
+            yield from ([number] for number in range(count) if number not in self.trials.done)
+            return
+        for first in range(0, count, self.work.batch):
+            batch = [one for one in range(first, min(first + self.work.batch, count)) if one not in self.trials.done]
+            if batch:
+                yield batch
+
+    def _run_to(self, workers: Workers[Payload], count: int) -> None:
+        given = {one.trial for one in self.lost}
+        missing = [batch for batch in self._numbers(count) if given.isdisjoint(batch)]
+        missing.reverse()
+
+        def take() -> Payload | None:
+            if not missing:
+                return None
+            first = missing.pop()
+            if self.work.batch:
+                start = first[0] - first[0] % self.work.batch
+                return list(range(start, start + self.work.batch)), first, 0 in first
+            size = 1 if 0 in first else self._chunk_size(workers.count, len(missing))
+            numbers = first + [missing.pop()[0] for _ in range(min(size - 1, len(missing)))]
+            return numbers, numbers, 0 in first
+
+        def parts(payload: Payload) -> list[Payload]:
+            return [payload] if self.work.batch else [([one], [one], payload[2] and one == 0) for one in payload[0]]
+
+        for (_, keep, _), data in workers.results(take, lambda payload: payload, parts):
+            if data is None:
+                reason = f"its worker was lost {TRIES} times (it crashed, was killed, or had no memory left)"
+                found = [Failure(arm, one, reason) for one in keep for arm in self.work.arms]
+                self.lost += found
+                self._count_failures(found)
+            else:
+                self._add(Frame(data))
+
+    def _chunk_size(self, workers: int, left: int) -> int:
+        """So many trials that a chunk takes a quarter of a second, and that the last ones are shared by all workers."""
+        if self._seconds == 0:
+            return 1
+        by_time = int(CHUNK_SECONDS / self._seconds)
+        return max(
+            1, min(by_time, CHUNK_BYTES // self._bytes, CHUNK_TRIALS, left // (4 * workers) if workers > 1 else left)
+        )
+
+    def _add(self, frame: Frame) -> None:
+        header = frame.header
+        if 0 in header["numbers"] and not self._checked:
+            self._check_first(frame)
+        self.trials.append(frame)
+        count = len(header["numbers"])
+        self._seconds = max(header["seconds"] / count, 1e-7)
+        self._bytes = len(frame.data) // count + 1
+        self.bar.show(len(self.trials.done), frame)
+        self._count_failures(frame.failures())
+
+    def _check_first(self, frame: Frame) -> None:
+        """Refuse what cannot be judged as soon as trial 0 is there, and note where it does not repeat itself."""
+        self._checked = True
+        for segment, arrays in frame.segments():
+            if segment["trials"][0] != 0:
+                continue
+            for goal in self.goals:
+                has_nees = "error" in arrays and "covariance" in arrays
+                if f"column/{goal.metric}" not in arrays and not (goal.metric == "nees_ratio" and has_nees):
+                    known = [name[7:] for name in arrays if name.startswith("column/")] + ["nees_ratio"] * has_nees
+                    why = f"until: the trials have no number {printable(goal.metric)}"
+                    raise _core.InputError(f"{why}. Take one of {', '.join(known) or 'columns that Run is given'}.")
+            numbers = {name: array[:1] for name, array in arrays.items() if not name.startswith("column/")}
+            if all(np.isnan(array).all() for name, array in numbers.items() if name != "steps"):
+                continue
+            texts = segment["texts"]
+            with errors_of_arguments(lambda said: f"trial 0 of {segment['arm']}: {said_of_arrays(said)}"):  # noqa: B023
+                _core.judge(
+                    {name: (array, float(np.finfo(array.dtype).eps)) for name, array in numbers.items()},
+                    texts["texts"], texts["lists"], texts["dimensions"], {"segments": "off"}, b"trial 0", None,
+                )  # fmt: skip
+        for arm, is_same in frame.header["repeats"].items():
+            if not is_same:
+                self.is_repeatable = False
+                why = f"trial 0 of {arm} gives other numbers from the same generator a second time"
+                remedy = "Draw every random number from rng, and keep nothing from trial to trial"
+                warnings.warn(f"{why} (a global generator, the time, or a state that is kept). {remedy}.", stacklevel=5)
+
+    def _compare_with_what_is_kept(self, workers: Workers[Payload]) -> None:
+        """Run trial 0 once more, and refuse to add to trials that another function or another library made."""
+        kept = next(frame for frame in self.trials.frames() if 0 in frame.header["numbers"])
+        self._check_first(kept)
+        numbers = list(range(self.work.batch)) if self.work.batch else [0]
+        payloads: list[Payload] = [(numbers, [0], False)]
+        for _, data in workers.results(lambda: payloads.pop() if payloads else None, lambda payload: payload):
+            for arm in self.work.arms:
+                if data is not None and not same(kept.data, data, arm, [0]):
+                    why = f"trial 0 of {arm} gives other numbers than those that are kept"
+                    remedy = "Take the function and the libraries that made them, or another output"
+                    raise _core.InputError(f"{self.trials.path}: {why}. {remedy}.")
+
+    def _count_failures(self, failures: list[Failure]) -> None:
+        """Stop where every one of the first trials of an arm failed."""
+        needed = min(HOPELESS, self.ceiling)
+        for one in failures:
+            if one.trial < needed:
+                self._failed_first[one.arm].add(one.trial)
+                if len(self._failed_first[one.arm]) == needed:
+                    said = f"the first {needed} trials of {one.arm} all failed; this is trial {one.trial}: {one.reason}"
+                    raise _core.Failure(f"{said}\n{one.traceback}".rstrip("\n"))
+
+    def _are_met(self, count: int, alpha: float) -> bool:
+        values: dict[tuple[str, str], tuple[Array, Array]] = {}
+
+        def of(metric: str, arm: str) -> tuple[Array, Array]:
+            if (metric, arm) not in values:
+                trials, numbers = self.trials.values(metric, arm)
+                values[metric, arm] = (trials[trials < count], numbers[trials < count])
+            return values[metric, arm]
+
+        for goal in self.goals:
+            if goal.arms is None:
+                samples = [of(goal.metric, arm)[1] for arm in self.work.arms]
+            else:
+                (trials_a, a), (trials_b, b) = (of(goal.metric, arm) for arm in goal.arms)
+                _, in_a, in_b = np.intersect1d(trials_a, trials_b, return_indices=True)
+                samples = [a[in_a] - b[in_b]]
+            if not all(goal.is_met(sample, alpha) for sample in samples):
+                return False
+        return True
+
+
+def _refuse_missing(module: str, why: str) -> None:
+    if importlib.util.find_spec(module) is None:
+        raise _core.InputError(f"{module} is not installed ({why}). Install it: pip install {module}.")
+
+
+def _refuse_bad_limit(failed: float | str) -> None:
+    """Refuse a share that `judge` would refuse in the end."""
+    one = (np.ones((1, 1)), float(np.finfo(float).eps))
+    with errors_of_arguments(said_of_arrays):
+        _core.judge(
+            {"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": str(failed)}, b"", None
+        )
+
+
+def simulate(
+    run: Callable[..., Any],
+    *,
+    trials: int,
+    seed: int = 1,
+    arms: Mapping[str, Mapping[str, Any]] | None = None,
+    executor: Any = None,
+    batch: bool | int = False,
+    output: File | None = None,
+    resume: bool = False,
+    until: Goals | None = None,
+    timeout: float | None = None,
+    failed: float | str = 0.01,
+    progress: bool | None = None,
+) -> Simulation:
+    """Run a filter many times, each time with random numbers of its own, and judge it.
+
+    The results are a function of `run`, `arms`, `seed` and `trials` and of nothing else: not of the executor, the
+    number of workers, or interruptions.
+
+    Parameters
+    ----------
+    run : function
+        ``run(rng, **options)`` simulates one run of the filter with random numbers of `rng` alone, a
+        numpy.random.Generator, and returns a `Run`. That of a trial is the same under every arm: its key
+        is NumPy's hash of seed and trial [docs/python.md].
+    trials : int
+        Runs of each arm; with `until` the most.
+    seed : int
+        From 0 to 2^64 - 1.
+    arms : dict of dict
+        The options of `run` under each arm, such as ``{"right": {}, "calm": {"q": 0.04}}``.
+    executor : int or executor
+        Where the trials run: by default in this process; in so many processes, which are forks of this one; or on an
+        executor that has the ``submit`` of concurrent.futures, such as a ProcessPoolExecutor, ``get_executor()`` of a
+        client of Dask, or mpi4py's MPIPoolExecutor. Such workers must be able to import `run`.
+    batch : bool or int
+        Whether `run` takes a list of generators, 256 or as many as are given here, and returns a `Run` of arrays with a
+        leading dimension of runs. It always gets a whole batch, whose first trial is a multiple of its size.
+    output : path
+        The record; with arms, one a record of each: of ``mine.h5`` and the arm ``calm`` it is ``mine.calm.h5``. The
+        trials are kept beside it, in ``mine.h5.trials``. Without it all files are temporary and go with the simulation.
+    resume : bool
+        Whether trials that are kept beside `output` are taken; what is missing of `trials` is run.
+    until : dict, str or list of str
+        Stop as soon as means are known to these half-widths under every arm: ``{"nees_ratio": "1%"}``, a column of
+        `Run`, or the difference of two arms, ``{"rmse[calm-right]": 0.01}``. Needs SciPy.
+    timeout : float
+        The time that a trial may take, a batch with `batch` (s).
+    failed : float or str
+        The verdict is ``failed`` where more than this share of the trials failed.
+    progress : bool
+        Whether a bar of tqdm is drawn; by default on a terminal and in a notebook.
+
+    Returns
+    -------
+    Simulation
+
+    Raises
+    ------
+    InputError
+        A ValueError: an argument cannot be used, or what trial 0 returned cannot be judged.
+    Failure
+        The first twenty trials of an arm all failed; or an executor broke that cannot be made again.
+    Interrupted
+        A KeyboardInterrupt: Ctrl-C was pressed. What was done is kept beside `output`.
+    """
+    if not callable(run):
+        raise _core.InputError(
+            f"invalid run (a {type(run).__name__} cannot be called). Give a function of a generator."
+        )
+    plan, root = _arms(arms), _whole("seed", seed, 0, 2**64 - 1)
+    ceiling = _whole("trials", trials, 1, 2**53)
+    size = 0 if batch is False else BATCH if batch is True else _whole("batch", batch, 1, 2**20)
+    if timeout is not None and not timeout > 0:
+        raise _core.InputError(f"invalid timeout={timeout} (must be above 0). Give seconds, or None.")
+    goals = _goals(until, plan)
+    _refuse_bad_limit(failed)
+    _refuse_missing("h5py", "trials are kept in HDF5 files")
+    if goals:
+        _refuse_missing("scipy", "until needs its quantiles")
+    if output is None and resume:
+        raise _core.InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
+    files = _Files(output, arms)
+    try:
+        if not resume:
+            files.refuse_what_exists()
+        return _simulated(Work(run, plan, root, size, timeout), executor, ceiling, goals, failed, progress, files)
+    except BaseException as error:
+        if getattr(error, "study", None) is None:
+            files.remove_temporary()
+        raise
+
+
+def _simulated(
+    work: Work,
+    executor: Any,
+    ceiling: int,
+    goals: list[Goal],
+    failed: float | str,
+    progress: bool | None,
+    files: _Files,
+) -> Simulation:
+    """Run the trials, write the records, and return them; of an interrupted study those that are done."""
+
+    def written(numbers: Array, lost: list[Failure]) -> Simulation:
+        failures = write_records(file, files.records, numbers, work.seed, lost)
+        study = Simulation(files, len(numbers), work.seed, failures, failed)
+        study.is_repeatable = engine.is_repeatable
+        return study
+
+    with (
+        contextlib.closing(Trials(files.trials, work.seed, work.arms, work.batch)) as file,
+        progress_bar(progress) as drawn,
+    ):
+        bar = _Bar(drawn, ceiling)
+        metrics = {goal.metric for goal in goals} | ({"nees_ratio"} if bar.is_shown else set())
+        work = replace(work, metrics=tuple(sorted(metrics)), ends_hung_process=isinstance(executor, int))
+        engine = _Engine(work, file, ceiling, goals, bar)
+        bar.show(len(file.done))
+        workers: Workers[Payload] = Workers(executor, run_chunk, work)
+        try:
+            count = engine.run(workers)
+        except KeyboardInterrupt:
+            workers.close()
+            done = np.array(sorted(one for one in file.done if one < ceiling), dtype=np.int64)
+            said = f"the simulation was stopped with {len(done)} of {ceiling} trials done; {files.trials} has them"
+            raise Interrupted(said, written(done, []) if len(done) else None) from None
+        finally:
+            workers.close()
+        return written(np.arange(count), engine.lost)

@@ -1,0 +1,616 @@
+"""`credence.simulate`: what its numbers are a function of, what is kept, and what becomes of trials that go wrong."""
+
+from __future__ import annotations
+
+import filecmp
+import math
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+import warnings
+
+import filters
+import h5py
+import numpy as np
+import pytest
+import records
+from scipy import stats
+
+import credence
+from credence import _trials
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+ARMS = {"right": {}, "calm": {"scale": 0.5}}
+PATIENCE = 60  # s, after which a process that should have ended is hung
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def is_same(first, second, arms=tuple(ARMS)):
+    """Whether the records of two outputs are the same, byte for byte."""
+    names = [(f"{first}.{arm}.h5", f"{second}.{arm}.h5") for arm in arms]
+    return all(filecmp.cmp(*pair, shallow=False) for pair in names)
+
+
+def refusal(call, kind=credence.InputError):
+    with pytest.raises(kind) as raised:
+        call()
+    said = str(raised.value)
+    assert "\n" not in said
+    return said
+
+
+def in_process(script, *, wait_for=None, then=None):
+    """Run a script in a process, and send it a signal as soon as a file is there and grows; what it printed."""
+    words = [sys.executable, "-c", "import credence, filters\n" + textwrap.dedent(script)]
+    path = str(pathlib.Path(__file__).parent)
+    process = subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment(path)
+    )
+    try:
+        if wait_for is not None:
+            end = time.monotonic() + PATIENCE
+            while not (pathlib.Path(wait_for).exists() and pathlib.Path(wait_for).stat().st_size > 2000):
+                assert time.monotonic() < end
+                assert process.poll() is None, process.communicate()
+                time.sleep(0.005)
+            process.send_signal(then)
+        said = process.communicate(timeout=PATIENCE)[0]
+    finally:
+        process.kill()
+        process.wait()
+    return process.returncode, said
+
+
+def environment(path):
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([path, *filter(None, [os.environ.get("PYTHONPATH")])])}
+
+
+# What the numbers are.
+
+
+def test_the_generator_is_as_documented():
+    study = credence.simulate(filters.drawn, trials=20)
+    key = np.random.SeedSequence(1, spawn_key=(17,)).generate_state(2, np.uint64)
+    documented = np.random.Generator(np.random.Philox(key=key))
+    assert study.generator(17).bit_generator.state["state"]["key"].tolist() == key.tolist()
+    expected = documented.standard_normal((filters.STEPS, filters.N))
+    assert np.array_equal(study.arm("run").read("error")[17], expected)
+    page = " ".join(PAGE.read_text().split())
+    said = re.search(r"The first three standard normal numbers of trial 17 of seed 1 are `([^`]+)`", page)
+    assert said is not None
+    assert said[1].split(", ") == [repr(number) for number in expected.ravel()[:3].tolist()]
+
+
+def test_streams_of_trials_are_independent():
+    """A million draws of 1000 trials: uniform, and correlated neither along a stream nor across streams."""
+    draws = np.array([_trials.generator(5, trial).random(1000) for trial in range(1000)])
+    assert stats.kstest(draws.ravel(), "uniform").pvalue > 1e-4
+    assert stats.kstest(draws[:, 0], "uniform").pvalue > 1e-4  # across trials
+    centred = (draws - 0.5) * math.sqrt(12)
+    for shifted in (centred[1:] * centred[:-1], centred[:, 1:] * centred[:, :-1], centred[2:] * centred[:-2]):
+        assert abs(shifted.sum()) / math.sqrt(shifted.size) < 4  # standard deviations of a sum of independent ones
+    joint = np.linalg.eigvalsh(centred @ centred.T / 1000)  # of independent streams: Marchenko and Pastur's law
+    assert 3.6 < joint[-1] < 4.4
+    assert len(np.unique(draws)) == draws.size
+
+
+def test_every_arm_of_a_trial_has_the_same_stream():
+    study = credence.simulate(filters.drawn, trials=30, arms=ARMS)
+    right, calm = (study.arm(name) for name in ARMS)
+    assert np.array_equal(right.read("error"), calm.read("error"))
+    assert np.array_equal(calm.read("covariance"), 0.5 * right.read("covariance"))
+    other = credence.simulate(filters.drawn, trials=30, seed=2)
+    assert not np.isin(other.arm("run").read("error"), right.read("error")).any()
+
+
+def test_spawned_generators_are_functions_of_the_trial():
+    def run(rng):
+        return filters.drawn(rng.spawn(2)[1])
+
+    first, second = (credence.simulate(run, trials=10) for _ in range(2))
+    assert first.is_repeatable
+    assert np.array_equal(first.arm("run").read("error"), second.arm("run").read("error"))
+
+
+def test_the_record_is_what_judge_says_of_the_arrays():
+    given = records.corpus()
+    names = ["joint", "groups", "names", "singles", "innovations", "variances", "of_groups", "nees_alone", "wxyz"]
+    for name in [*names, "planar", "troubled", "growing", "steps", "time_of_trials"]:
+        record = given[name]
+        runs = iter([record_of_trial(record, trial) for trial in [0, *range(records.TRIALS)]])  # trial 0 runs twice
+        study = credence.simulate(lambda rng, runs=runs: next(runs), trials=records.TRIALS)
+        verdict, expected = study.arm("run").verdict, credence.judge(**record, name="run")
+        for entry in (verdict.json[0], expected.json[0]):
+            for varying in ("source",):
+                entry.pop(varying, None)
+        assert {key: value for key, value in verdict.json[0].items() if value != expected.json[0].get(key)} == {}, name
+        arguments = study.arm("run").record()
+        assert credence.judge(**arguments)["groups"] == verdict["groups"]
+
+
+def record_of_trial(record, trial):
+    """One trial of the arguments of `judge`."""
+
+    def of(value):
+        if isinstance(value, dict):
+            return {name: of(one) for name, one in value.items()}
+        is_of_trials = isinstance(value, np.ndarray) and len(value) == records.TRIALS
+        return value[trial] if is_of_trials else value
+
+    return credence.Run(**{name: value if name == "groups" else of(value) for name, value in record.items()})
+
+
+# What is kept.
+
+
+def test_a_study_grows_to_the_same_bits():
+    grown = credence.simulate(filters.drawn, trials=500, arms=ARMS, output="grown.h5")
+    assert grown.trials == 500
+    credence.simulate(filters.drawn, trials=1000, arms=ARMS, output="grown.h5", resume=True)
+    credence.simulate(filters.drawn, trials=1000, arms=ARMS, output="whole.h5")
+    assert is_same("grown", "whole")
+    shorter = credence.simulate(filters.drawn, trials=500, arms=ARMS, output="grown.h5", resume=True)
+    credence.simulate(filters.drawn, trials=500, arms=ARMS, output="short.h5")
+    assert shorter.trials == 500
+    assert is_same("grown", "short")
+
+
+def test_a_torn_tail_is_cut():
+    credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="whole.h5")
+    kept = pathlib.Path("whole.h5.trials").read_bytes()
+    cuts = np.random.default_rng(6).integers(1, len(kept), 6)
+    for cut in cuts.tolist():
+        pathlib.Path("torn.h5.trials").write_bytes(kept[:cut])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="torn.h5", resume=True)
+        assert is_same("whole", "torn")
+    changed = bytearray(kept)
+    changed[len(kept) // 2] ^= 1
+    pathlib.Path("torn.h5.trials").write_bytes(changed)
+    with pytest.warns(UserWarning, match=r"its last \d+ bytes are no whole chunk; its trials run again"):
+        credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="torn.h5", resume=True)
+    assert is_same("whole", "torn")
+
+
+@pytest.mark.parametrize("executor", [None, 2])
+def test_ctrl_c_keeps_what_is_done(executor):
+    script = f"""
+        try:
+            credence.simulate(filters.slow, trials=4000, output="stopped.h5", executor={executor})
+        except credence.Interrupted as stopped:
+            print(stopped)
+            print(stopped.study.trials, stopped.study.arm("run").read("error").shape)
+    """
+    code, said = in_process(script, wait_for="stopped.h5.trials", then=signal.SIGINT)
+    assert code == 0, said
+    done = int(re.search(r"stopped with (\d+) of 4000 trials done; .*stopped.h5.trials has them", said)[1])
+    assert 0 < done < 4000
+    assert f"{done} ({done}, 4, 2)" in said
+    credence.simulate(filters.drawn, trials=done + 300, output="stopped.h5", resume=True)
+    credence.simulate(filters.drawn, trials=done + 300, output="whole.h5")
+    assert filecmp.cmp("stopped.h5", "whole.h5", shallow=False)
+
+
+@pytest.mark.parametrize("executor", [None, 2])
+def test_a_process_that_is_killed_has_kept_what_was_done(executor):
+    script = f"credence.simulate(filters.slow, trials=4000, output='killed.h5', executor={executor})"
+    code, said = in_process(script, wait_for="killed.h5.trials", then=signal.SIGKILL)
+    assert code == -signal.SIGKILL, said
+    size = pathlib.Path("killed.h5.trials").stat().st_size
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        credence.simulate(filters.drawn, trials=300, output="killed.h5", resume=True)
+    assert size > 2000
+    credence.simulate(filters.drawn, trials=300, output="whole.h5")
+    assert filecmp.cmp("killed.h5", "whole.h5", shallow=False)
+
+
+def test_only_the_same_trials_are_taken():
+    credence.simulate(filters.drawn, trials=20, arms=ARMS, output="kept.h5")
+
+    def again(run=filters.drawn, trials=30, arms=ARMS, **more):
+        return lambda: credence.simulate(run, trials=trials, arms=arms, output="kept.h5", **{"resume": True, **more})
+
+    assert re.search(r"kept.h5.trials: its trials have seed=1, not 2. Give the same", refusal(again(seed=2)))
+    assert re.search(r"its trials have arms=", refusal(again(arms={"right": {}, "calm": {"scale": 0.4}})))
+    assert re.search(r"its trials have batch=0, not 256", refusal(again(filters.many, batch=True)))
+    assert re.search(r"until: the trials have no number speed. Take one of rmse", refusal(again(until={"speed": 1})))
+    changed = refusal(again(lambda rng, scale=1: filters.drawn(rng, scale * 1.0000001)))
+    assert re.search(r"trial 0 of right gives other numbers than those that are kept. Take the function", changed)
+    assert re.search(
+        r"cannot write .*kept.h5.trials \(it exists\). Remove it, say resume=True", refusal(again(resume=False))
+    )
+    pathlib.Path("kept.h5.trials").write_bytes(b"something else, and longer than a header")
+    assert "is no file of simulated trials" in refusal(again())
+
+
+def test_two_studies_do_not_add_to_one_file():
+    script = "credence.simulate(filters.slow, trials=100000, output='busy.h5')"
+    words = [sys.executable, "-c", f"import credence, filters; {script}"]
+    process = subprocess.Popen(words, env=environment(str(pathlib.Path(__file__).parent)))
+    try:
+        end = time.monotonic() + PATIENCE
+        while not pathlib.Path("busy.h5.trials").exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        said = refusal(lambda: credence.simulate(filters.slow, trials=10, output="busy.h5", resume=True))
+        assert "another process adds trials to it" in said
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_temporary_files_go_with_the_simulation(tmp_path, monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    study = credence.simulate(filters.drawn, trials=30)
+    assert len(list(tmp_path.iterdir())) == 1
+    assert study.verdicts["run"].verdict == "undecided"
+    del study
+    assert list(tmp_path.iterdir()) == []
+
+    def raises(rng):
+        raise OSError("no")
+
+    with pytest.raises(credence.Failure):
+        credence.simulate(raises, trials=30)
+    assert list(tmp_path.iterdir()) == []
+
+
+# What goes wrong.
+
+
+@pytest.mark.parametrize(("executor", "hang"), [(None, "sleep"), (2, "loop")])
+def test_trials_that_go_wrong_are_failed_and_nothing_is_lost(executor, hang):
+    study = credence.simulate(filters.troubled, trials=40, arms={"kf": {"hang": hang}}, timeout=0.5, executor=executor)
+    reasons = {one.trial: one.reason for one in study.failures}
+    assert list(reasons) == [3, 5, 9, 11, 13, 15]
+    assert reasons[3] == "ValueError: x is singular"
+    assert reasons[5] == "it took longer than timeout=0.5 s"
+    shape = "it is of another form than the first run: error is float64 [4, 3] here, and float64 [4, 2] in trial 0"
+    assert reasons[9] == shape
+    assert reasons[11].startswith("it is of another form than the first run: it has 2 steps, and trial 0 has 4; Run(")
+    assert reasons[13] == "TypeError: the function returned ndarray, not a credence.Run"
+    assert reasons[15] == (
+        "InputError: covariance: is [4, 3, 3], and error has 2 components. Give arrays that fit each other."
+    )
+    assert "raise ValueError" in study.failures[0].traceback
+    assert "_trials.py" not in study.failures[0].traceback
+    assert study.verdicts["kf"]["failed_trials"] == 7  # and trial 7, whose numbers are NaN
+    assert study.verdicts["kf"].verdict == "failed"
+    assert "6 without a result, the first: trial 3 of kf: ValueError: x is singular" in str(study)
+    error = study.arm("kf").read("error")
+    good = [trial for trial in range(40) if trial not in (*reasons, 7)]
+    assert np.isfinite(error[good]).all()
+    assert np.isnan(error[[*reasons, 7]]).all()
+    with h5py.File(study.arm("kf").path) as file:
+        assert file["failure"].asstr()[5] == reasons[5]
+
+
+def test_a_share_of_failures_may_be_allowed():
+    def run(rng):
+        if filters.number_of(rng) == 3:
+            raise ValueError
+        return filters.drawn(np.random.default_rng(1))
+
+    assert credence.simulate(run, trials=40).verdicts["run"].verdict == "failed"
+    assert credence.simulate(run, trials=40, failed="5%").verdicts["run"].verdict != "failed"
+
+
+def test_a_function_that_always_fails_stops_the_study():
+    calls = []
+
+    def run(rng):
+        calls.append(1)
+        return 1 / 0
+
+    with pytest.raises(credence.Failure, match="the first 20 trials of run all failed") as raised:
+        credence.simulate(run, trials=100_000)
+    assert "ZeroDivisionError" in str(raised.value)
+    assert len(calls) < 2000
+
+
+def test_the_length_of_a_run_may_differ_where_it_says_so():
+    def run(rng):
+        steps = int(rng.integers(3, 8))
+        error = rng.standard_normal((steps, 2))
+        return credence.Run(error, np.broadcast_to(np.eye(2), (steps, 2, 2)), steps=steps)
+
+    study = credence.simulate(run, trials=300)
+    assert study.failures == []
+    assert study.verdicts["run"]["failed_trials"] == 0
+    steps = study.arm("run").read("steps")
+    assert set(steps.tolist()) == {3, 4, 5, 6, 7}
+    assert np.isnan(study.arm("run").read("error")).sum() == 2 * (7 - steps).sum()
+
+
+def test_what_does_not_repeat_itself_is_noticed():
+    np.random.seed(1)
+    with pytest.warns(UserWarning, match="trial 0 of run gives other numbers from the same generator a second time"):
+        study = credence.simulate(lambda rng: filters.drawn(np.random), trials=30)
+    assert not study.is_repeatable
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert credence.simulate(filters.drawn, trials=30).is_repeatable
+
+
+def test_arrays_may_be_used_again():
+    error, covariance = np.zeros((4, 2)), np.broadcast_to(np.eye(2), (4, 2, 2)).copy()
+
+    def run(rng):
+        rng.standard_normal(out=error)
+        return credence.Run(error, covariance)
+
+    kept = credence.simulate(run, trials=30).arm("run").read("error")
+    assert np.array_equal(kept, credence.simulate(filters.drawn, trials=30).arm("run").read("error"))
+
+
+@pytest.mark.parametrize(
+    ("run", "said"),
+    [
+        (lambda rng: credence.Run(np.zeros((4, 2)), np.arange(16.0).reshape(4, 2, 2)), "trial 0 of run: covariance: "),
+        (lambda rng: filters.drawn(rng, groups={"a b": [0]}), "trial 0 of run: "),
+        (lambda rng: filters.drawn(rng, groups={"pose": [0, 7]}), "trial 0 of run: "),
+        (lambda rng: filters.drawn(rng, component_names=["x"]), "trial 0 of run: "),
+    ],
+)
+def test_what_cannot_be_judged_is_refused_at_trial_0(run, said):
+    calls = []
+
+    def counted(rng):
+        calls.append(1)
+        return run(rng)
+
+    assert refusal(lambda: credence.simulate(counted, trials=1000)).startswith(said)
+    assert len(calls) == 2
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (
+            {"trials": 0},
+            "invalid trials=0 (must be a whole number from 1 to 9007199254740992). Give one in that range.",
+        ),
+        ({"trials": 2.5}, "invalid trials=2.5 "),
+        ({"seed": -1}, "invalid seed=-1 "),
+        ({"seed": 2**64}, f"invalid seed={2**64} "),
+        ({"batch": 0}, "invalid batch=0 "),
+        ({"timeout": 0}, "invalid timeout=0 (must be above 0). Give seconds, or None."),
+        ({"arms": {}}, "invalid arms (there is none). "),
+        ({"arms": {"../x": {}}}, "invalid arms (../x is no name of letters"),
+        ({"arms": {"x": 3}}, "invalid arms (x has no dict of options)"),
+        ({"executor": 0}, "invalid executor=0 "),
+        ({"executor": "dask"}, "invalid executor of str (it has no submit). "),
+        ({"failed": "some"}, "invalid failed=some "),
+        ({"failed": 2}, "invalid failed=2 "),
+        ({"resume": True}, "cannot resume (there is no output). "),
+        ({"until": {"nees_ratio": "-1%"}}, "invalid until=nees_ratio=-1% (no half-width above 0). "),
+        ({"until": "nees_ratio"}, "invalid until=nees_ratio"),
+        ({"until": {"rmse[a-b]": 1}}, "invalid until=rmse[a-b]=1 (there are no two such arms). "),
+        ({"until": {"speed": 1}}, "until: the trials have no number speed. Take one of rmse, nees_ratio."),
+    ],
+)
+def test_bad_input_is_refused(given, said):
+    assert refusal(lambda: credence.simulate(filters.drawn, **{"trials": 300, **given})).startswith(said)
+    assert list(pathlib.Path.cwd().iterdir()) == []
+
+
+def test_a_run_says_what_does_not_fit():
+    def said(*given, **named):
+        with pytest.raises(credence.Failure) as raised:
+            credence.simulate(lambda rng: credence.Run(*given, **named), trials=1)
+        return str(raised.value).splitlines()[0]
+
+    assert "covariance: is [3, 2, 2], and error is [4, 2]. Give the same steps" in said(
+        np.ones((4, 2)), np.ones((3, 2, 2))
+    )
+    assert "error: is [4], and has 1 dimensions in place of 2" in said(np.ones(4), np.ones((4, 2, 2)))
+    assert "a Run has neither error, nor truth" in said(None, np.ones((4, 2, 2)))
+    assert "error: is an array of <U1, not of numbers" in said([["a"]], np.ones((1, 1, 1)))
+    assert "steps: is not a whole number from 1 to 4" in said(np.ones((4, 2)), np.ones((4, 2)), steps=5)
+    assert "column/a: is no number of a trial" in said(np.ones((4, 2)), np.ones((4, 2)), columns={"a": [1, 2]})
+
+
+def test_a_run_is_made_of_a_record_of_one_trial():
+    given = records.corpus()["names"]
+    one = {name: value[:1] if isinstance(value, np.ndarray) else value for name, value in given.items()}
+    run = credence.Run.of_record({**one, "steps": np.array([records.STEPS]), "time": np.arange(records.STEPS)})
+    assert np.array_equal(run.arrays["error"], given["error"][0])
+    assert run.arrays["time"].shape == (records.STEPS,)
+    assert run.texts == {name: given[name] for name in ("component_names", "component_units")}
+    assert run.steps is None
+    assert "error: has 40 trials. Give one" in refusal(lambda: credence.Run.of_record(given))
+
+
+# Batches, precision, and what a simulation says.
+
+
+def test_batches_are_whole_and_give_the_same_bits():
+    single = credence.simulate(filters.drawn, trials=300, arms=ARMS, output="single.h5")
+    sizes = []
+
+    def many(rngs, **options):
+        sizes.append(len(rngs))
+        return filters.many(rngs, **options)
+
+    credence.simulate(many, trials=150, arms=ARMS, output="batch.h5", batch=64)
+    credence.simulate(many, trials=300, arms=ARMS, output="batch.h5", batch=64, resume=True)
+    assert set(sizes) == {64}
+    assert is_same("single", "batch")
+    assert single.columns["calm"]["rmse"].shape == (300,)
+    too_few = credence.Run(np.zeros((3, 4, 2)), np.zeros((3, 4, 2, 2)))
+    with pytest.raises(credence.Failure, match="the function got 256 generators and returned error"):
+        credence.simulate(lambda rngs: too_few, trials=30, batch=True)
+
+
+def test_until_stops_at_the_first_analysis_that_is_narrow_enough():
+    goal = {"nees_ratio": "3%", "rmse": 0.02}
+    study = credence.simulate(filters.drawn, trials=5000, arms=ARMS, until=goal, output="a.h5")
+    count, expected = 256, None
+    for analysis in range(1, 10):
+        alpha, widths = 0.05 / 2**analysis, []
+        for name in ARMS:
+            error = study.arm(name).read("error") if count <= study.trials else np.full((1, 4, 2), np.nan)
+            ratio = np.mean(error[:count] ** 2, axis=(1, 2)) / ARMS[name].get("scale", 1)
+            rmse = np.sqrt(np.mean(error[:count] ** 2, axis=(1, 2)))
+            t = stats.t.ppf(1 - alpha / 2, count - 1) / np.sqrt(count)
+            widths += [t * ratio.std(ddof=1) / ratio.mean() / 0.03, t * rmse.std(ddof=1) / 0.02]
+        if max(widths) <= 1:
+            expected = count
+            break
+        count *= 2
+    assert study.trials == expected
+    assert 256 < study.trials < 5000
+    credence.simulate(filters.drawn, trials=study.trials, arms=ARMS, output="b.h5")
+    assert is_same("a", "b")
+    assert credence.simulate(filters.drawn, trials=300, until="rmse=0.0001").trials == 300
+    paired = credence.simulate(filters.drawn, trials=5000, arms=ARMS, until={"rmse[calm-right]": 1e-9})
+    assert paired.trials == 256  # both arms have the same errors
+
+
+def test_nees_that_is_followed_is_that_of_the_verdict():
+    for form in ("joint", "growing", "variances"):
+        record = records.corpus()[form]
+        arrays = {name: record[name] for name in ("error", "covariance")}
+        ratio = _trials.metric("nees_ratio", arrays)
+        whole = credence.judge(**arrays, segments="off")
+        if form == "variances":
+            expected = np.mean(record["error"] ** 2 / record["covariance"])
+        else:
+            totals = np.array(next(one for one in whole["groups"] if one["group"] == "all")["anees"]["ratio"])
+            expected = totals.mean() if form == "joint" else None
+        if expected is not None:
+            assert np.mean(ratio) == pytest.approx(expected, rel=1e-12)
+    error, covariance = np.ones((2, 3, 2)), np.broadcast_to(np.eye(2), (2, 3, 2, 2)).copy()
+    covariance[1, 1] = 0
+    ratios = _trials.metric("nees_ratio", {"error": error, "covariance": covariance})
+    assert ratios[0] == 1
+    assert np.isnan(ratios[1])
+    assert _trials.metric("nees_ratio", {"error": error, "covariance": covariance, "steps": np.array([3, 1])})[1] == 1
+    growing = {"error": np.array([[[2.0, np.nan], [2.0, 1.0]]]), "covariance": np.broadcast_to(np.eye(2), (1, 2, 2, 2))}
+    assert _trials.metric("nees_ratio", growing).tolist() == [3.0]
+
+
+def test_a_simulation_says_its_verdicts_and_compares_its_arms(program):
+    study = credence.simulate(filters.drawn, trials=2000, arms=ARMS, output="mine.h5")
+    assert {name: verdict.verdict for name, verdict in study.verdicts.items()} == {
+        "right": "consistent",
+        "calm": "optimistic",
+    }
+    code, said, _ = program("judge", "mine.right.h5", "mine.calm.h5", "--quiet")
+    assert code == 0
+    assert said.splitlines()[1:] == str(study).splitlines()[1:]
+    with h5py.File("mine.calm.h5") as file:
+        assert file["trial"][:].tolist() == list(range(2000))
+        assert int(file.attrs["seed"]) == 1
+        assert file.attrs["arm"] == "calm"
+    difference = credence.compare(study, arms=("calm", "right"))
+    assert "mine.calm:record - mine.right:record" in str(difference)
+    assert str(credence.compare(study)) == str(difference)
+    with pytest.raises(KeyError, match=r"no arm fast\. It has right, calm"):
+        study.arm("fast")
+    with pytest.raises(KeyError, match=r"calm has no nothing\. It has column/rmse, covariance, error, trial"):
+        study.arm("calm").read("nothing")
+    assert study.arm("right").judge(margin=0.5).verdict == "consistent"
+    assert repr(study) == "<credence.Simulation of 2,000 trials, 0 without a result: right consistent, calm optimistic>"
+    assert "<iframe" in study._repr_html_()
+
+
+def test_progress_shows_the_rate_and_nees(capfd):
+    credence.simulate(filters.slow, trials=700, progress=True)
+    said = capfd.readouterr().err
+    assert re.search(r"trials/s, NEES/n run \d\.\d{3}", said)
+
+
+def test_without_h5py_it_says_so(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    said = refusal(lambda: credence.simulate(filters.drawn, trials=3))
+    assert said == "h5py is not installed (trials are kept in HDF5 files). Install it: pip install h5py."
+
+
+# python -m credence simulate.
+
+
+def command(*words):
+    environment_here = environment(str(pathlib.Path(__file__).parent))
+    words = [sys.executable, "-m", "credence", "simulate", *words]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment_here, timeout=PATIENCE)
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_the_command_says_what_the_function_says():
+    pathlib.Path("mine.py").write_text(
+        "import filters\ndef run(rng, scale=1.0):\n    return filters.drawn(rng, scale)\n"
+    )
+    arms = ["--arm", "right", "--arm", "calm", "scale=0.5"]
+    code, said, err = command("mine:run", "--trials", "2e2", *arms, "--executor", "2", "-o", "a.h5")
+    assert (code, err) == (0, "")
+    study = credence.simulate(filters.drawn, trials=200, arms=ARMS, output="b.h5")
+    assert is_same("a", "b")
+    assert said.splitlines()[1:3] == str(study).splitlines()[1:3]
+    grown = command("mine:run", "--trials=300", *arms, "-o", "a.h5", "--resume", "--require", "no-finding")
+    assert grown[0] == 1  # the calm filter is refuted
+    assert command("mine:run", "--trials=2000", "--until", "rmse=5%", "--batch", "--quiet")[0] == 1
+    assert command("mine:run", "--trials=300", "--require", "no-finding")[0] == 0
+
+
+def test_the_command_refuses_bad_input():
+    pathlib.Path("mine.py").write_text("import filters\nrun = filters.drawn\n")
+    for words, expected in [
+        (["mine.run"], "invalid function mine.run (must be MODULE:FUNCTION)"),
+        (["nothing_here:run"], "nothing_here:run: cannot be imported (No module named 'nothing_here')"),
+        (["mine:walk"], "mine:walk: the module has no walk"),
+        (["mine:run", "--executor", "slurm"], "invalid executor slurm (must be a number, dask, dask:ADDRESS or mpi)"),
+        (["mine:run", "--arm", "calm", "0.5"], "invalid option 0.5 of the arm calm (must be NAME=VALUE)"),
+        (["mine:run", "--resume"], "cannot resume (there is no output)"),
+    ]:
+        code, said, err = command(*words, "--trials=30")
+        assert (code, said) == (2, "")
+        assert err.startswith(f"credence simulate: {expected}")
+        assert err.count("\n") == 1
+
+
+def test_a_batch_systems_signal_keeps_what_is_done():
+    pathlib.Path("mine.py").write_text("import filters\nrun = filters.slow\n")
+    words = [sys.executable, "-m", "credence", "simulate", "mine:run", "--trials=100000", "-o", "a.h5"]
+    here = environment(str(pathlib.Path(__file__).parent))
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, env=here)
+    try:
+        end = time.monotonic() + PATIENCE
+        while not (pathlib.Path("a.h5.trials").exists() and pathlib.Path("a.h5.trials").stat().st_size > 2000):
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        process.terminate()
+        err = process.communicate(timeout=PATIENCE)[1]
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 3
+    assert re.search(r"credence simulate: the simulation was stopped with \d+ of 100000 trials done; .*--resume", err)
+
+
+# The page.
+
+
+def test_the_example_of_the_page_comes_to_its_verdicts():
+    block = re.search(r"```python\n(# tracker.py\n.+?)```", PAGE.read_text(), re.DOTALL)
+    assert block is not None
+    pathlib.Path("tracker.py").write_text(block[1])
+    done = subprocess.run([sys.executable, "tracker.py"], capture_output=True, text=True, check=True, timeout=PATIENCE)
+    said = dict(re.findall(r"^ +tracker_(\w+)/record +(\w+)", done.stdout, re.MULTILINE))
+    assert said == {"right": "consistent", "calm": "optimistic"}
+    assert "tracker.calm:record - tracker.right:record" in done.stdout
+    words = re.search(r"`python -m credence (simulate tracker:run [^`]+)`", " ".join(PAGE.read_text().split()))
+    assert words is not None
+    code, again, _ = command(*words[1].replace("1500", "100").replace("tracker.h5", "again.h5").split()[1:])
+    assert code == 0
+    assert re.search(r"again_calm/record +optimistic", again)
