@@ -1,17 +1,12 @@
 #!/usr/bin/env bash
-# Label digest: the core prints the committed digest in lanes of any width at -O1; from g++ at -O2 on aarch64, and from
-# the core's own build on older x86 processors, both emulated. The core label has g++ at -O3, the label compilers clang
-# at -O2. (g++ at -O2 on this processor: `cmake --preset digest-o2`.)
+# Label digest: the core prints the committed digest in lanes of any width at -O1, and from the core's own build on older
+# x86 processors, emulated. The core label has g++ at -O3, the label compilers clang at -O2 and g++ on aarch64. (g++ at
+# -O2 on this processor: `cmake --preset digest-o2`.)
 set -euo pipefail
-for tool in aarch64-linux-gnu-g++ qemu-aarch64 qemu-x86_64; do
-  command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
-done
+command -v qemu-x86_64 >/dev/null || { echo "SKIPPED: qemu-x86_64 is not installed"; exit 0; }
 
-cmake --preset digest-aarch64 >/dev/null
-cmake --build --preset digest-aarch64 --target credence_digest -j "$(nproc)" | tail -n 1
 native=build/tests/digest/credence_digest
-bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest &
-checks=($!)
+checks=()
 cmake --build build --target credence_digest_widths -j "$(nproc)" | tail -n 1
 bash tests/digest/check.sh build/tests/digest/credence_digest_widths
 
