@@ -42,6 +42,7 @@ enum class Subject {
     innovations,   ///< NIS/m
     whiteness,
     distribution,  ///< of NEES, against chi-square
+    tenth,         ///< mean errors over a tenth of the steps
 };
 
 /// `size`, `step`, `direction` ...

@@ -17,7 +17,8 @@ namespace {
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
-    const bool about_0 = finding.about == Subject::bias || finding.about == Subject::whiteness;
+    const bool about_0 = finding.about == Subject::bias || finding.about == Subject::tenth ||
+                         finding.about == Subject::whiteness;
     return about_0 ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
 

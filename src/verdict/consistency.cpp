@@ -111,6 +111,7 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     for (std::size_t group = 0; group < evidence.groups.size(); ++group) GroupJudge(evidence, group, judgement).judge();
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
+    judge_tenths(evidence, judgement);
     if (evidence.segments.count) judge_segments(evidence, judgement);
     if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state", false);
     return judgement.consistency(evidence);
@@ -215,7 +216,7 @@ const std::string& fault_name(Fault fault) {
 
 const std::string& subject_name(Subject subject) {
     static const std::string names[] = {"size",        "step",      "direction",   "bias",
-                                        "innovations", "whiteness", "distribution"};
+                                        "innovations", "whiteness", "distribution", "tenth"};
     return names[static_cast<int>(subject)];
 }
 
@@ -245,7 +246,8 @@ std::string sentence(const Finding& finding) {
     char numbers[160];
     std::snprintf(numbers, sizeof numbers, "%s %.3g (%.3g to %.3g)", finding.measure.c_str(), finding.value,
                   finding.interval.low, finding.interval.high);
-    const std::string where = (finding.about == Subject::bias ? "component " : "") + finding.where;
+    const bool of_component = finding.about == Subject::bias || finding.about == Subject::tenth;
+    const std::string where = (of_component ? "component " : "") + finding.where;
     return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + numbers;
 }
 

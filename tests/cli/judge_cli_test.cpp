@@ -188,7 +188,7 @@ TEST_CASE("compare: two records of the same runs are compared trial by trial") {
     CHECK_THAT(compared.out,
                Contains("Both of a pair are of the same run") && Contains("300 pairs") && !Contains("unseen"));
     CHECK(here.credence("compare a.h5 short.h5").exit_code == 2);
-    CHECK_THAT(here.credence("compare a.h5 short.h5").err, Contains("it has 200 trials, not 300"));
+    CHECK_THAT(here.credence("compare a.h5 short.h5").err, Contains("short.h5: /error: is [200, 10, 2], not [300, 10, 2] as in the first record"));
     CHECK_THAT(here.credence("compare a.h5").err, Contains("several records of the same runs"));
 }
 

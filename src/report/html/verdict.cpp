@@ -73,6 +73,17 @@ Table suspicions_table(const ArmReport& arm) {
     return table;
 }
 
+/// The margins that are shown, whatever was asked for.
+Html reached_table(const ArmReport& arm) {
+    const Reached& reached = arm.consistency.reached;
+    if (std::isnan(reached.nees) && std::isnan(reached.direction) && std::isnan(reached.bias)) return {};
+    const auto margin = [](double value) { return std::isnan(value) ? Cell("-") : short_cell(value); };
+    Table table(arm.scenario + ", " + arm.arm + ": the margins within which it is shown to be, at 95 %",
+                {"NEES/dim, of 1", "directions, of 1", "bias, sigma"}, 0);
+    table.row(std::vector<Cell>{margin(reached.nees), margin(reached.direction), margin(reached.bias)});
+    return html_of(table);
+}
+
 Html arm_findings(const ArmReport& arm) {
     constexpr std::size_t most = 8;
     const Consistency& verdict = arm.consistency;
@@ -89,7 +100,7 @@ Html arm_findings(const ArmReport& arm) {
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
                          table)) +
-           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm)));
+           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm))) + reached_table(arm);
 }
 
 }  // namespace

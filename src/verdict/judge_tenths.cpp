@@ -1,0 +1,95 @@
+// Tenths of a run: what cancels over all steps, such as a bias that changes its sign.
+
+#include "statistics/mean_bounds.hpp"
+#include "verdict/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+constexpr int tenths = 10, least_steps = 5;  ///< of a tenth
+constexpr double wider = 3;                  ///< margins of a tenth, over those of all steps
+
+/// The mean over a tenth's steps, and a standard error that holds whatever the correlation of the steps is: the mean of
+/// theirs.
+Moments over_tenth(const std::vector<Moments>& steps, std::size_t first, std::size_t last) {
+    Moments mean{0, 0, 0, 0};
+    double known = 0;
+    for (std::size_t k = first; k < last; ++k) {
+        if (!(steps[k].count > 1)) continue;
+        mean.mean += steps[k].mean;
+        mean.standard_error += steps[k].standard_error;
+        mean.count = known == 0 ? steps[k].count : std::min(mean.count, steps[k].count);
+        ++known;
+    }
+    mean.mean /= known;  // NaN where no step is known
+    mean.standard_error /= known;
+    return mean;
+}
+
+/// Calls visit(tenth, the numbers of its steps).
+template <class Visit>
+void each_tenth(const std::vector<Moments>& steps, const Visit& visit) {
+    for (std::size_t tenth = 0; tenth < tenths; ++tenth) {
+        const std::size_t first = tenth * steps.size() / tenths, last = (tenth + 1) * steps.size() / tenths;
+        std::vector<int> numbers;
+        for (std::size_t k = first; k < last; ++k) numbers.push_back(static_cast<int>(k) + 1);
+        visit(over_tenth(steps, first, last), numbers);
+    }
+}
+
+/// The names of what is beyond its wider margin somewhere, as one reason.
+void withhold(const std::string& what, const std::vector<std::string>& names, Judgement& judgement) {
+    constexpr std::size_t most = 3;
+    if (names.empty()) return;
+    std::string text = names.front();
+    for (std::size_t i = 1; i < std::min(most, names.size()); ++i) text += ", " + names[i];
+    if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+    judgement.not_shown(what + text + ": over a tenth of the steps beyond three times the margin", true);
+}
+
+}  // namespace
+
+void judge_tenths(const Evidence& evidence, Judgement& judgement) {
+    if (evidence.steps < tenths * least_steps || evidence.segments.count) return;
+    std::vector<std::string> groups, components;
+    for (const GroupEvidence& group : evidence.groups) {
+        if (!(group.run.count > 1) || is_rounded(group, judgement.limits())) continue;
+        bool beyond = false;
+        each_tenth(group.step, [&](const Moments& mean, const std::vector<int>&) {
+            beyond = beyond || std::abs(mean.mean - 1) > wider * judgement.limits().margin;
+        });
+        if (beyond) groups.push_back(group.name);
+    }
+    withhold("NEES/dim of ", groups, judgement);
+    const double level = levels::bias / (tenths * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size()))),
+                 margin = wider * judgement.limits().bias;
+    for (const BiasEvidence& bias : evidence.bias) {
+        if (!(bias.run.count > 1)) continue;
+        std::vector<int> found;
+        bool beyond = false;
+        Moments worst;
+        Interval interval;
+        each_tenth(bias.step, [&](const Moments& mean, const std::vector<int>& steps) {
+            if (!(std::abs(mean.mean) > margin)) return;
+            const double half = t_quantile(level, mean.count - 1) * mean.standard_error;
+            beyond = true;
+            if (!(std::abs(mean.mean) - half > margin)) return;
+            found.insert(found.end(), steps.begin(), steps.end());
+            if (std::abs(mean.mean) < std::abs(worst.mean)) return;
+            worst = mean;
+            interval = {mean.mean - half, mean.mean + half};
+        });
+        if (!found.empty())
+            judgement.add_bias({Subject::tenth, Fault::biased, bias.component, steps_text(found), worst.mean, interval,
+                                "mean error/sigma"});
+        else if (beyond)
+            components.push_back(bias.component);
+    }
+    withhold("bias of ", components, judgement);
+}
+
+}  // namespace credence
