@@ -79,8 +79,10 @@ Html reached_table(const ArmReport& arm) {
     if (std::isnan(reached.nees) && std::isnan(reached.direction) && std::isnan(reached.bias)) return {};
     const auto margin = [](double value) { return std::isnan(value) ? Cell("-") : short_cell(value); };
     Table table(arm.scenario + ", " + arm.arm + ": the margins within which it is shown to be, at 95 %",
-                {"NEES/dim, of 1", "directions, of 1", "bias, sigma"}, 0);
-    table.row(std::vector<Cell>{margin(reached.nees), margin(reached.direction), margin(reached.bias)});
+                {"of", "margin"});
+    table.row("NEES/dim", {margin(reached.nees)});
+    table.row("directions", {margin(reached.direction)});
+    table.row("bias in sigma", {margin(reached.bias)});
     return html_of(table);
 }
 

@@ -7,6 +7,7 @@
 #include "report/watch/follower.hpp"
 
 #include <algorithm>
+#include <set>
 #include <chrono>
 #include <filesystem>
 
@@ -80,13 +81,15 @@ Snapshot snapshot_of(const std::string& path, RunState state, const Study& study
     return snapshot;
 }
 
+/// Columns for which a line has no room.
+const std::set<std::string> not_watched{"mean_trace_P", "log_score"};
+
 }  // namespace
 
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
     std::vector<std::size_t> watched;
     for (std::size_t c = 0; c < columns.size(); ++c)
-        if (is_reported(columns[c]) && columns[c].name != "mean_trace_P" && columns[c].name != "log_score")
-            watched.push_back(c);
+        if (is_reported(columns[c]) && !not_watched.contains(columns[c].name)) watched.push_back(c);
     return watched;
 }
 
