@@ -7,9 +7,9 @@
 #include "report/watch/follower.hpp"
 
 #include <algorithm>
-#include <set>
 #include <chrono>
 #include <filesystem>
+#include <set>
 
 namespace credence {
 
