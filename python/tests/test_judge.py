@@ -319,8 +319,8 @@ def test_what_cancels_over_all_steps_is_found_in_its_tenths():
     rng = np.random.default_rng(9)
     errors, covariance = rng.normal(size=(2000, 50, 1)), np.ones((2000, 50, 1, 1))
     assert credence.judge(errors, covariance).verdict == "consistent"
-    halves = np.where(np.arange(50) < 25, 0.35, -0.35)[:, None] * np.sqrt(1 / 1.1225)
-    moved = errors * np.sqrt(1 / 1.1225) + halves  # of mean square 1 at every step
+    halves = np.where(np.arange(50) < 25, 0.5, -0.5)[:, None]
+    moved = (errors + halves) / np.sqrt(1.25)  # of mean square 1 at every step
     found = credence.judge(moved, covariance)
     assert [one["about"] for one in found.findings] == ["tenth"]
     early = errors * np.where(np.arange(50) < 25, 0.83, 1.145)[:, None]
