@@ -238,7 +238,8 @@ def test_planar_poses_in_space_are_judged_in_the_plane():
 
 
 def test_reached_is_the_smallest_margin_that_is_accepted():
-    errors, covariances = np.random.default_rng(4).normal(size=(900, 20, 2)), np.broadcast_to(np.eye(2), (900, 20, 2, 2))
+    errors = np.random.default_rng(4).normal(size=(900, 20, 2))
+    covariances = np.broadcast_to(np.eye(2), (900, 20, 2, 2))
     reached = credence.judge(errors, covariances).reached
 
     def verdict(scale):
