@@ -61,6 +61,20 @@ struct FiftyReal {
     }
 };
 
+/// A product needs no exponent of its own where the type has room for it.
+template <>
+class ScaledProduct<FiftyReal> {
+public:
+    CALL ScaledProduct() {}
+    CALL explicit ScaledProduct(const FiftyReal& number) : product_(number) {}
+    CALL void multiply(const FiftyReal& number) { product_ = product_ * number; }
+    CALL void multiply(const ScaledProduct& by) { product_ = product_ * by.product_; }
+    CALL FiftyReal log() const { return test::Fifty(boost::multiprecision::log(product_.value)); }
+
+private:
+    FiftyReal product_ = 1;
+};
+
 }  // namespace CREDENCE_TARGET
 }  // namespace credence
 #undef CALL
