@@ -8,7 +8,6 @@
 
 #include "base/nan.hpp"
 #include "record/alike.hpp"
-#include "scenario/state_series.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -7,12 +7,6 @@ namespace credence {
 
 namespace {
 
-std::string text_of(const RecordExtents& extents) {
-    std::string text;
-    for (const std::uint64_t extent : extents) text += (text.empty() ? "[" : ", ") + std::to_string(extent);
-    return text + "]";
-}
-
 bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 /// The first entry of the first dimension whose values differ; nothing where none do.
@@ -45,7 +39,7 @@ void require_same_runs(const RecordSource& first, const RecordSource& record) {
         if (!first.has(path) || !record.has(path)) continue;
         const DatasetPointer a = first.open(path, Numbers::any), b = record.open(path, Numbers::any);
         if (a->extents() != b->extents())
-            throw RecordError(b->place(), "is " + text_of(b->extents()) + ", not " + text_of(a->extents()) +
+            throw RecordError(b->place(), "is " + extents_text(b->extents()) + ", not " + extents_text(a->extents()) +
                                               " as in the first record: these are other runs", remedy);
         if (path == std::string("error") || path == std::string("estimate") || a->extents().empty()) continue;
         if (const std::optional<std::uint64_t> row = first_difference(*a, *b))

@@ -177,18 +177,20 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     if (verdict.verdict != Verdict::undecided || evidence.trials == 0) return verdict;
     verdict.reasons = std::move(reasons_);
     const auto list = [&](const std::vector<std::string>& names, const std::string& why) {
-        constexpr std::size_t most = 3;
-        if (names.empty()) return;
-        std::string text = names.front();
-        for (std::size_t i = 1; i < std::min(most, names.size()); ++i) text += ", " + names[i];
-        if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
-        verdict.reasons.push_back(text + why);
+        if (!names.empty()) verdict.reasons.push_back(first_of(names) + why);
     };
     list(unknown_, ": too few " + evidence.units() + " to show that it is within its margin");
     list(tails_, ": within its margin, but for " + evidence.units() + " as large as the largest that were seen");
     verdict.suspicions = std::move(suspicions_);
     if (more_trials_help_) verdict.trials_needed = trials_needed(evidence, limits_);
     return verdict;
+}
+
+std::string first_of(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 3;
+    std::string text = names.front();
+    for (std::size_t i = 1; i < std::min(most, names.size()); ++i) text += ", " + names[i];
+    return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
 std::string listed(const std::string& what, const std::vector<int>& numbers) {

@@ -27,6 +27,9 @@ inline bool within(const Interval& interval, double margin) {
 
 inline Fault fault_of(Side side) { return side == Side::above ? Fault::optimistic : Fault::pessimistic; }
 
+/// `a, b, c and 2 more`, of one name or more.
+std::string first_of(const std::vector<std::string>& names);
+
 /// `steps 3 to 7, 9`, from numbers in order.
 std::string listed(const std::string& what, const std::vector<int>& numbers);
 inline std::string steps_text(const std::vector<int>& steps) { return listed("step", steps); }

@@ -1,6 +1,7 @@
 // Tenths of a run: what cancels over all steps, such as a bias that changes its sign.
 
 #include "statistics/mean_bounds.hpp"
+#include "verdict/consistency_parts.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>
@@ -43,12 +44,8 @@ void each_tenth(const std::vector<Moments>& steps, const Visit& visit) {
 
 /// The names of what is beyond its wider margin somewhere, as one reason.
 void withhold(const std::string& what, const std::vector<std::string>& names, Judgement& judgement) {
-    constexpr std::size_t most = 3;
-    if (names.empty()) return;
-    std::string text = names.front();
-    for (std::size_t i = 1; i < std::min(most, names.size()); ++i) text += ", " + names[i];
-    if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
-    judgement.not_shown(what + text + ": over a tenth of the steps beyond three times the margin", true);
+    if (!names.empty())
+        judgement.not_shown(what + first_of(names) + ": over a tenth of the steps beyond three times the margin", true);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ std::string conclusion_text(const ComparedPair& pair) {
                (paired.pairs == 1                       ? ", one pair"
                 : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
                                                       : "") + ")" +
-               (mean - half_width(interval) > 0 || mean + half_width(interval) < 0
+               (interval.low > 0 || interval.high < 0
                     ? "; so few pairs may lack some that differ far more"
                     : "") +
                despite(comparison);
