@@ -13,10 +13,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from credence import Failure, InputError
+from credence.judging import NOT_REFUTED
 from credence.program import STOPPED, Interrupted
 
 CONSISTENT = ("consistent",)
-NOT_REFUTED = ("consistent", "undecided")
 
 
 def _function(name: str) -> Any:

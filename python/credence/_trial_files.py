@@ -20,7 +20,7 @@ import numpy as np
 
 from credence import InputError
 from credence._names import printable
-from credence._trials import Arms, Array, Failure, Frame, frame_at, framed, metric
+from credence._trials import START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
 
 FORMAT = "credence trials 1"
 
@@ -94,16 +94,15 @@ class Trials:
 
     def _length_at(self, at: int, size: int) -> int:
         self._file.seek(at)
-        start = self._file.read(24)
-        expected = 24 + sum(int.from_bytes(start[i : i + 8], "little") for i in (8, 16)) + 16
-        if len(start) < 24 or at + expected > size:
+        start = self._file.read(START)
+        if len(start) < START or at + frame_size(start) > size:
             return 0
-        return frame_at(memoryview(start + self._file.read(expected - 24)))
+        return frame_at(memoryview(start + self._file.read(frame_size(start) - START)))
 
     def _header(self, at: int) -> dict[str, Any]:
         self._file.seek(at + 8)
         length = int.from_bytes(self._file.read(8), "little")
-        self._file.seek(at + 24)
+        self._file.seek(at + START)
         header: dict[str, Any] = json.loads(self._file.read(length))
         return header
 

@@ -32,6 +32,7 @@ Arms = dict[str, dict[str, Any]]
 BATCH = 256  # trials that a function of many generators gets at once
 _MAGIC = b"crtrial1"
 _SUM = 16  # bytes of a frame's checksum
+START = len(_MAGIC) + 16  # bytes of a frame before its parts: its mark, and two lengths
 # Dimensions of an array of one run, that of its steps among them.
 _ranks = {
     "error": (2,),
@@ -440,12 +441,18 @@ def framed(header: Mapping[str, Any], body: Sequence[bytes]) -> bytes:
     return b"".join([*parts, total.digest()])
 
 
+def frame_size(start: bytes) -> int:
+    """The length of the frame that begins with these START bytes, whether it is whole or not."""
+    head, body = struct.unpack_from("<QQ", start, len(_MAGIC))
+    return START + int(head) + int(body) + _SUM
+
+
 class Frame:
     """A frame that was read: its header, and its arrays when they are asked for."""
 
     def __init__(self, data: bytes) -> None:
         self.data = data
-        length, self._body = struct.unpack_from("<Q", data, len(_MAGIC))[0], len(_MAGIC) + 16
+        length, self._body = struct.unpack_from("<Q", data, len(_MAGIC))[0], START
         self.header: dict[str, Any] = json.loads(data[self._body : self._body + length])
         self._body += length
 
@@ -466,14 +473,14 @@ class Frame:
 
 def frame_at(data: memoryview) -> int:
     """The length of the whole frame with which the bytes begin; 0 where there is none."""
-    start = len(_MAGIC) + 16
-    if len(data) < start + _SUM or bytes(data[: len(_MAGIC)]) != _MAGIC:
+    if len(data) < START + _SUM or bytes(data[: len(_MAGIC)]) != _MAGIC:
         return 0
-    end = start + sum(struct.unpack_from("<QQ", data, len(_MAGIC)))
-    if len(data) < end + _SUM:
+    size = frame_size(bytes(data[:START]))
+    if len(data) < size:
         return 0
-    is_whole = hashlib.blake2b(data[:end], digest_size=_SUM).digest() == bytes(data[end : end + _SUM])
-    return end + _SUM if is_whole else 0
+    end = size - _SUM
+    is_whole = hashlib.blake2b(data[:end], digest_size=_SUM).digest() == bytes(data[end:size])
+    return size if is_whole else 0
 
 
 def same(first: bytes, second: bytes, arm: str, trials: Sequence[int] | None = None) -> bool:

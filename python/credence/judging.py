@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     Groups = str | Mapping[str, int | Sequence[int]] | Sequence[str]
 
 
+NOT_REFUTED = ("consistent", "undecided")
+
+
 class _Printed(NamedTuple):
     """What a judgement says, without what it was computed from."""
 
@@ -268,7 +271,7 @@ def assert_consistent(
     if within is not None:
         named["margin"] = within
     verdict = judge(*arguments, **named)
-    if verdict.verdict not in ("consistent", "undecided"):
+    if verdict.verdict not in NOT_REFUTED:
         raise AssertionError(f"the filter is not consistent\n\n{verdict}")
     if within is not None and not verdict.is_consistent:
         raise AssertionError(f"the filter is not shown to be consistent within {within}\n\n{verdict}")

@@ -232,8 +232,7 @@ def run(
         from credence._shards import shards_of
 
         with _scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
-            merge_options = _option_words(overwrite=overwrite)
-            return _written(["merge", *parts, *merge_options], output, False)
+            return merge(parts, output, overwrite=overwrite, progress=False)
     elif shards is not None:
         raise _core.InputError("shards: say nothing without an executor. Give both, or leave it out.")
     options = _option_words(trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force)
