@@ -240,7 +240,8 @@ def test_two_studies_do_not_add_to_one_file():
     process = subprocess.Popen(words, env=environment(str(pathlib.Path(__file__).parent)))
     try:
         end = time.monotonic() + PATIENCE
-        while not pathlib.Path("busy.h5.trials").exists() and time.monotonic() < end:
+        trials = pathlib.Path("busy.h5.trials")  # it is locked before its first byte is written
+        while not (trials.exists() and trials.stat().st_size > 0) and time.monotonic() < end:
             time.sleep(0.01)
         said = refusal(lambda: credence.simulate(filters.slow, trials=10, output="busy.h5", resume=True))
         assert "another process adds trials to it" in said
