@@ -47,9 +47,9 @@ double laplace_scale(const Draws& draws, int step, int index) {
     return std::sqrt(-std::log1p(-draws.uniform(step, index)));
 }
 
-/// Three sigma in 5 %, and a variance of 1 over all.
-double contaminated_scale(const Draws& draws, int step, int index) {
-    return (draws.uniform(step, index) < 0.05 ? 3 : 1) / std::sqrt(1.4);
+/// So many sigma in a share of the draws, and a variance of 1 over all.
+double contaminated_scale(const Draws& draws, int step, double share, double sigmas) {
+    return (draws.uniform(step, 0) < share ? sigmas : 1) / std::sqrt(1 + share * (sigmas * sigmas - 1));
 }
 
 /// The scale of one component at one step.
@@ -61,8 +61,11 @@ double scale_of(Tails tails, const Draws& draws, int step, int component) {
         case Tails::t5_component: return t5_scale(draws, step, component);
         case Tails::t5_component_trial: return t5_scale(draws, 0, component);
         case Tails::laplace: return laplace_scale(draws, step, component);
-        case Tails::contaminated_steps: return contaminated_scale(draws, step, 0);
-        case Tails::contaminated_trials: return contaminated_scale(draws, 0, 0);
+        case Tails::contaminated_steps: return contaminated_scale(draws, step, 0.05, 3);
+        case Tails::contaminated_trials: return contaminated_scale(draws, 0, 0.05, 3);
+        case Tails::outlying_steps: return contaminated_scale(draws, step, 0.01, 5);
+        case Tails::rarely_lost: return draws.uniform(0, 0) < 0.003 ? 8 : 1;
+        case Tails::lost: return draws.uniform(0, 0) < 0.01 ? 10 : 1;
     }
     return 1;
 }

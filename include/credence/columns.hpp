@@ -9,18 +9,23 @@
 
 namespace credence {
 
-/// How a trial ended. Numerical trouble inside a trial is data; only the last two exclude a trial from the series.
+/// How a trial ended. Only the last two have no columns; only the first one is in the series.
 enum class Status : std::int8_t {
     completed = 0,
-    diverged = 1,                          ///< an |x^| or |P| entry above 1e12; series are kept
+    lost = 1,                              ///< its NEES/n is beyond `lost_nees_ratio`
     covariance_not_positive_definite = 2,
     non_finite = 3,
 };
-inline constexpr double divergence_bound = 1e12;
+/// Beyond this a number of a trial counts as not finite: its squares' squares must still add up.
+inline constexpr double largest_number = 1e70;
+/// A trial is lost if NEES/n of the whole state, mean over its steps, is beyond this: errors of five sigma throughout.
+inline constexpr double lost_nees_ratio = 25;
 
 const std::vector<std::string>& status_names();
 
 inline bool failed(Status status) { return status >= Status::covariance_not_positive_definite; }
+/// Whether the trial is in the totals by step.
+inline bool counts(Status status) { return status == Status::completed; }
 
 enum class ColumnType { real, integer, status };
 

@@ -43,6 +43,7 @@ enum class Subject {
     whiteness,
     distribution,  ///< of NEES, against chi-square
     tenth,         ///< mean errors over a tenth of the steps
+    calibration,   ///< NEES/dimension of the trials with a small or a large P
 };
 
 /// `size`, `step`, `direction` ...

@@ -93,6 +93,7 @@ struct BiasEvidence {
     Moments run;                               ///< averaged over each trial's steps
     std::vector<Moments> step;
     double largest_error = 0;                  ///< of the detailed trials, in the component's unit
+    std::vector<double> mean_square;           ///< of their errors, by step, in the unit's square; NaN: unknown
 };
 
 /// The numbers of single trials from which directions are computed [src/statistics/moments/trial_moments.hpp].
@@ -146,7 +147,8 @@ struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
     std::int64_t left_out = 0;                 ///< trials that failed and are left out
-    std::int64_t diverged = 0;                 ///< trials that failed because they diverged, and are not left out
+    std::int64_t lost = 0;                     ///< trials that are lost and left out, too [columns.hpp]
+    std::vector<WorstTrial> lost_trials;       ///< of the detailed ones, ten at most, the worst first
     int steps = 0;
     std::vector<GroupEvidence> groups;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
@@ -156,12 +158,15 @@ struct Evidence {
     DistributionEvidence distribution;
     CredibilityEvidence credibility;
     WorstTrials worst;
+    std::vector<Moments> fifths;               ///< of NEES/n, of the trials by their log det P; may be empty
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
-    std::int64_t failed_trials() const { return left_out + diverged; }
+    std::int64_t failed_trials() const { return left_out + lost; }
+    /// Upper 95 % bound on the share of trials that fail or are lost [Clopper and Pearson 1934]; NaN of one log.
+    double may_be_unseen() const;
     /// Steps of what is independent: of a trial, or of a segment where these count.
     int steps_together() const { return segments.count ? segments.steps : steps; }
     /// What is independent: `trials` or `segments`.

@@ -17,12 +17,12 @@
 
 namespace credence {
 
-/// Why a trial of a record failed; both counted from 0, as in the file.
+/// Why a trial of a record failed or is lost; both counted from 0, as in the file.
 struct RecordTrouble {
     std::int64_t trial = 0;
     int step = 0;
     std::string what;  ///< such as `covariance is singular`
-    Status status = Status::non_finite;  ///< a diverged trial stays in the series, the others are left out
+    Status status = Status::non_finite;
 };
 
 /// Steps within a record's runs that do not exist: their error and covariance are NaN. Of the runs that did not fail.
@@ -92,8 +92,8 @@ struct Record {
 /// 2^-52, or that of the type in the file where it is coarser. A trial has also failed, as `non_finite`, if at some
 /// step only the error or only the covariance is NaN or some value is not finite, if its series exceed 1e140, if it has
 /// no steps, or if it ends before its declared steps or, where none are declared, before the longest trial. Failed
-/// trials are left out of the series. A trial whose error or covariance exceeds 1e12 has `diverged`, and stays in the
-/// series. All are listed as troubles.
+/// trials are left out of the series. So are lost ones, unless more than half of those that did not fail are lost: then
+/// these count as the others. All are listed as troubles.
 ///
 /// Components whose errors and whose rows and columns of every covariance are 0 at all steps are not in the state: they
 /// are left out, and `results.not_judged` names them.

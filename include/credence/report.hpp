@@ -44,7 +44,7 @@ struct ArmReport {
     std::string scenario, arm;
     std::int64_t trials = 0;                ///< all that are present; 0: the arm has not run yet
     std::int64_t failed = 0;                ///< of them, those that are left out of the columns
-    std::int64_t diverged = 0;              ///< of them, those that diverged and are not left out
+    std::int64_t lost = 0;                  ///< of them, those that are lost, whose columns are kept
     std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
@@ -53,7 +53,7 @@ struct ArmReport {
 
     bool not_run() const { return trials == 0; }
     /// The largest share of failed trials without the verdict `failed`.
-    std::int64_t failed_trials() const { return failed + diverged; }
+    std::int64_t failed_trials() const { return failed + lost; }
 };
 
 struct Report {
@@ -71,7 +71,7 @@ struct Report {
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 
-/// Failed trials are left out (their values are NaN), except those that diverged; their number is reported beside.
+/// Failed trials are left out (their values are NaN); lost ones are left out of the verdict alone.
 Report make_report(const Study& study, const Limits& limits);
 
 /// The same of a record: one arm, `record`; `path` names it.

@@ -45,6 +45,9 @@ struct Moments {
 };
 /// mean -+ t_{1 - alpha/2, count - 1} standard_error
 Interval t_interval(const Moments& moments, double alpha = 0.05);
+
+/// Two-sided p-value of Student's test that the mean is exactly `expected`; NaN for fewer than two values.
+double t_test(const Moments& moments, double expected);
 /// The part of a summary that follows from sums: the median is NaN.
 Summary summary_of(const Moments& moments);
 Moments moments_from_sums(std::int64_t count, double sum, double square_sum);

@@ -326,3 +326,44 @@ def test_what_cancels_over_all_steps_is_found_in_its_tenths():
     assert [one["about"] for one in found.findings] == ["tenth"]
     early = errors * np.where(np.arange(50) < 25, 0.83, 1.145)[:, None]
     assert credence.judge(early, covariance, margin=0.1).verdict != "consistent"
+
+
+def test_p_that_is_wrong_where_it_is_large_and_where_it_is_small_is_found():
+    rng = np.random.default_rng(4)
+    scale = np.exp(rng.normal(size=(3000, 1, 1)) / 2)  # of a trial's sigmas, as it says
+    errors, covariance = scale * rng.normal(size=(3000, 10, 2)), np.eye(2) * (scale**2)[..., None]
+    covariance = np.broadcast_to(covariance, (3000, 10, 2, 2))
+    right = credence.judge(errors, covariance)
+    assert right.verdict == "consistent"
+    wrong = errors * np.where(scale < 1, 1.15, 0.816)  # NEES/n 1.32 where P is small, 0.67 where it is large
+    found = credence.judge(wrong, covariance, margin=0.1)
+    calibration = [one for one in found.findings if one["about"] == "calibration"]
+    assert {one["when"] for one in calibration} >= {
+        "the fifth of the trials with the smallest P",
+        "the fifth of the trials with the largest P",
+    }
+    assert [one["what"] for one in calibration] == ["optimistic", "optimistic", "pessimistic", "pessimistic"]
+
+
+def test_innovations_alone_are_judged_for_their_covariance():
+    rng = np.random.default_rng(5)
+    nu, S = rng.normal(size=(400, 20, 2)), np.broadcast_to(np.eye(2), (400, 20, 2, 2))
+    right = credence.judge(innovation=nu, innovation_covariance=S, row_groups="gps 0, baro 1")
+    assert right.verdict == "consistent"
+    assert "the verdict is on the innovations and their S" in str(right)
+    assert {group["group"] for group in right["groups"]} == {"all", "gps", "baro"}
+    same = credence.judge(nu, S)
+    assert right["groups"][0]["nees_ratio"] == same["groups"][0]["nees_ratio"]
+    assert right["nis"] != []
+    shifted = credence.judge(innovation=nu + [0.5, 0], innovation_covariance=S)
+    assert [one["where"] for one in shifted.findings if one["about"] == "bias"] == ["row_0"]
+    missed = nu.copy()
+    missed[:, 5:8] = np.nan  # nothing is measured at three steps
+    assert credence.judge(innovation=missed, innovation_covariance=S).verdict == "consistent"
+
+
+def test_the_exact_hypothesis_has_students_p():
+    rng = np.random.default_rng(6)
+    errors = 1.02 * rng.normal(size=(500, 4, 1))
+    verdict = credence.judge(errors, np.ones((500, 4, 1, 1)))
+    assert verdict["p_exact"] == pytest.approx(stats.ttest_1samp((errors**2).mean((1, 2)), 1).pvalue, rel=1e-9)

@@ -111,17 +111,18 @@ struct Octets {
     }
 };
 
-/// Which trials failed: [trials].
-std::vector<bool> failed_trials(const std::vector<Column>& declared, const ArmBlock& arm, std::size_t trials) {
+/// How the trials ended: [trials].
+std::vector<Status> statuses_of(const std::vector<Column>& declared, const ArmBlock& arm, std::size_t trials) {
     const double* status = arm.columns.data() + status_column(declared) * trials;
-    std::vector<bool> all(trials);
+    std::vector<Status> all(trials);
     for (std::size_t trial = 0; trial < trials; ++trial)
-        all[trial] = failed(static_cast<Status>(static_cast<int>(status[trial])));
+        all[trial] = static_cast<Status>(static_cast<int>(status[trial]));
     return all;
 }
 
 /// The cell of every NEES.
-void store_cells(const Octets& from, const EquiprobableCells& cells, const std::vector<bool>& failed, ArmBlock& arm) {
+void store_cells(const Octets& from, const EquiprobableCells& cells, const std::vector<Status>& statuses,
+                 ArmBlock& arm) {
     arm.cells.resize(from.steps * from.trials);
     const EquiprobableCells::Search search = cells.search();
     std::uint16_t* next = arm.cells.data();
@@ -129,25 +130,26 @@ void store_cells(const Octets& from, const EquiprobableCells& cells, const std::
         for (std::size_t trial = 0; trial < from.trials; ++trial)
             *next++ = static_cast<std::uint16_t>(search.cell(from.nees[k * from.padded + trial]));
     for (std::size_t trial = 0; trial < from.trials; ++trial)
-        if (failed[trial])
+        if (!counts(statuses[trial]))
             for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;
 }
 
 /// Errors and NEES by trial, rounded to single precision, and moments.
-void store_details(const Octets& from, const std::vector<bool>& failed, ArmBlock& arm) {
+void store_details(const Octets& from, const std::vector<Status>& statuses, ArmBlock& arm) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     arm.moments.reserve(from.trials * from.moment_count);
     arm.nees.reserve(from.trials * from.steps);
     arm.errors.reserve(from.trials * from.steps * from.components);
     for (std::size_t trial = 0; trial < from.trials; ++trial) {
+        const bool is_failed = failed(statuses[trial]);
         for (std::size_t k = 0; k < from.steps; ++k) {
-            arm.nees.push_back(failed[trial] ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
+            arm.nees.push_back(is_failed ? nan : static_cast<float>(from.nees[k * from.padded + trial]));
             for (std::size_t i = 0; i < from.components; ++i)
                 arm.errors.push_back(
-                    failed[trial] ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
+                    is_failed ? nan : static_cast<float>(from.errors[(i * from.steps + k) * from.padded + trial]));
         }
         for (std::size_t i = 0; i < from.moment_count; ++i)
-            arm.moments.push_back(failed[trial] ? double{nan} : from.moments[i * from.padded + trial]);
+            arm.moments.push_back(is_failed ? double{nan} : from.moments[i * from.padded + trial]);
     }
     arm.product_sums = added_up(from.product_sums);
     arm.product_square_sums = added_up(from.product_square_sums);
@@ -212,9 +214,10 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
     arm.run_square_sums = added_up(octets.run_square_sums);
     arm.covered = octets.covered;
     store_columns(columns, octets.columns, octets.trials, arm);
-    const std::vector<bool> failed = failed_trials(columns, arm, octets.trials);
-    if (distribution_counted(shape.poses - 1)) store_cells(octets, *equiprobable_cells(shape.state_size), failed, arm);
-    if (detailed(shape, index)) store_details(octets, failed, arm);
+    const std::vector<Status> statuses = statuses_of(columns, arm, octets.trials);
+    if (distribution_counted(shape.poses - 1))
+        store_cells(octets, *equiprobable_cells(shape.state_size), statuses, arm);
+    if (detailed(shape, index)) store_details(octets, statuses, arm);
     return arm;
 }
 

@@ -184,8 +184,7 @@ struct BatchOf {
             Real columns[column_count];
             Real* all_series = unfolded.next();
             trial.run(problem, draws, detail, room.trial, columns, all_series);
-            const Real first_failure = Real(static_cast<int>(Status::covariance_not_positive_definite));
-            const Mask<Real> counts = both(columns[column_status] < first_failure, first_lanes<Real>(batch.trials - i));
+            const Mask<Real> counts = both(columns[column_status] == Real(0), first_lanes<Real>(batch.trials - i));
             double* to = batch.columns + i / octet * column_count * octet + i % octet;
             for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
             copy_out(all_series, problem.poses - 1, i, batch, batch.nees);

@@ -74,19 +74,4 @@ std::string read_innovation(const RecordStep& step, const RecordShape& shape, Ch
                : "the innovation covariance is not finite";
 }
 
-namespace {
-
-template <class Values>
-bool diverged(const Values& values) {
-    return values.size() > 0 && values.cwiseAbs().maxCoeff() > divergence_bound;
-}
-
-}  // namespace
-
-std::string divergence_of(const CheckedStep& step) {
-    if (diverged(step.e)) return "the error is beyond 1e12: diverged";
-    const bool of_group = std::any_of(step.own.begin(), step.own.end(), diverged<Eigen::MatrixXd>);
-    return diverged(step.P) || diverged(step.variances) || of_group ? "the covariance is beyond 1e12: diverged" : "";
-}
-
 }  // namespace credence

@@ -29,13 +29,24 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
     }
 }
 
-Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
+namespace {
+
+Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments,
+                   LostTrials lost) {
     SegmentPlanner planner(reader.shape(), segments);
-    RecordTotals totals(reader.shape(), name, &planner);
+    RecordTotals totals(reader.shape(), name, lost, &planner);
     each_step(reader, [&](const RecordStep& one) { totals.add(one); }, progress);
     Record record = totals.finish();
+    const TrialTotals& trials = record.results.arms.front().totals.trials;
+    if (trials.lost() > trials.counted()) return read_record(reader, name, progress, segments, LostTrials::counted);
     record.segments = planner.finish(reader, name);
     return record;
+}
+
+}  // namespace
+
+Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
+    return read_record(reader, name, progress, segments, LostTrials::set_aside);
 }
 
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace credence {
 
@@ -22,8 +23,9 @@ std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
 
-RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, SegmentPlanner* planner)
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, SegmentPlanner* planner)
     : shape_(shape),
+      lost_(lost),
       planner_(planner),
       all_series_(record_series(shape_)),
       alike_(shape_),
@@ -95,8 +97,6 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
     if (!figures_add_up(values, all_series_.list.size()))
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
-    if (const std::string beyond = divergence_of(checked); !beyond.empty() && status_ == Status::completed)
-        note(step, Status::diverged, beyond);
     if (judge_.innovation_rounding() > accuracy_of_nis) {
         judge_.leave_out_innovation(values, products_.now.data());
         ++innovations_left_out_;
@@ -167,7 +167,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const std::vector<double> moments = moments_.moments();
         std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
-    if (!failed(status_)) {
+    if (counts(status_)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
         if (planner_ != nullptr)
@@ -204,8 +204,8 @@ void RecordTotals::add_columns(std::int64_t trial) {
             if (const double value = at(f, k); !std::isnan(value)) sum += value;
         return count(f) > 0 ? sum : nan;
     };
+    row[RecordColumn::status_pose] = failed(status_) ? trouble_.step + 1 : -1;
     row[RecordColumn::status] = static_cast<double>(status_);
-    row[RecordColumn::status_pose] = status_ == Status::completed ? -1 : trouble_.step + 1;
     if (!fill_failed(record_.results.columns, row)) {
         if (shape_.has_errors) {
             row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
@@ -214,10 +214,22 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
+        if (lost_ == LostTrials::set_aside && row[RecordColumn::nees_ratio] > lost_nees_ratio)
+            note_lost(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
+    row[RecordColumn::status] = static_cast<double>(status_);
     for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
+}
+
+/// Names the step at which the NEES of a lost trial is largest.
+void RecordTotals::note_lost(std::int64_t trial, double nees_ratio) {
+    const auto nees = [&](std::size_t k) { return std::isnan(series(0, k)) ? -1 : series(0, k); };
+    const std::size_t worst = *std::ranges::max_element(present_, {}, nees);
+    char text[80];
+    std::snprintf(text, sizeof text, "the trial is lost: NEES/dim %.3g over its steps, most here", nees_ratio);
+    note({trial, static_cast<int>(worst)}, Status::lost, text);
 }
 
 void RecordTotals::add_totals() {

@@ -19,11 +19,14 @@ namespace credence {
 
 class SegmentPlanner;
 
+/// Whether trials that are lost are left out of the series, or count as the others.
+enum class LostTrials { set_aside, counted };
+
 /// Receives a record's steps one after the other, and makes results of them.
 class RecordTotals {
 public:
     /// `path` names the scenario; `planner` learns of the runs.
-    RecordTotals(const RecordShape& shape, const std::string& path, SegmentPlanner* planner = nullptr);
+    RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, SegmentPlanner* planner = nullptr);
     RecordTotals(const RecordTotals&) = delete;
     RecordTotals& operator=(const RecordTotals&) = delete;
 
@@ -41,6 +44,7 @@ private:
     void add_covered(const RecordStep& step);
     void add_figures(const RecordStep& step, const CheckedStep& checked);
     void note(const RecordStep& step, Status status, const std::string& what);
+    void note_lost(std::int64_t trial, double nees_ratio);
     void check_end(std::int64_t trial);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
     void end_trial(std::int64_t trial);
@@ -56,6 +60,7 @@ private:
     const double* bounds(std::size_t f, std::size_t k);
 
     RecordShape shape_;
+    LostTrials lost_;
     SegmentPlanner* planner_;
     StateSeries all_series_;
     AlikeSums alike_;

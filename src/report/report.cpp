@@ -85,7 +85,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evid
     report.evidence.moments.reset();  // large, and of no further use
     leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
-    report.diverged = report.evidence.diverged;
+    report.lost = report.evidence.lost;
     report.cause = cause_of(results, arm);
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <credence/text.hpp>
 #include <iterator>
 
 #include "report/format.hpp"
@@ -22,12 +23,21 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
                         (failed(trouble.status) ? "; the trial is left out of the numbers."
-                                                : "; the trial is kept in the numbers."));
+                                                : "; the trial is left out of the verdict."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
     if (shown > 0 && failed > static_cast<std::int64_t>(shown))
         lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
+}
+
+/// What becomes of lost trials, and which they are.
+std::string lost_text(const Evidence& evidence) {
+    std::vector<std::string> trials;
+    for (const WorstTrial& one : evidence.lost_trials)
+        trials.push_back(std::to_string(one.trial) + " (most at step " + std::to_string(one.step) + ")");
+    return "left out of the verdict, kept in the columns" +
+           (trials.empty() ? "" : "; trial" + std::string(trials.size() == 1 ? " " : "s ") + joined(trials));
 }
 
 /// Whether a count is far above the mean of all: by twice, and by more than chance makes it.
@@ -61,26 +71,29 @@ std::string gaps_text(const ArmReport& arm) {
 std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
                                        const FailureWords& words) {
     std::vector<std::string> lines;
-    const std::int64_t failed = counts.left_out + counts.diverged;
+    const std::int64_t failed = counts.left_out + counts.lost;
     const std::string of = " trials of " + arm;
     if (too_many_failed(failed, counts.trials, limit))
-        lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of + " failed" +
-                        (counts.diverged == 0 ? " and " + words.left_out
-                         : counts.left_out == 0
-                             ? ""
-                             : "; " + std::to_string(counts.left_out) + " of them " + words.left_out) +
+        lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of +
+                        (counts.lost == 0       ? " failed and " + words.left_out
+                         : counts.left_out == 0 ? " are lost"
+                                                : " failed or are lost; " + std::to_string(counts.left_out) +
+                                                      " of them " + words.left_out) +
                         ".");
-    if (counts.diverged > 0)
-        lines.push_back("note: " + std::to_string(counts.diverged) + of + " diverged; they " + words.diverged + ".");
+    if (counts.lost > 0)
+        lines.push_back("note: " + std::to_string(counts.lost) +
+                        (counts.lost == 1 ? " trial of " + arm + " is" : of + " are") +
+                        " lost (NEES/dim over the run beyond " + short_number(lost_nees_ratio) + "): " + words.lost +
+                        ".");
     return lines;
 }
 
 std::vector<std::string> warnings_of(const Report& report) {
     std::vector<std::string> lines;
     for (const ArmReport& arm : report.arms) {
-        const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
+        const FailureCounts counts{arm.trials, arm.failed, arm.lost};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                                        {"are left out of its numbers", "are kept in the numbers"}),
+                                        {"are left out of its numbers", lost_text(arm.evidence)}),
                           std::back_inserter(lines));
     }
     for (const ArmReport& arm : report.arms)

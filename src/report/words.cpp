@@ -9,11 +9,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 
 namespace credence {
 
 namespace {
+
+/// Two decimals, or two digits of what is below 0.1.
+std::string ratio_text(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, std::abs(value) < 0.1 ? "%.2g" : "%.2f", value);
+    return text;
+}
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
@@ -40,8 +48,8 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, Fa
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
         parts.push_back(directions
-                            ? worst[i].where + ", " + worst[i].when + ": " + number(worst[i].value, 2) + " times P"
-                            : worst[i].where + " " + number(worst[i].value, 2) + " (" + worst[i].when + ")");
+                            ? worst[i].where + ", " + worst[i].when + ": " + ratio_text(worst[i].value) + " times P"
+                            : worst[i].where + " " + ratio_text(worst[i].value) + " (" + worst[i].when + ")");
     if (worst.size() > most) parts.push_back(std::to_string(worst.size() - most) + " more");
     return parts;
 }
@@ -60,8 +68,11 @@ std::string cause_text(const ArmReport& arm) {
 /// How many trials failed, and how, where that decides the verdict.
 std::string failed_text(const ArmReport& arm) {
     if (arm.consistency.verdict != Verdict::failed) return {};
-    return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) + " trials failed" +
-           (arm.diverged > 0 ? " (" + std::to_string(arm.diverged) + " of them diverged)" : "") + ", more than " +
+    return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) +
+           (arm.lost == 0     ? " trials failed"
+            : arm.failed == 0 ? " trials are lost"
+                              : " trials failed or are lost") +
+           ", more than " +
            short_number(100 * arm.consistency.limits.failed) + " %" + cause_text(arm);
 }
 
@@ -144,6 +155,13 @@ Cell failed_cell(const ArmReport& arm) {
     return arm.not_run() ? Cell("-") : count_cell(static_cast<double>(arm.failed_trials()));
 }
 
+std::string unseen_text(const ArmReport& arm) {
+    const double share = 100 * arm.evidence.may_be_unseen();
+    if (arm.not_run() || !(share < 100)) return {};
+    const double unit = std::pow(10, std::floor(std::log10(share)) - 1);
+    return "at most " + short_number(std::ceil(share / unit) * unit) + " %";
+}
+
 std::string verdict_clause(const ArmReport& arm) {
     const bool plain = !arm.not_run() && arm.consistency.verdict == Verdict::failed;
     return (plain ? "" : "is ") + verdict_word(arm);
@@ -212,7 +230,7 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
                     [](const Whiteness& lag) { return !lag.known(); }))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
     for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
-    if (const WorstTrials& worst = arm.evidence.worst; worst.share > 0.2 && worst.trials.size() >= 10) {
+    if (const WorstTrials& worst = arm.evidence.worst; worst.share > 0.2 && arm.evidence.trials > 20) {
         std::vector<std::string> parts;
         for (const WorstTrial& one : worst.trials)
             parts.push_back(std::to_string(one.trial) + " (step " + std::to_string(one.step) + ")");

@@ -4,6 +4,7 @@
 #include "statistics/goodness.hpp"
 
 #include "base/nan.hpp"
+#include "statistics/autocorrelation.hpp"
 
 namespace credence {
 
@@ -17,6 +18,14 @@ double wilson_low(double successes, double trials, double z) {
 }
 
 }  // namespace
+
+double share_upper_bound(double count, double trials, double level) {
+    if (!(trials > 0)) return std::numeric_limits<double>::quiet_NaN();
+    if (count >= trials) return 1;
+    const double odds = (count + 1) / (trials - count) *
+                        f_upper_quantile(level, 2 * (count + 1), 2 * (trials - count));
+    return odds / (1 + odds);
+}
 
 Interval wilson_interval(double successes, double trials, double alpha) {
     if (!(trials > 0)) return {nan, nan};

@@ -13,6 +13,10 @@ namespace credence {
 /// ends at 1 where all did. 0 <= successes <= trials; {NaN, NaN} for no trials.
 Interval wilson_interval(double successes, double trials, double alpha = 0.05);
 
+/// Upper bound, at confidence 1 - level and one-sided, on a share of which `count` of `trials` were seen [Clopper and
+/// Pearson 1934]; NaN without trials.
+double share_upper_bound(double count, double trials, double level);
+
 /// Band that holds the mean of independent chi-square values over their mean degrees with probability 1 - alpha:
 /// {quantile alpha/2, quantile 1 - alpha/2} of chi-square(degrees), over `degrees`, their degrees added up: N dim for
 /// ANEES [Bar-Shalom, Li, Kirubarajan 2001, 5.4.2], sum of m_i for NIS.

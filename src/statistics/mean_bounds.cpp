@@ -18,38 +18,30 @@ double level_of_group(double level, int g, int groups) {
     return g == 0 ? level / 2 : level / (2 * (groups - 1));
 }
 
-PositiveSample positive_sample(const Moments& moments, double largest) {
-    return {moments.count, moments.mean, moments.standard_deviation, largest};
+PositiveSample positive_sample(const Moments& moments) {
+    return {moments.count, moments.mean, moments.standard_deviation};
 }
 
 double unseen_share(double level, double trials) { return -std::expm1(std::log(level) / trials); }
 
 double lower_bound(const PositiveSample& sample, double level) { return sample.mean - half_width(sample, level); }
 
-double students_upper_bound(const PositiveSample& sample, double level) {
-    return sample.mean + half_width(sample, level);
-}
+double upper_bound(const PositiveSample& sample, double level) { return sample.mean + half_width(sample, level); }
 
-double upper_bound(const PositiveSample& sample, double level, double size) {
-    const double excess = std::max(sample.largest, size * sample.mean) - sample.mean;
-    return students_upper_bound(sample, level) + unseen_share(level, sample.trials) * std::max(excess, 0.0);
-}
-
-MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin) {
+MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin, double unseen) {
+    const double missed = unseen_share(unseen, sample.trials) * (unseen_size - 1) * sample.mean;
     MeanClaim claim;
-    claim.bounds = {lower_bound(sample, level), upper_bound(sample, level, unseen_size)};
+    claim.bounds = {lower_bound(sample, level), upper_bound(sample, level) + missed};
     claim.above = claim.bounds.low > 1 + margin;
     claim.below = claim.bounds.high < 1 - margin;
-    claim.tails = !claim.below && students_upper_bound(sample, level) < 1 - margin;
     return claim;
 }
 
-MeanClaim claim_on_nees(const PositiveSample& sample, double degrees, double level, double margin) {
-    MeanClaim claim = claim_on_mean(sample, level, margin);
+MeanClaim claim_on_nees(const PositiveSample& sample, double degrees, double level, double margin, double unseen) {
+    MeanClaim claim = claim_on_mean(sample, level, margin, unseen);
     const double total = sample.mean * degrees;
     claim.above = claim.above && total / (1 + margin) > chi_square_upper_quantile(level, degrees);
-    const bool below = claim.below;
-    claim.below = below && total / (1 - margin) < chi_square_quantile(level, degrees);
+    claim.below = claim.below && total / (1 - margin) < chi_square_quantile(level, degrees);
     return claim;
 }
 
@@ -59,17 +51,10 @@ double degrees_over_steps(const PositiveSample& sample, int dimension, double st
     return estimated > fewest ? std::min(estimated, fewest * steps) : fewest;
 }
 
-Acceptance accept_mean(const PositiveSample& sample, double margin) { return accept_means(sample, sample, margin); }
-
-double margin_shown(const PositiveSample& smallest, const PositiveSample& largest) {
-    return std::max(1 - lower_bound(smallest, levels::acceptance), upper_bound(largest, levels::acceptance, 0) - 1);
+Interval acceptance_interval(const PositiveSample& smallest, const PositiveSample& largest) {
+    return {lower_bound(smallest, levels::acceptance), upper_bound(largest, levels::acceptance)};
 }
 
-Acceptance accept_means(const PositiveSample& smallest, const PositiveSample& largest, double margin) {
-    if (!(lower_bound(smallest, levels::acceptance) >= 1 - margin)) return Acceptance::more_trials;
-    if (upper_bound(largest, levels::acceptance, 0) <= 1 + margin) return Acceptance::shown;
-    return students_upper_bound(largest, levels::acceptance) <= 1 + margin ? Acceptance::tails
-                                                                           : Acceptance::more_trials;
-}
+double margin_shown(const Interval& interval) { return std::max(1 - interval.low, interval.high - 1); }
 
 }  // namespace credence

@@ -9,10 +9,14 @@ namespace credence {
 /// The levels of false findings; together 5 %. Each is shared by all tests of its family (Bonferroni).
 namespace levels {
 inline constexpr double run = 0.03;          ///< NEES over all steps
-inline constexpr double step = 0.0025;       ///< NEES at one step
+inline constexpr double step = 0.00125;      ///< NEES at one step
+inline constexpr double calibration = 0.00125;  ///< NEES of a fifth of the trials
 inline constexpr double direction = 0.015;   ///< directions
 inline constexpr double bias = 0.0025;       ///< bias
 inline constexpr double acceptance = 0.025;  ///< each side of an acceptance, not shared: all acceptances must hold
+/// That a larger share of trials was missed than findings over the steps and in directions allow for, 2/N: as large as
+/// the rates of false findings permit [docs/theory/statistics.md, Calibration and power].
+inline constexpr double unseen = 0.135;
 }  // namespace levels
 
 /// The level of group g of `groups`: half for the whole state (group 0), half equally among the others; all, for one.
@@ -21,54 +25,46 @@ double level_of_group(double level, int g, int groups);
 /// What is known of N positive numbers.
 struct PositiveSample {
     double trials = 0, mean = 0, standard_deviation = 0;  ///< N; sd with N - 1
-    double largest = 0;                                   ///< of those seen
 };
 
-PositiveSample positive_sample(const Moments& moments, double largest);
+PositiveSample positive_sample(const Moments& moments);
 
-/// A trial that was not seen may have a squared error of so many times the mean (three sigma): for findings. For
-/// acceptances the largest that was seen counts, which is 0 here.
+/// A trial that was not seen may have a squared error of so many times the mean: three sigma.
 inline constexpr double unseen_size = 9;
 
 /// Upper bound, at confidence 1 - level, of the share of trials of which none was seen in N: 1 - level^(1/N).
 double unseen_share(double level, double trials);
 
-/// m - t(level, N - 1) s / sqrt(N), and the same upwards. Infinite for one trial.
+/// m - t(level, N - 1) s / sqrt(N), and the same upwards. Infinite for one trial. They hold for the trials that are not
+/// lost: without a bound on its values, the mean of positive numbers has no upper bound [Bahadur and Savage 1956].
 double lower_bound(const PositiveSample& sample, double level);
-double students_upper_bound(const PositiveSample& sample, double level);
-
-/// Student's upper bound, and what the unseen share adds if each of its trials is as large as the largest seen, or as
-/// `size` times the mean: without a bound on what was not seen, the mean of positive numbers has no upper bound
-/// [Bahadur and Savage 1956; Anderson 1969].
-double upper_bound(const PositiveSample& sample, double level, double size);
+double upper_bound(const PositiveSample& sample, double level);
 
 /// What can be said of a mean that should be 1.
 struct MeanClaim {
-    Interval bounds;     ///< lower_bound to upper_bound with unseen_size
+    /// lower_bound to upper_bound, and upwards what the unseen share adds if each of its trials is of `unseen_size`.
+    Interval bounds;
     bool above = false;  ///< above 1 + margin: a finding
     bool below = false;  ///< below 1 - margin: a finding
-    bool tails = false;  ///< below 1 - margin, were it not for trials that were not seen
 };
 
 /// NEES/dimension of `degrees` of freedom in all its trials. Student's interval is too narrow for few trials, because
 /// chi-square is skewed: the mean must also be beyond the exact bound for NEES distributed as (1 -+ margin) chi-square.
-MeanClaim claim_on_nees(const PositiveSample& sample, double degrees, double level, double margin);
+/// `unseen`: the level of the unseen share.
+MeanClaim claim_on_nees(const PositiveSample& sample, double degrees, double level, double margin,
+                        double unseen = levels::unseen);
 
 /// The same for one number per trial of any distribution, from 200 trials on.
-MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin);
+MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin, double unseen = levels::unseen);
 
 /// Degrees of freedom of the NEES over all steps of N trials, from its spread, 2 N m^2/s^2: at least those of one step
 /// and at most those of all, N d to N d K.
 double degrees_over_steps(const PositiveSample& sample, int dimension, double steps);
 
-/// Whether the mean is shown to lie within 1 -+ margin at 95 %, and if not, what is in the way.
-enum class Acceptance { shown, more_trials, tails };
-Acceptance accept_mean(const PositiveSample& sample, double margin);
+/// 95 % interval of all means from that of `smallest` to that of `largest`: to be accepted, it lies within 1 -+ margin.
+Interval acceptance_interval(const PositiveSample& smallest, const PositiveSample& largest);
 
-/// The smallest margin for which the latter is shown.
-double margin_shown(const PositiveSample& smallest, const PositiveSample& largest);
-
-/// The same of all means from that of `smallest` to that of `largest`.
-Acceptance accept_means(const PositiveSample& smallest, const PositiveSample& largest, double margin);
+/// The smallest margin within which an interval about 1 lies.
+double margin_shown(const Interval& interval);
 
 }  // namespace credence

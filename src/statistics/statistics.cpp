@@ -96,4 +96,11 @@ Interval t_interval(const Moments& moments, double alpha) {
     return {moments.mean - half, moments.mean + half};
 }
 
+double t_test(const Moments& moments, double expected) {
+    if (!(moments.count > 1) || !(moments.standard_error > 0)) return std::numeric_limits<double>::quiet_NaN();
+    const double t = std::abs(moments.mean - expected) / moments.standard_error;
+    if (!std::isfinite(t)) return 0;
+    return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(moments.count - 1), t));
+}
+
 }  // namespace credence

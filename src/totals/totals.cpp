@@ -48,21 +48,20 @@ std::int64_t TrialTotals::trials() const {
 }
 
 std::int64_t TrialTotals::counted() const {
-    std::int64_t trials = 0;
-    for (std::size_t status = 0; status < statuses.size(); ++status)
-        if (!failed(static_cast<Status>(status))) trials += statuses[status];
-    return trials;
+    return statuses[static_cast<std::size_t>(Status::completed)];
 }
+
+std::int64_t TrialTotals::lost() const { return statuses[static_cast<std::size_t>(Status::lost)]; }
 
 bool is_reported(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 
 const char* problem_of(const TrialTotals& all) {
-    const std::int64_t counted = all.counted();
+    const std::int64_t with_columns = all.counted() + all.lost();
     const auto none_of = [](std::int64_t count, std::int64_t most) { return count < 0 || count > most; };
     for (const std::int64_t trials : all.statuses)
         if (trials < 0) return "a number of trials is below 0";
     for (const ExactMoments& column : all.columns)
-        if (none_of(column.count, counted)) return "a column has more values than trials";
+        if (none_of(column.count, with_columns)) return "a column has more values than trials";
     for (const std::vector<DifferenceTotals>& columns : all.differences)
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const DifferenceTotals& totals = columns[c];

@@ -2,7 +2,6 @@
 
 #include "base/nan.hpp"
 #include "statistics/mean_bounds.hpp"
-#include "statistics/tails.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +16,7 @@ namespace {
 class GroupJudge {
 public:
     GroupJudge(const Evidence& evidence, std::size_t group, Judgement& judgement)
-        : evidence_(evidence), group_(evidence.groups[group]), place_(static_cast<int>(group)), judgement_(judgement) {
-        for (std::size_t i = 0; evidence_.moments && i < evidence_.moments->trials(); ++i)
-            if (const double trial = evidence_.moments->X(i, place_); !std::isnan(trial)) trials_.push_back(trial);
-    }
+        : evidence_(evidence), group_(evidence.groups[group]), place_(static_cast<int>(group)), judgement_(judgement) {}
 
     void judge() {
         if (!(group_.run.count > 0) && evidence_.trials > 0) return;  // a record that does not give this group's NEES
@@ -43,7 +39,7 @@ private:
     }
 
     void over_steps() {
-        const PositiveSample sample = positive_sample(group_.run, largest_of_trials());
+        const PositiveSample sample = positive_sample(group_.run);
         const auto groups = static_cast<int>(evidence_.groups.size());
         const double level = level_of_group(levels::run, place_, groups) / 2;
         const double degrees = degrees_over_steps(sample, group_.dimension, evidence_.steps_together());
@@ -54,34 +50,9 @@ private:
                 {Subject::size, Fault{}, group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
         else if (std::optional<Suspicion> looks = suspicion_of(sample, level, margin()))
             judgement_.suspect({Subject::size, looks->what, group_.name, looks->value, "NEES/dim", looks->trials});
-        judgement_.reach(&Reached::nees, margin_shown(sample, sample));
-        const std::string what = "NEES/dim of " + group_.name;
-        const Acceptance acceptance = accept_mean(sample, margin());
-        if (claim.tails)
-            judgement_.not_shown(
-                what + " looks too small, but rare large errors that were not seen could explain it" + tail_text(),
-                true);
-        judgement_.accept(acceptance, what + (acceptance == Acceptance::tails ? tail_text() : ""));
-    }
-
-    /// What the tail of the trials is like, where they are kept.
-    std::string tail_text() const {
-        if (trials_.size() < 2) return {};
-        const Tail tail = tail_of(trials_);
-        char text[120];
-        std::snprintf(text, sizeof text, " (the 1 %% largest %s carry %.2g %% of it%s", evidence_.units().c_str(),
-                      100 * tail.worst_share, tail.degrees ? "" : ")");
-        std::string all = text;
-        if (!tail.degrees) return all;
-        std::snprintf(text, sizeof text, "; tails like Student's t with about %.0f degrees of freedom)", *tail.degrees);
-        return all + text;
-    }
-
-    /// 0 where there are no detailed trials.
-    double largest_of_trials() const {
-        double largest = 0;
-        for (const double trial : trials_) largest = std::max(largest, trial);
-        return largest;
+        const double shown = margin_shown(acceptance_interval(sample, sample));
+        judgement_.reach(&Reached::nees, shown);
+        judgement_.accept(shown <= margin(), "NEES/dim of " + group_.name);
     }
 
     void at_steps() {
@@ -89,8 +60,9 @@ private:
         Found found[2];
         for (std::size_t k = 0; k < group_.step.size(); ++k) {
             if (!(group_.step[k].count > 1)) continue;
-            const MeanClaim claim = claim_on_nees(positive_sample(group_.step[k], 0), group_.anees.degrees[k],
-                                                  levels::step / tests / 2, margin());
+            const double level = levels::step / tests / 2;
+            const MeanClaim claim =
+                claim_on_nees(positive_sample(group_.step[k]), group_.anees.degrees[k], level, margin(), level);
             if (claim.above || claim.below) found[claim.above ? 0 : 1].add(k, group_.step[k].mean, claim.bounds);
         }
         for (const Side side : {Side::above, Side::below})
@@ -103,7 +75,6 @@ private:
     const GroupEvidence& group_;
     int place_;
     Judgement& judgement_;
-    std::vector<double> trials_;  ///< mean NEES/dim of each detailed trial that has the group
 };
 
 Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
@@ -112,6 +83,7 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
     judge_tenths(evidence, judgement);
+    judge_fifths(evidence, judgement);
     if (evidence.segments.count) judge_segments(evidence, judgement);
     if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state", false);
     return judgement.consistency(evidence);
@@ -143,10 +115,10 @@ void Judgement::add_bias(Finding finding) {
     findings_.push_back(std::move(finding));
 }
 
-void Judgement::accept(Acceptance acceptance, const std::string& what) {
-    if (acceptance == Acceptance::shown) return;
+void Judgement::accept(bool shown, const std::string& what) {
+    if (shown) return;
     all_shown_ = false;
-    (acceptance == Acceptance::tails ? tails_ : unknown_).push_back(what);
+    unknown_.push_back(what);
 }
 
 void Judgement::reach(double Reached::* margin, double value) {
@@ -176,11 +148,9 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     else if (all_shown_ && !evidence.groups.empty()) verdict.verdict = Verdict::consistent;
     if (verdict.verdict != Verdict::undecided || evidence.trials == 0) return verdict;
     verdict.reasons = std::move(reasons_);
-    const auto list = [&](const std::vector<std::string>& names, const std::string& why) {
-        if (!names.empty()) verdict.reasons.push_back(first_of(names) + why);
-    };
-    list(unknown_, ": too few " + evidence.units() + " to show that it is within its margin");
-    list(tails_, ": within its margin, but for " + evidence.units() + " as large as the largest that were seen");
+    if (!unknown_.empty())
+        verdict.reasons.push_back(first_of(unknown_) + ": too few " + evidence.units() +
+                                  " to show that it is within its margin");
     verdict.suspicions = std::move(suspicions_);
     if (more_trials_help_) verdict.trials_needed = trials_needed(evidence, limits_);
     return verdict;
@@ -218,7 +188,7 @@ const std::string& fault_name(Fault fault) {
 
 const std::string& subject_name(Subject subject) {
     static const std::string names[] = {"size",        "step",      "direction",   "bias",
-                                        "innovations", "whiteness", "distribution", "tenth"};
+                                        "innovations", "whiteness", "distribution", "tenth", "calibration"};
     return names[static_cast<int>(subject)];
 }
 

@@ -57,6 +57,12 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict);
 
+/// Sentences on what findings such as these often come from, by the size of the errors beside P's.
+std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits);
+
+/// A sentence on two detailed trials that are the same; empty where there are none.
+std::string repeated_trials(const Evidence& evidence);
+
 /// Adds hints: what findings such as these often come from.
 void add_hints(const Evidence& evidence, Consistency& verdict);
 

@@ -95,7 +95,7 @@ BiasEvidence bias_evidence(const ScenarioResults& results, const Series& series,
     std::string unit;
     for (const Component& component : results.scenario.components)
         if (component.name == series.part) unit = component.unit;
-    BiasEvidence evidence{series.part, unit, run_moments(arm, totals, results.steps(), 1), {}, 0};
+    BiasEvidence evidence{series.part, unit, run_moments(arm, totals, results.steps(), 1), {}, 0, {}};
     for (std::size_t k = 0; k < totals.sum.size(); ++k) evidence.step.push_back(moments_at(arm, totals, k, 1));
     return evidence;
 }
@@ -106,13 +106,21 @@ std::int64_t trial_of(const ScenarioResults& results, std::size_t row) {
     return results.blocks.empty() ? place : trial_numbers(results, place, 1).front();
 }
 
-/// Largest |e_j| of the detailed trials, by component.
-void add_largest_errors(const ScenarioResults& results, const ArmResults& arm, std::vector<BiasEvidence>& bias) {
-    const auto n = static_cast<std::size_t>(results.state_size());
+/// The size of the detailed trials' errors, by component.
+void add_error_sizes(const ScenarioResults& results, const ArmResults& arm, std::vector<BiasEvidence>& bias) {
+    const auto n = static_cast<std::size_t>(results.state_size()), steps = static_cast<std::size_t>(results.steps());
     if (bias.size() != n) return;
-    for (std::size_t i = 0; i < arm.errors.size(); ++i)
-        if (double& largest = bias[i % n].largest_error; std::abs(arm.errors[i]) > largest)
-            largest = std::abs(arm.errors[i]);
+    for (std::size_t j = 0; j < n; ++j) {
+        std::vector<double> sum(steps), count(steps);
+        for (std::size_t i = j; i < arm.errors.size(); i += n) {
+            const double error = std::abs(arm.errors[i]);
+            if (std::isnan(error)) continue;
+            bias[j].largest_error = std::max(bias[j].largest_error, error);
+            sum[i / n % steps] += error * error;
+            ++count[i / n % steps];
+        }
+        for (std::size_t k = 0; k < steps; ++k) bias[j].mean_square.push_back(sum[k] / count[k]);
+    }
 }
 
 /// Rows of trials that did not fail. The file has the mean NEES of a group, the statistics want it per dimension.
@@ -134,11 +142,10 @@ std::shared_ptr<const TrialMoments> trial_moments(const ScenarioResults& results
     return moments->trials() == 0 ? nullptr : moments;
 }
 
-WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) {
-    constexpr std::size_t most = 10;
+/// The detailed rows that have a NEES.
+std::vector<WorstTrial> trials_by_nees(const ScenarioResults& results, const ArmResults& arm) {
     const auto steps = static_cast<std::size_t>(results.steps());
-    WorstTrials worst;
-    double total = 0;
+    std::vector<WorstTrial> trials;
     for (std::size_t row = 0; row < arm.nees.size() / steps; ++row) {
         const double *first = arm.nees.data() + row * steps, *last = first + steps;
         double sum = 0, known = 0;
@@ -146,16 +153,75 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
         for (const double* at = first; at != last; ++at)
             if (!std::isnan(*at)) sum += *at, ++known, largest = !(*largest >= *at) ? at : largest;
         if (known == 0) continue;
-        const double ratio = sum / known / results.state_size();
-        total += ratio;
-        worst.trials.push_back({trial_of(results, row), ratio, static_cast<int>(largest - first) + 1});
+        trials.push_back({trial_of(results, row), sum / known / results.state_size(),
+                          static_cast<int>(largest - first) + 1});
     }
-    const auto end = worst.trials.begin() + static_cast<std::ptrdiff_t>(std::min(most, worst.trials.size()));
-    std::partial_sort(worst.trials.begin(), end, worst.trials.end(),
+    return trials;
+}
+
+void keep_worst(std::vector<WorstTrial>& trials) {
+    constexpr std::size_t most = 10;
+    const auto end = trials.begin() + static_cast<std::ptrdiff_t>(std::min(most, trials.size()));
+    std::partial_sort(trials.begin(), end, trials.end(),
                       [](const WorstTrial& a, const WorstTrial& b) { return a.nees_ratio > b.nees_ratio; });
-    worst.trials.erase(end, worst.trials.end());
+    trials.erase(end, trials.end());
+}
+
+WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) {
+    WorstTrials worst{trials_by_nees(results, arm), 0};
+    double total = 0;
+    for (const WorstTrial& trial : worst.trials) total += trial.nees_ratio;
+    keep_worst(worst.trials);
     for (const WorstTrial& trial : worst.trials) worst.share += trial.nees_ratio / total;
     return worst;
+}
+
+/// The arm without the details of its lost trials, which are returned.
+std::vector<WorstTrial> set_lost_aside(const ScenarioResults& results, ArmResults& arm) {
+    const auto steps = static_cast<std::size_t>(results.steps());
+    std::vector<WorstTrial> lost;
+    const auto forget = [&](std::vector<double>& values, std::size_t row) {
+        const std::size_t width = values.size() / (arm.nees.size() / steps);
+        std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(row * width), width, nan);
+    };
+    ArmResults one;
+    for (std::size_t row = 0; row < arm.nees.size() / steps; ++row) {
+        const auto first = arm.nees.begin() + static_cast<std::ptrdiff_t>(row * steps);
+        one.nees.assign(first, first + static_cast<std::ptrdiff_t>(steps));
+        for (WorstTrial& trial : trials_by_nees(results, one)) {
+            if (!(trial.nees_ratio > lost_nees_ratio)) continue;
+            trial.trial = trial_of(results, row);
+            lost.push_back(trial);
+            forget(arm.nees, row);
+            forget(arm.errors, row);
+            forget(arm.moments, row);
+        }
+    }
+    keep_worst(lost);
+    return lost;
+}
+
+template <class Value>
+Moments moments_of_trials(const TrialMoments& trials, const Value& value) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < trials.trials(); ++i)
+        if (const double x = value(i); !std::isnan(x)) values.push_back(x);
+    return moments_of(exact_moments(values));
+}
+
+/// Where more than half of the trials are lost, the filter as a whole is judged, by the detailed trials: the totals are
+/// of the others alone.
+void count_lost(Evidence& evidence) {
+    if (!evidence.moments) return;
+    const TrialMoments& trials = *evidence.moments;
+    evidence.trials += evidence.lost;
+    evidence.lost = 0;
+    for (int g = 0; g < trials.groups; ++g)
+        evidence.groups[static_cast<std::size_t>(g)].run =
+            moments_of_trials(trials, [&](std::size_t i) { return trials.X(i, g); });
+    for (int j = 0; j < trials.components; ++j)
+        evidence.bias[static_cast<std::size_t>(j)].run =
+            moments_of_trials(trials, [&](std::size_t i) { return trials.z(i, j); });
 }
 
 DistributionEvidence distribution_evidence(const ScenarioResults& results, const ArmResults& arm) {
@@ -205,14 +271,21 @@ void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidenc
     const std::vector<std::int64_t>& statuses = arm.totals.trials.statuses;
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) evidence.left_out += statuses[status];
-    evidence.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
+    evidence.lost = statuses[static_cast<std::size_t>(Status::lost)];
 }
 
 }  // namespace
 
+double Evidence::may_be_unseen() const {
+    if (segments.count || all_trials < 2) return nan;
+    return share_upper_bound(static_cast<double>(failed_trials()), static_cast<double>(all_trials), 0.05);
+}
+
 bool Whiteness::known() const { return std::isfinite(scaled); }
 
-Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
+namespace {
+
+Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
     count_trials(results, arm, evidence);
     evidence.steps = results.steps();
@@ -232,10 +305,28 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     evidence.distribution = distribution_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);
     evidence.worst = worst_trials(results, arm);
-    add_largest_errors(results, arm, evidence.bias);
+    add_error_sizes(results, arm, evidence.bias);
+    evidence.fifths = fifths_by_size(results, arm);
     evidence.moments = trial_moments(results, arm, evidence.groups);
     evidence.epsilon = results.epsilon;
     add_rounding(arm, evidence);
+    return evidence;
+}
+
+}  // namespace
+
+Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
+    const TrialTotals& trials = arm.totals.trials;
+    if (trials.lost() == 0) return evidence_of_counted(results, arm);
+    if (trials.lost() > trials.counted()) {
+        Evidence evidence = evidence_of_counted(results, arm);
+        count_lost(evidence);
+        return evidence;
+    }
+    ArmResults others{arm.name, arm.columns, nullptr, arm.totals, arm.errors, arm.nees, arm.moments};
+    const std::vector<WorstTrial> lost = set_lost_aside(results, others);
+    Evidence evidence = evidence_of_counted(results, others);
+    evidence.lost_trials = lost;
     return evidence;
 }
 

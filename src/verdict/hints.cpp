@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 
 namespace credence {
@@ -24,7 +25,7 @@ void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) 
     const double middle = std::log(spectrum.front() * spectrum.back()) / 2;
     const double half_spread = std::log(spectrum.back() / spectrum.front()) / 2;
     if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) && half_spread < std::abs(middle) / 3)
-        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale, or squared units?",
+        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale?",
                                     std::exp(middle)));
 }
 
@@ -56,9 +57,13 @@ void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
         verdict.hints.push_back(
             "the correlation of innovations was not tested: no row was measured often enough");
-    hint_at_angles(evidence, verdict.hints);
+    if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) verdict.hints.push_back(repeated);
+    std::vector<std::string> causes;
+    if (!verdict.findings.empty()) causes = causes_of(evidence, verdict.limits);
+    std::ranges::copy(causes, std::back_inserter(verdict.hints));
+    if (causes.empty()) hint_at_angles(evidence, verdict.hints);
     if (verdict.findings.empty()) return;
-    hint_at_scale(verdict, verdict.hints);
+    if (causes.empty()) hint_at_scale(verdict, verdict.hints);
     hint_at_chart(evidence, verdict);
 }
 

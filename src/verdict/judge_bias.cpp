@@ -39,7 +39,7 @@ void judge_bias(const Evidence& evidence, Judgement& judgement) {
         else if (!claim.known_exactly)
             judge_suspicion(bias, static_cast<int>(evidence.bias.size()), judgement);
         judgement.reach(&Reached::bias, claim.shown);
-        judgement.accept(claim.accepted ? Acceptance::shown : Acceptance::more_trials, "bias of " + bias.component);
+        judgement.accept(claim.accepted, "bias of " + bias.component);
     }
 }
 

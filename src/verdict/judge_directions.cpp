@@ -58,7 +58,7 @@ void leave_out_directions(const Evidence& evidence, Judgement& judgement) {
 }
 
 DirectionLimits limits_of(const Evidence& evidence, const Judgement& judgement) {
-    return {judgement.limits().margin, judgement.limits().direction, evidence.epsilon};
+    return {judgement.limits().margin, evidence.epsilon};
 }
 
 /// A group's directions, and the findings in them.
@@ -93,14 +93,14 @@ void accept_state(const Evidence& evidence, const GroupMoments& state, const Fol
     judgement.directions.range = accepted.bounds;
     judgement.reach(&Reached::direction, accepted.left_out > 0
                                              ? std::numeric_limits<double>::infinity()
-                                             : std::max(1 - accepted.bounds.low, accepted.bounds.high - 1));
+                                             : accepted.shown);
     judgement.directions.spectrum = accepted.spectrum;
     if (accepted.left_out > 0)
         judgement.not_shown("conditioning: P cannot be distinguished from a singular one in " +
                                 std::to_string(accepted.left_out) +
                                 (accepted.left_out == 1 ? " direction" : " directions"),
                             false);
-    judgement.accept(accepted.acceptance, "directions");
+    judgement.accept(accepted.shown <= judgement.limits().direction, "directions");
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace credence {
 namespace {
 
 constexpr int tenths = 10, least_steps = 5;  ///< of a tenth
-constexpr double wider = 3;                  ///< margins of a tenth, over those of all steps
 
 /// The mean over a tenth's steps, and a standard error that holds whatever the correlation of the steps is: the mean of
 /// theirs.
@@ -57,13 +56,13 @@ void judge_tenths(const Evidence& evidence, Judgement& judgement) {
         if (!(group.run.count > 1) || is_rounded(group, judgement.limits())) continue;
         bool beyond = false;
         each_tenth(group.step, [&](const Moments& mean, const std::vector<int>&) {
-            beyond = beyond || std::abs(mean.mean - 1) > wider * judgement.limits().margin;
+            beyond = beyond || std::abs(mean.mean - 1) > margins_of_part * judgement.limits().margin;
         });
         if (beyond) groups.push_back(group.name);
     }
     withhold("NEES/dim of ", groups, judgement);
     const double level = levels::bias / (tenths * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size()))),
-                 margin = wider * judgement.limits().bias;
+                 margin = margins_of_part * judgement.limits().bias;
     for (const BiasEvidence& bias : evidence.bias) {
         if (!(bias.run.count > 1)) continue;
         std::vector<int> found;

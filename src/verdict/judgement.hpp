@@ -11,6 +11,9 @@
 
 namespace credence {
 
+/// The margins of a part of the trials or steps, over those of all.
+inline constexpr double margins_of_part = 3;
+
 class Judgement {
 public:
     explicit Judgement(const Limits& limits) : limits_(limits) {}
@@ -20,7 +23,7 @@ public:
     void add(Side side, Finding finding);
     void add_bias(Finding finding);
     /// Whether something was shown to lie within its margin; `what` names it.
-    void accept(Acceptance acceptance, const std::string& what);
+    void accept(bool shown, const std::string& what);
     /// What was shown in one group, component or all directions; infinite where nothing was.
     void reach(double Reached::* margin, double value);
     /// `consistent` is withheld, for this reason, which more trials may remove or not.
@@ -35,7 +38,7 @@ public:
 private:
     Limits limits_;
     std::vector<Finding> findings_;
-    std::vector<std::string> reasons_, unknown_, tails_;
+    std::vector<std::string> reasons_, unknown_;
     std::vector<Suspicion> suspicions_;
     Reached reached_;
     bool above_ = false, below_ = false, all_shown_ = true, more_trials_help_ = true;
@@ -65,6 +68,9 @@ void judge_bias(const Evidence& evidence, Judgement& judgement);
 /// Every tenth of the steps, from 50 on: withholds `consistent` where NEES/dimension or a mean error is beyond three
 /// times its margin, and finds the latter where it is shown.
 void judge_tenths(const Evidence& evidence, Judgement& judgement);
+
+/// NEES/dimension of the whole state in every fifth of the trials by their P, against three times its margin.
+void judge_fifths(const Evidence& evidence, Judgement& judgement);
 
 /// Withholds `consistent` where segments of runs depend on each other, or runs differ.
 void judge_segments(const Evidence& evidence, Judgement& judgement);

@@ -33,7 +33,7 @@ double to_two_digits(double trials) {
 
 std::optional<Suspicion> suspicion_of(const PositiveSample& sample, double level, double margin) {
     const bool above = lower_bound(sample, suspected) > 1 + margin;
-    if (!above && !(students_upper_bound(sample, suspected) < 1 - margin)) return std::nullopt;
+    if (!above && !(upper_bound(sample, suspected) < 1 - margin)) return std::nullopt;
     const auto trials = [&](double farther) {
         PositiveSample moved = sample;
         moved.mean += above ? farther : -farther;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 using namespace credence;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 TEST_CASE("cli: a study of aggregates is run, resumed, reported, compared, followed and replayed") {
     const Workplace here;

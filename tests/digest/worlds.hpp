@@ -139,7 +139,7 @@ inline std::vector<World> disturbed_worlds() {
     };
 }
 
-/// Trials that fail or diverge beside others that do not.
+/// Trials that fail beside others that do not, and P beyond 1e12.
 inline std::vector<World> fragile_worlds() {
     return {
         {"failing", {{"noise.odometry", "1e5"}, {"sensor.range_max", "inf"}, {"arms.controllers", "fixed"}}},

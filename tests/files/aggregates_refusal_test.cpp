@@ -86,7 +86,7 @@ const std::vector<Damage> damages{
      [](auto& r) {
          replace<std::int8_t>(r, arm + "/status_code", {4}, {0, 1, 2, 4});
      }},
-    {arm + "@counted_trials: counts 299 trials that did not fail, but the totals are of 300",
+    {arm + "@counted_trials: counts 299 trials, but the totals are of 300",
      [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 299); }},
     {arm + "/column: does not count on",
      [](auto& r) {

@@ -67,8 +67,8 @@ const std::vector<Damage> scenario_damages{
 };
 
 const std::vector<Damage> arm_damages{
-    {arm + "@counted_trials: counts 3 trials that did not fail, but the totals are of 4",
-     [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 3); }},
+    {arm + "@counted_trials: counts 2 trials, but the totals are of 3",
+     [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 2); }},
     {arm + "/trace_P: is missing", [](auto& r) { remove(r, arm + "/trace_P"); }},
     {arm + "/extra: does not belong here", [](auto& r) { replace<double>(r, arm + "/extra", {1}, {}); }},
     {arm + "/trace_P: is no readable dataset",

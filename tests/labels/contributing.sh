@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Label contributing: the diffs of CONTRIBUTING.md, applied one after the other to a copy of this tree, build, and each does
-# what the page says. Its console blocks show what the program prints.
+# what the page says. Its console blocks show what the program prints. With --apply: the diffs apply, and no more.
 set -euo pipefail
 for tool in git cmake c++; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 0; }
@@ -24,6 +24,7 @@ found=$(cd "$work" && ls *.diff | sed -e 's/^[0-9]*-//' -e 's/\.diff$//' | xargs
 for diff in "$work"/*.diff; do
   (cd "$tree" && git apply "$diff") || fail "$(basename "$diff"): does not apply"
 done
+if [ "${1:-}" = --apply ]; then exit; fi
 
 # What is checked does not depend on the optimiser; so the cheapest build will do.
 generator=() launcher=()

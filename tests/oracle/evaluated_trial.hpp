@@ -94,6 +94,7 @@ public:
             status_ = Status::non_finite;
             status_pose_ = static_cast<int>(step_);
         }
+        if (status_ == Status::completed && nees_ratio() > lost_nees_ratio) status_ = Status::lost;
     }
 
     std::size_t arm() const override { return arm_; }
@@ -141,26 +142,28 @@ public:
     /// Whether trials keep moments, from the next one on.
     void keep_moments(bool keep) { keeps_moments_ = keep; }
     std::vector<double> moments() const { return moments_.moments(); }
-    bool counts() const { return !failed(status_); }
+    bool counts() const { return credence::counts(status_); }
     std::size_t steps_taken() const { return step_; }
 
     void columns(std::vector<double>& row) const {
-        const auto total = [&](std::size_t f) {
-            double sum = 0;
-            for (std::size_t k = 0; k < case_.steps(); ++k) sum += all_series_[f * case_.steps() + k];
-            return sum;
-        };
         const StateSeries& at = case_.all_series;
         const double steps = static_cast<double>(case_.steps());
         const bool innovations = case_.shape.has_innovations();
         row = {all_series_[(at.variance + 1) * case_.steps() - 1]};
         row.insert(row.end(), own_.begin(), own_.end());
-        row.insert(row.end(), {total(at.squared_error), total(0) / steps / case_.shape.n,
+        row.insert(row.end(), {total(at.squared_error), nees_ratio(),
                                innovations ? total(at.nis) / total(at.rows) : nan, total(at.variance) / steps,
                                log_score_ / steps, static_cast<double>(status_), static_cast<double>(status_pose_)});
     }
 
 private:
+    double total(std::size_t f) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < case_.steps(); ++k) sum += all_series_[f * case_.steps() + k];
+        return sum;
+    }
+    double nees_ratio() const { return total(0) / static_cast<double>(case_.steps()) / case_.shape.n; }
+
     void require(bool good, const char* otherwise) const {
         if (!good) throw std::logic_error("world " + case_.scenario.world + ": " + otherwise + ".");
     }
@@ -177,7 +180,6 @@ private:
         if (!evaluator_.evaluate(checked_, step_series_.data(), products_.at(step_).data()).empty())
             end(Status::covariance_not_positive_definite);
         if (!figures_add_up(step_series_.data(), step_series_.size())) end(Status::non_finite);
-        if (status_ == Status::completed && error.cwiseAbs().maxCoeff() > divergence_bound) note(Status::diverged);
         for (std::size_t f = 0; f < step_series_.size(); ++f) all_series_[f * case_.steps() + step_] = step_series_[f];
         std::copy(error.begin(), error.end(), errors_.begin() + static_cast<std::ptrdiff_t>(step_) * n);
         products_.correlate(step_);

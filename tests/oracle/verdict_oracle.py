@@ -14,9 +14,9 @@ from functools import lru_cache
 import numpy as np
 from scipy import stats
 
-LEVEL_RUN, LEVEL_STEP, LEVEL_DIRECTION, LEVEL_BIAS = 0.03, 0.0025, 0.015, 0.0025  # false findings: together about 5 %
+LEVEL_RUN, LEVEL_STEP, LEVEL_DIRECTION, LEVEL_BIAS = 0.03, 0.00125, 0.015, 0.0025  # false findings: together about 5 %
+UNSEEN = 0.135            # that more trials were missed than a finding allows for
 LEVEL_ACCEPT = 0.025      # each side of an acceptance: a two-sided 95 % interval
-UNSEEN_SIZE = 9.0         # squared error of a trial that was not seen, over the mean: three sigma
 DIRECTION_TRIALS = 200    # least number of trials for a claim about directions
 FOLDS = 3                 # parts of the trials; a direction is found on the others
 ROUNDING_ERROR = 2.0**-48  # errors of at most this size are rounding: the component is known exactly
@@ -45,7 +45,6 @@ class Numbers:
     bias: np.ndarray         # [trial, n] mean over the steps of e/sigma
     step_mean: np.ndarray = None   # [group, step] mean over the trials of NEES/dim
     step_sd: np.ndarray = None     # [group, step]
-    step_top: np.ndarray = None    # [group, step] the largest
     index: np.ndarray = None       # [trial] in the study, where trials that failed are counted
     error_size: np.ndarray = None  # [n] largest |e| of all trials and steps
 
@@ -83,11 +82,6 @@ def nees_of(z, R, c):
 # Bounds on the mean of a positive number
 
 
-def unseen_share(level, trials):
-    """Share of trials that may exist without one of them being seen (exact binomial; about ln(1/level)/trials)."""
-    return 1 - level ** (1 / trials)
-
-
 @lru_cache(None)
 def t_quantile(level, degrees):
     """Upper quantile. SciPy's t.isf is good to 1e-8 only; Newton's steps on its t.sf make it better."""
@@ -106,11 +100,11 @@ def lower(mean, sd, trials, level):
     return mean - t_quantile(level, trials - 1) * sd / np.sqrt(trials)
 
 
-def upper(mean, sd, top, trials, level, size):
-    """Student's bound, and what the unseen share adds if each of these trials is as large as the largest seen, or as
-    `size` times the mean."""
-    excess = np.maximum(np.maximum(top, size * mean) - mean, 0)
-    return mean + t_quantile(level, trials - 1) * sd / np.sqrt(trials) + unseen_share(level, trials) * excess
+def upper(mean, sd, trials, level, unseen=None):
+    """Student's bound and, for findings, what a share of trials that were not seen adds if each has a squared error of
+    nine times the mean. The share: of which none is seen in `trials` with the probability `unseen`."""
+    share = 0 if unseen is None else 1 - unseen ** (1 / trials)
+    return mean + t_quantile(level, trials - 1) * sd / np.sqrt(trials) + share * 8 * mean
 
 
 def ratio_numbers(a, b):
@@ -200,7 +194,6 @@ class Verdict:
     word: str = "undecided"
     findings: list = field(default_factory=list)  # (kind, where, side, value, bound)
     missing: list = field(default_factory=list)   # why it is not consistent
-    tails: list = field(default_factory=list)     # claims that tails forbid
     advice: tuple = None                          # (low, number, high, the need that binds)
 
 
@@ -228,16 +221,13 @@ def beyond_chi_square(mean, degrees, side, level, margin):
     return mean / (1 - margin) * degrees < stats.chi2.ppf(level, degrees)
 
 
-def compare(v, kind, where, mean, sd, top, trials, degrees, level, margin):
+def compare(v, kind, where, mean, sd, trials, degrees, level, margin, unseen=UNSEEN):
     """Both sides of one figure."""
-    low, high = lower(mean, sd, trials, level), upper(mean, sd, top, trials, level, UNSEEN_SIZE)
-    plain = upper(mean, sd, -np.inf, trials, level, 0)
+    low, high = lower(mean, sd, trials, level), upper(mean, sd, trials, level, unseen)
     if low > 1 + margin and beyond_chi_square(mean, degrees, "above", level, margin):
         v.findings.append((kind, where, "above", mean, low))
     if high < 1 - margin and beyond_chi_square(mean, degrees, "below", level, margin):
         v.findings.append((kind, where, "below", mean, high))
-    elif high >= 1 - margin and plain < 1 - margin:
-        v.tails.append((kind, where, "below", mean, high))
 
 
 def degrees_over_steps(X, dimension, steps):
@@ -250,11 +240,12 @@ def find_nees(x, limits, v):
     N, G = x.trials, len(x.groups)
     for g, (name, c) in enumerate(x.groups):
         X = x.run[:, g]
-        compare(v, "run", name, X.mean(), X.std(ddof=1), X.max(), N, degrees_over_steps(X, len(c), x.steps),
+        compare(v, "run", name, X.mean(), X.std(ddof=1), N, degrees_over_steps(X, len(c), x.steps),
                 share_of(LEVEL_RUN, g, G) / 2, limits.margin)
         for k in range(x.steps if x.step_mean is not None else 0):
-            compare(v, "step", (name, k), x.step_mean[g, k], x.step_sd[g, k], x.step_top[g, k], N, N * len(c),
-                    LEVEL_STEP / (2 * G * x.steps), limits.margin)
+            level = LEVEL_STEP / (2 * G * x.steps)
+            compare(v, "step", (name, k), x.step_mean[g, k], x.step_sd[g, k], N, N * len(c), level, limits.margin,
+                    level)
 
 
 def find_directions(x, limits, v):
@@ -266,7 +257,7 @@ def find_directions(x, limits, v):
         if low > 1 + limits.margin:
             v.findings.append(("direction", name, "above", y.mean(), low))
         y, _ = crossed(x, c, 0, limits)
-        high = upper(y.mean(), y.std(ddof=1), y.max(), x.trials, level, UNSEEN_SIZE)
+        high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
         if high < 1 - limits.margin:
             v.findings.append(("direction", name, "below", y.mean(), high))
 
@@ -291,7 +282,7 @@ def find_bias(x, limits, v):
 def accepts(low, high, trials, margin):
     """Of the numbers per trial whose mean must not be too small, and those whose mean must not be too large."""
     return (lower(low.mean(), low.std(ddof=1), trials, LEVEL_ACCEPT) >= 1 - margin
-            and upper(high.mean(), high.std(ddof=1), high.max(), trials, LEVEL_ACCEPT, 0) <= 1 + margin)
+            and upper(high.mean(), high.std(ddof=1), trials, LEVEL_ACCEPT) <= 1 + margin)
 
 
 def accepts_directions(x, limits):
@@ -315,54 +306,42 @@ def accept(x, limits, v):
 # Advice
 
 
-def trials_for(scaled, top, margin):
-    """Least N with scaled/sqrt(N) + ln(1/level) top/N <= margin."""
-    c = np.log(1 / LEVEL_ACCEPT) * max(top, 0)
-    root = (scaled + np.sqrt(np.maximum(scaled, 0) ** 2 + 4 * margin * c)) / (2 * margin)
-    return np.where(scaled > 0, root, np.sqrt(c / margin)) ** 2
+def trials_for(scaled, margin):
+    """Least N with scaled/sqrt(N) <= margin."""
+    return (np.maximum(scaled, 0) / margin) ** 2
 
 
 def advice(x, limits, weights=None):
     """The number of trials at which an exactly consistent filter with this spread is shown consistent in 80 % of
     studies: the trials' numbers are centred on what is exactly consistent, and N trials are drawn from them with
-    multipliers, the normal approximation of a resampled mean. Repeated, because the largest of N trials grows with N.
+    multipliers, the normal approximation of a resampled mean.
     weights [draw, trial]: standard normal draws."""
     if weights is None:
         weights = np.random.default_rng(0).standard_normal((ADVICE_DRAWS, x.trials))
     weights = (weights - weights.mean(1, keepdims=True)) / np.sqrt(x.trials)
     needs = needs_of(x, limits, weights)
-    number = x.trials
     least = DIRECTION_TRIALS if len(x.groups[0][1]) > 1 else 2
-    for _ in range(3):
-        each = np.stack([trials_for(scaled, top + growth * max(0, np.log(number / x.trials)), margin)
-                         for scaled, top, growth, margin, _, _ in needs])  # [need, draw]
-        number = max(least, np.quantile(each.max(0), ADVICE_SHARE))
+    each = np.stack([trials_for(scaled, margin) for scaled, margin, _, _ in needs])  # [need, draw]
+    number = max(least, np.quantile(each.max(0), ADVICE_SHARE))
     binding = needs[np.argmax(np.quantile(each, ADVICE_SHARE, axis=1))]
-    values = binding[4]
+    values = binding[2]
     kurtosis = ((values - values.mean()) ** 4).mean() / values.var() ** 2
     width = np.exp(1.645 * np.sqrt((kurtosis - 1) / x.trials + 0.01))
-    return number / width, number, number * width, binding[5]
-
-
-def tail_growth(values):
-    """By how much the largest grows per factor e in the number: the mean excess over the 90 % quantile."""
-    bound = np.quantile(values, 0.9)
-    return (values[values >= bound] - bound).mean()
+    return number / width, number, number * width, binding[3]
 
 
 def needs_of(x, limits, weights):
-    """What must hold for `consistent`: (scaled deviation by draw, largest, its growth, margin, values, name) each."""
+    """What must hold for `consistent`: (scaled deviation by draw, margin, values, name) each."""
     q, needs = stats.norm.isf(LEVEL_ACCEPT), []
     for g in range(x.run.shape[1]):
         X = x.run[:, g] / x.run[:, g].mean()
         Z, sd = weights @ X, X.std(ddof=1)
-        needs.append((Z + q * sd * (1 + limits.margin), X.max() - 1, tail_growth(X), limits.margin, X,
-                      ("run", g, "above")))
-        needs.append((-Z + q * sd, 0, 0, limits.margin, X, ("run", g, "below")))
+        needs.append((Z + q * sd * (1 + limits.margin), limits.margin, X, ("run", g, "above")))
+        needs.append((-Z + q * sd, limits.margin, X, ("run", g, "below")))
     for j in range(x.bias.shape[1]):
         if not known_exactly(x, j, limits):
             z = x.bias[:, j]
-            needs.append((np.abs(weights @ z) + q * z.std(ddof=1), 0, 0, limits.bias, z, ("bias", j, "above")))
+            needs.append((np.abs(weights @ z) + q * z.std(ddof=1), limits.bias, z, ("bias", j, "above")))
     return needs + direction_needs(x, limits, weights, q)
 
 
@@ -376,10 +355,10 @@ def direction_needs(x, limits, weights, q):
         forms = R.reshape(x.trials, -1) @ (w[:, :, None] * w[:, None, :]).reshape(len(w), -1).T  # [trial, draw]
         sd, first = forms.std(0, ddof=1), forms[:, 0]
         if which == -1:  # the spread grows with the ratio
-            needs.append((values[:, -1] + q * sd * (1 + limits.direction), np.median(forms.max(0)), tail_growth(first),
-                          limits.direction, first, ("direction", 0, "above")))
+            needs.append((values[:, -1] + q * sd * (1 + limits.direction), limits.direction, first,
+                          ("direction", 0, "above")))
         else:
-            needs.append((-values[:, 0] + q * sd, 0, 0, limits.direction, first, ("direction", 0, "below")))
+            needs.append((-values[:, 0] + q * sd, limits.direction, first, ("direction", 0, "below")))
     return needs
 
 
@@ -390,29 +369,11 @@ def whitened(x):
     return np.matmul(np.matmul(A, S), A.T) - np.matmul(np.matmul(D, C), D.T)
 
 
-def trials_to_show(mean, sd, top, level, margin, trials):
-    """Trials at which a finding would be made if mean, sd and largest value stay; inf where the mean is inside."""
-    a = t_quantile(level, trials - 1) * sd
-    if mean > 1 + margin:
-        return (a / (mean - 1 - margin)) ** 2
-    room = 1 - margin - mean
-    if room <= 0:
-        return np.inf
-    c = np.log(1 / level) * (max(top, UNSEEN_SIZE * mean) - mean)
-    return ((a + np.sqrt(a * a + 4 * room * c)) / (2 * room)) ** 2
-
-
-# What the tails are like: words only
-
-
-def tails(X):
-    """Share of the sum that the 1 % largest carry; degrees of freedom of a Student's t with such tails [Hill 1975], or
-    None."""
-    s = np.sort(X)[::-1]
-    worst = s[: -(-len(s) // 100)].sum() / s.sum()  # rounded up
-    k = max(10, -(-len(s) // 20))
-    degrees = 2 * k / np.log(s[:k] / s[k]).sum() if len(s) >= 200 else np.inf
-    return worst, degrees if degrees < 10 else None
+def trials_to_show(mean, sd, level, margin, trials):
+    """Trials at which a finding would be made if mean and sd stay; inf where the mean is inside."""
+    a, room = t_quantile(level, trials - 1) * sd, abs(mean - 1) - margin
+    c = np.log(1 / UNSEEN) * 8 * mean if mean < 1 else 0
+    return ((a + np.sqrt(a * a + 4 * room * c)) / (2 * room)) ** 2 if room > 0 else np.inf
 
 
 # Whiteness

@@ -8,7 +8,7 @@
 
 using namespace credence;
 using namespace credence::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

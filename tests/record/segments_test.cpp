@@ -137,7 +137,7 @@ TEST_CASE("segments: a covariance that is too small or too large is found in one
         const Consistency found = verdict_on(log);
         CAPTURE(factor);
         CHECK(found.verdict == (factor < 1 ? Verdict::optimistic : factor > 1 ? Verdict::pessimistic
-                                                                              : Verdict::undecided));
+                                                                              : Verdict::consistent));
         CHECK(found.findings.empty() == (factor == 1));
     }
     const Report within = judged(logs(1, 60000, 0.3), segments_auto, 0.2);

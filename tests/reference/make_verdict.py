@@ -66,20 +66,19 @@ def verdict_on_nees(x, g, limits):
     X, c, G = x.run[:, g], x.groups[g][1], len(x.groups)
     level, v = share_of(LEVEL_RUN, g, G) / 2, Verdict()
     degrees = degrees_over_steps(X, len(c), x.steps)
-    m, s, top, N = X.mean(), X.std(ddof=1), X.max(), x.trials
-    compare(v, "run", g, m, s, top, N, degrees, level, limits.margin)
-    return {"mean": m, "sd": s, "largest": top, "degrees": degrees, "level": level,
-            "bounds": [lower(m, s, N, level), upper(m, s, top, N, level, UNSEEN_SIZE)],
-            "finding": v.findings[0][2] if v.findings else "", "tails": bool(v.tails),
-            "accepted": accepts(X, X, N, limits.margin),
-            "show": trials_to_show(m, s, top, level, limits.margin, N), "tail": tails(X)}
+    m, s, N = X.mean(), X.std(ddof=1), x.trials
+    compare(v, "run", g, m, s, N, degrees, level, limits.margin)
+    return {"mean": m, "sd": s, "degrees": degrees, "level": level,
+            "bounds": [lower(m, s, N, level), upper(m, s, N, level, UNSEEN)],
+            "finding": v.findings[0][2] if v.findings else "", "accepted": accepts(X, X, N, limits.margin),
+            "show": trials_to_show(m, s, level, limits.margin, N)}
 
 
 def one_direction(x, c, which, level, limits):
     y, folds = crossed(x, c, which, limits)
     _, v = extreme(x, c, which, limits)
     low = lower(y.mean(), y.std(ddof=1), x.trials, level)
-    high = upper(y.mean(), y.std(ddof=1), y.max(), x.trials, level, UNSEEN_SIZE)
+    high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
     entries = named(v, c)
     return {"components": list(entries), "weights": list(entries.values()), "ratio": y.mean(), "bounds": [low, high],
             "approximate": is_approximate(folds, v, part_of(x.predicted, c)),
@@ -102,7 +101,7 @@ def verdict_on_all_directions(x, limits):
     low, high = extreme(x, c, 0, limits)[0], extreme(x, c, -1, limits)[0]
     return {"smallest": low.mean(), "largest": high.mean(), "accepted": accepts_directions(x, limits),
             "bounds": [lower(low.mean(), low.std(ddof=1), N, LEVEL_ACCEPT),
-                       upper(high.mean(), high.std(ddof=1), high.max(), N, LEVEL_ACCEPT, 0)]}
+                       upper(high.mean(), high.std(ddof=1), N, LEVEL_ACCEPT)]}
 
 
 def verdict_on_bias(x, limits):

@@ -53,24 +53,39 @@ class Expected:
             self.nu = np.where(self.broken[..., None], 0, nu)
         self.troubles = self.find_troubles()
         self.failed = np.zeros(self.trials, dtype=bool)
-        self.failed[[trouble[0] for trouble in self.troubles if trouble[3] >= 2]] = True
+        self.failed[[trouble[0] for trouble in self.troubles]] = True
         self.there &= ~self.failed[:, None]
         self.values = {}
         self.white = None
         self.compute_state()
         if record.innovation is not None:
             self.compute_innovations()
+        self.counted = ~self.failed
+        self.set_lost_aside()
+
+    def set_lost_aside(self):
+        """Unless more than half are lost."""
+        nees = self.values["nees", "all"]
+        ratio = np.full(self.trials, np.nan)
+        ratio[~self.failed] = np.nanmean(nees[~self.failed], axis=1) / self.n
+        lost = np.flatnonzero(ratio > 25)
+        if 2 * len(lost) > (~self.failed).sum():
+            return
+        self.troubles += [[trial, int(np.nanargmax(nees[trial])),
+                           f"the trial is lost: NEES/dim {ratio[trial]:.3g} over its steps, most here", 1]
+                          for trial in lost]
+        self.troubles.sort(key=lambda trouble: trouble[0])
+        self.counted[lost] = False
 
     def find_troubles(self):
         """[trial, step, what, status] of the first trouble of each trial that has one."""
         smallest = [("covariance", smallest_eigenvalues(self.P))]
         if self.record.innovation is not None:
             smallest.append(("innovation covariance", smallest_eigenvalues(self.S)))
-        error = np.nan_to_num(np.abs(self.record.error)).max(axis=2)
-        beyond, large = error > 1e70, {"error": error > 1e12, "covariance": np.abs(self.P).max(axis=(2, 3)) > 1e12}
+        beyond = np.nan_to_num(np.abs(self.record.error)).max(axis=2) > 1e70
         found = []
         for trial in range(self.trials):
-            of_trial, diverged = [], []
+            of_trial = []
             for step in np.flatnonzero(self.there[trial]):
                 if self.broken[trial, step]:
                     of_trial.append([step, self.what_is_broken(trial, step), 3])
@@ -81,9 +96,7 @@ class Expected:
                         of_trial.append([step, f"{name} is {'not positive definite' if worse else 'singular'}", 2])
                 if beyond[trial, step]:
                     of_trial.append([step, "a figure of this step is beyond 1e140", 3])
-                diverged += [[step, f"the {what} is beyond 1e12: diverged", 1]
-                             for what, where in large.items() if where[trial, step]]
-            found += [[trial, *one] for one in (of_trial + self.early_end(trial) + diverged)[:1]]
+            found += [[trial, *one] for one in (of_trial + self.early_end(trial))[:1]]
         return found
 
     def early_end(self, trial):
@@ -139,9 +152,10 @@ class Expected:
         self.white[self.there] = np.where(self.observed[self.there], white, np.nan)
 
     def figure(self, name, part, values):
-        run = np.nanmean(values[~self.failed], axis=1) * self.steps
+        values = values[self.counted]
+        run = np.nanmean(values, axis=1) * self.steps
         if name in ("nis", "nis_rows"):
-            run = np.nansum(values[~self.failed], axis=1)
+            run = np.nansum(values, axis=1)
         result = {"name": name, "part": part, "sum": np.nansum(values, axis=0), "run_sum": run.sum(),
                   "run_square_sum": (run**2).sum()}
         if name != "nis_rows":
@@ -156,7 +170,7 @@ class Expected:
     def products(self):
         """A lag counts the measurements of a row, whatever the steps between."""
         result = {"sum": [], "square_sum": [], "count": []}
-        rows = [[row[~np.isnan(row)] for row in trial.T] for trial in self.white]
+        rows = [[row[~np.isnan(row)] for row in trial.T] for trial in self.white[self.counted]]
         for lag in range(1, min(10, self.steps - 1) + 1):
             pairs = [[row[lag:] * row[:-lag] for row in trial] for trial in rows]
             of_trials = np.array([sum(pair.sum() for pair in trial) for trial in pairs])
@@ -183,15 +197,16 @@ class Expected:
         result["status"] = np.zeros(self.trials)
         result["status_pose"] = np.full(self.trials, -1.0)
         for trial, step, _, status in self.troubles:
-            result["status"][trial], result["status_pose"][trial] = status, step + 1
+            result["status"][trial], result["status_pose"][trial] = status, step + 1 if status > 1 else -1
         return result
 
     def everything(self, by_trial=True):
         nees = self.values["nees", "all"]
-        of_step = [nees[self.there[:, k], k] for k in range(self.steps)]
+        there = self.there & self.counted[:, None]
+        of_step = [nees[there[:, k], k] for k in range(self.steps)]
         result = {
-            "trials": self.trials, "steps": self.steps, "n": self.n, "counted": int((~self.failed).sum()),
-            "present": self.there.sum(axis=0),
+            "trials": self.trials, "steps": self.steps, "n": self.n, "counted": int(self.counted.sum()),
+            "present": there.sum(axis=0),
             "troubles": [trouble[:3] for trouble in self.troubles],
             "figures": [self.figure(*key, values) for key, values in self.values.items()],
             "shape_distance": [stats.kstest(v, stats.chi2(self.n).cdf).statistic if len(v) else math.nan

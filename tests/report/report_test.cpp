@@ -59,15 +59,15 @@ TEST_CASE("report: failed trials are counted and shown, and columns are summaris
     CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
 }
 
-TEST_CASE("report: diverged trials stay in the columns and are named") {
+TEST_CASE("report: lost trials stay in the columns and are named") {
     Study study = small_study(1, 300, 1);
-    study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::diverged);
+    study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::lost);
     recount(study.scenarios.front());
     const Report report = make_report(study, 0.05);
-    CHECK(report.arms.front().diverged == 1);
+    CHECK(report.arms.front().lost == 1);
     CHECK(report.arms.front().failed == 0);
     CHECK(report.arms.front().columns.front().summary.count == 300);
-    CHECK_THAT(report_text(report), Contains("1 trials of heading-straight/fixed.ekf diverged"));
+    CHECK_THAT(report_text(report), Contains("1 trial of heading-straight/fixed.ekf is lost"));
 }
 
 TEST_CASE("report: a published value is shown at its percentile") {

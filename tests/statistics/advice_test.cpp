@@ -64,17 +64,17 @@ TEST_CASE("advice: none where a component is a copy of another") {
 
 TEST_CASE("advice: the number that would show it is where the bound crosses the margin") {
     for (const double mean : {1.2, 0.7}) {
-        const PositiveSample seen{1000, mean, 1, 4};
+        const PositiveSample seen{1000, mean, 1};
         const double number = trials_to_show(seen, 0.01, 0.05);
         const auto shown = [&](double trials) {
-            const MeanClaim claim = claim_on_mean({trials, mean, 1, 4}, 0.01, 0.05);
+            const MeanClaim claim = claim_on_mean({trials, mean, 1}, 0.01, 0.05);
             return claim.above || claim.below;
         };
         // Student's quantile is that of 1000 trials, and the unseen share ln(1/level)/N, to first order.
         CHECK(shown(1.02 * number));
         CHECK_FALSE(shown(0.98 * number));
     }
-    CHECK(std::isinf(trials_to_show({1000, 1.02, 1, 4}, 0.01, 0.05)));
+    CHECK(std::isinf(trials_to_show({1000, 1.02, 1}, 0.01, 0.05)));
     const double number = trials_to_show_bias({400, -0.2, 1, 0.05}, 0.001, 0.1);
     CHECK(std::abs(number - std::pow(t_quantile(0.002, 399) / 0.1, 2)) < 1e-9 * number);
     CHECK(std::isinf(trials_to_show_bias({400, 0.1, 1, 0.05}, 0.001, 0.1)));

@@ -104,11 +104,6 @@ const std::vector<FailingTrial> failing{
      [](Values& v, std::size_t t) {
          set_matrix(v.innovation_covariance, t, {-1, 0, 0, -1});
      }},
-    {"diverged, and P with it",
-     [](Values& v, std::size_t t) {
-         for (std::size_t i = 0; i < n; ++i) v.error[vector_at(t, 3) + i] *= 1e7;
-         for (std::size_t i = 0; i < n * n; ++i) v.covariance[matrix_at(t, 3) + i] *= 1e14;
-     }},
     {"no step", [](Values& v, std::size_t t) { fill(v.error, vector_at(t, 0), steps * n, nan); }},
 };
 
@@ -124,11 +119,11 @@ Evidence evidence_with(const FailingTrial& failure, std::size_t count) {
 }
 
 /// A study whose first arm has so many trials that ended like that.
-Study with_statuses(std::size_t failed, std::size_t diverged) {
+Study with_statuses(std::size_t failed, std::size_t lost) {
     Study study = small_study(1, 100, 1);
     std::vector<double>& status = study.scenarios.front().arms.front().columns[column_status];
-    for (std::size_t i = 0; i < failed + diverged; ++i)
-        status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::diverged);
+    for (std::size_t i = 0; i < failed + lost; ++i)
+        status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::lost);
     recount(study.scenarios.front());
     return study;
 }
@@ -193,11 +188,11 @@ TEST_CASE("failed: a trial that ends early has not failed where the dataset `ste
     CHECK(read_record(folder / "record.h5").trouble_count == 900);
 }
 
-TEST_CASE("failed: diverged trials count, and every failed trial is in the first line of the arm") {
+TEST_CASE("failed: lost trials count, and every failed trial is in the first line of the arm") {
     const Report report = make_report(with_statuses(1, 2), 0.05);
     const ArmReport& arm = report.arms.front();
     CHECK(arm.failed == 1);
-    CHECK(arm.diverged == 2);
+    CHECK(arm.lost == 2);
     CHECK(arm.consistency.verdict == Verdict::failed);  // 3 of 100 are more than 1 %
     CHECK(make_report(with_statuses(1, 0), 0.05).arms.front().consistency.verdict != Verdict::failed);
     CHECK(make_report(with_statuses(1, 2), {0.05, 0.03}).arms.front().consistency.verdict != Verdict::failed);
@@ -205,21 +200,21 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
     const std::string text = report_text(report), row = text.substr(text.find("  heading-straight/fixed.ekf"));
     CHECK_THAT(
         text,
-        Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed; 1 of them are left out of its "
-                 "numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged; they are kept in the numbers."));
-    CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3"));
-    CHECK_THAT(
-        row, Contains("\n      3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged\n"));
+        Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed or are lost; 1 of them are left out of "
+                 "its numbers.\nnote: 2 trials of heading-straight/fixed.ekf are lost (NEES/dim over the run beyond 25): "
+                 "left out of the verdict, kept\n  in the columns"));
+    CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3 (at most 7.6 %)"));
+    CHECK_THAT(row, Contains("\n      3 of 100 trials failed or are lost, more than 1 %: 2 with status lost\n"));
     const Json json = Json::parse(report_json(report));
     CHECK(json[0]["verdict"] == "failed");
     CHECK(json[0]["failed"] == 1);
     CHECK(json[0]["failed_trials"] == 3);
-    CHECK(json[0]["reason"] == "3 of 100 trials failed (2 of them diverged), more than 1 %: 2 with status diverged");
+    CHECK(json[0]["reason"] == "3 of 100 trials failed or are lost, more than 1 %: 2 with status lost");
     CHECK_THAT(report_csv(report), Contains("heading-straight,fixed.ekf,100,1,trace_P,") && Contains(",failed,3\n"));
     const std::string page = report_html(report, {"r.h5", {}, "test"});
     CHECK_THAT(page, Contains("<span class=\"badge failed\">") &&
-                         Contains("3 of 100 trials failed (2 of them diverged)") &&
-                         Contains(" trials failed, <data value=\"2\">2</data> of them diverged"));
+                         Contains("3 of 100 trials failed or are lost") &&
+                         Contains(">at most 7.6 %</data> of all"));
     CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf failed, "));
 }
 

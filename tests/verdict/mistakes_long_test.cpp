@@ -110,25 +110,24 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
     CHECK(figure.summary.mean - 1.645 * figure.summary.standard_deviation < 0);
 }
 
-TEST_CASE("mistakes: diverged trials stay in all of the evidence, and are counted") {
+TEST_CASE("mistakes: lost trials are in none of the evidence, and are counted") {
     DeformableSettings s;
-    s.noise.odometry = 1.2e6;  // where nothing is seen at a pose, which happens in some trials, P is beyond 1e12
-    s.sensor.sigma = 1e3;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
-    s.sensor.detection = 0.7;
+    s.filter.measurement = s.filter.odometry = 0.2;  // NEES/n is about 17
     s.arms.controllers = {Controller::fixed};
     const ScenarioResults results = replication(s, trials, 61);
     const ArmResults& arm = results.arms.front();
-    const int diverged = ended(arm, Status::diverged), completed = ended(arm, Status::completed);
-    REQUIRE(diverged > 20);
-    REQUIRE(completed > 20);
+    const int lost = ended(arm, Status::lost), completed = ended(arm, Status::completed);
+    REQUIRE(lost > 3);
+    REQUIRE(completed > lost);
     const Evidence evidence = evidence_of(results, arm);
-    CHECK(evidence.trials == diverged + completed);
+    CHECK(evidence.trials == completed);
+    CHECK(evidence.lost == lost);
+    CHECK(evidence.lost_trials.size() == static_cast<std::size_t>(std::min(lost, 10)));
     for (std::size_t k = 0; k < 19; ++k) {
-        CHECK(evidence.groups.front().step[k].count == diverged + completed);
-        CHECK(counted_cells(arm, k) == diverged + completed);
+        CHECK(evidence.groups.front().step[k].count == completed);
+        CHECK(counted_cells(arm, k) == completed);
     }
-    const double mean = mean_ratio(arm, [](Status status) { return !failed(status); });
+    const double mean = mean_ratio(arm, counts);
     CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 

@@ -154,10 +154,11 @@ TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
     all_are(0, Status::completed, -1);
     all_are(1, Status::covariance_not_positive_definite, 3);
     all_are(2, Status::non_finite, 3);
-    all_are(3, Status::diverged, 3);
+    all_are(3, Status::lost, -1);
     all_are(4, Status::completed, -1);
     CHECK(results.arms[1].totals.trials.counted() == 0);
-    CHECK(results.arms[3].totals.trials.counted() == 20);
+    CHECK(results.arms[3].totals.trials.counted() == 0);
+    CHECK(results.arms[3].totals.trials.lost() == 20);
     CHECK(std::isnan(results.arms[1].columns[0][0]));
     // One row was not observed at one of nine steps; rows stand for themselves from step to step.
     const Evidence sound = evidence_of(results, results.arms[0]), missing = evidence_of(results, results.arms[4]);

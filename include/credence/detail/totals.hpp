@@ -22,7 +22,8 @@ struct TrialTotals {
     void add(const TrialTotals& other);
     void subtract(const TrialTotals& other);
     std::int64_t trials() const;             ///< number of trials, including failed ones
-    std::int64_t counted() const;            ///< that did not fail
+    std::int64_t counted() const;            ///< that neither failed nor were lost: those of the series
+    std::int64_t lost() const;               ///< whose columns are known, and whose series are left out
 };
 
 /// Whether a column is a quantity of the trial, not its status.
@@ -40,7 +41,7 @@ std::vector<TrialTotals> trial_totals(const std::vector<Column>& columns, std::s
 
 /// Totals over trials of one declared series.
 struct SeriesTotals {
-    std::vector<ExactSum> sum;         ///< [K - 1] over the trials that did not fail
+    std::vector<ExactSum> sum;         ///< [K - 1] over the trials that count
     std::vector<ExactSum> square_sum;  ///< [K - 1]; empty for integer series
     ExactSum run_square_sum;           ///< of (sum over the steps of one trial), squared
     std::optional<ExactSum> run_sum;   ///< of the sum over the steps of one trial; none: the sum of `sum`

@@ -51,7 +51,7 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
 /// Throws unless the totals are of all trials that did not fail.
 void check_counted(const std::string& place, std::int64_t counted, const ArmResults& arm) {
     if (counted != arm.totals.trials.counted())
-        throw Error(place, "counts " + std::to_string(counted) + " trials that did not fail, but the totals are of " +
+        throw Error(place, "counts " + std::to_string(counted) + " trials, but the totals are of " +
                                std::to_string(arm.totals.trials.counted()));
 }
 

@@ -17,7 +17,7 @@ Json side_json(const ComparedSide& side) {
             {"source", side.source},
             {"trials", side.trials},
             {"failed", side.failed},
-            {"diverged", side.diverged},
+            {"lost", side.lost},
             {"failed_trials", side.failed_trials()}};
 }
 

@@ -148,9 +148,9 @@ std::string conclusion_text(const ComparedPair& pair) {
 std::string compare_notes(const CompareReport& report) {
     std::string text;
     const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
-        const FailureWords words{"are left out, with their partners", "are compared"};
+        const FailureWords words{"are left out, with their partners", "compared, too"};
         for (const std::string& line :
-             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.diverged},
+             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.lost},
                            report.failed_limit, words))
             text += line + "\n";
     };

@@ -109,7 +109,8 @@ Json directions_json(const DirectionsFound& directions) {
 
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
-              {"diverged", arm.diverged}, {"failed_trials", arm.failed_trials()}};
+              {"lost", arm.lost}, {"failed_trials", arm.failed_trials()},
+              {"may_be_unseen", arm.evidence.may_be_unseen()}};
     if (arm.gaps.missing > 0) json["missing_steps"] = gaps_json(arm.gaps);
     if (arm.cause) json["failed_most"] = cause_json(*arm.cause);
     for (const Scenario& scenario : report.scenarios)
@@ -135,6 +136,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
                                                          : Json()}};
     const Reached& reached = arm.consistency.reached;
     json["reached"] = {{"nees", reached.nees}, {"direction", reached.direction}, {"bias", reached.bias}};
+    json["p_exact"] = arm.evidence.groups.empty() ? nan : t_test(arm.evidence.groups.front().run, 1);
     json["directions"] = directions_json(arm.consistency.directions);
     json["hints"] = arm.consistency.hints;
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};

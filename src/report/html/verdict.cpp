@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <credence/statistics.hpp>
 #include <credence/text.hpp>
 #include <map>
 #include <set>
 
+#include "base/nan.hpp"
 #include "report/format.hpp"
 #include "report/html/page.hpp"
 #include "report/sweep.hpp"
@@ -37,11 +39,14 @@ Html numbers_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
     const Summary& nees = column_named(arm.columns, "nees_ratio").summary;
     const Summary& nis = column_named(arm.columns, "nis_ratio").summary;
+    const double exact = arm.evidence.groups.empty() ? nan : t_test(arm.evidence.groups.front().run, 1);
     return html_of(
         "NEES/n " + mean_cell(nees.mean, nees.ci95) +
         (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) + " of " +
-        count_cell(static_cast<double>(arm.trials)) + " trials failed" +
-        (arm.diverged > 0 ? ", " + count_cell(static_cast<double>(arm.diverged)) + " of them diverged" : Cell()));
+        count_cell(static_cast<double>(arm.trials)) + " trials failed or are lost" +
+        (unseen_text(arm).empty() ? Cell()
+                                  : ": " + number_cell_as(arm.evidence.may_be_unseen(), unseen_text(arm)) + " of all") +
+        (std::isnan(exact) ? Cell() : "; p " + p_cell(exact) + " of NEES/n being exactly 1"));
 }
 
 Html verdict_line(const ArmReport& arm) {

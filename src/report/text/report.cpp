@@ -34,14 +34,15 @@ std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
 }
 
 std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
-    Table table("", {"", "verdict", "NEES/n", "NIS/m", "failed"});
+    Table table("", {"", "verdict", "NEES/n", "NIS/m", "failed or lost"});
     for (const ArmReport* arm : arms) {
         std::vector<Cell> cells{arm->scenario + "/" + arm->arm, verdict_cell(*arm)};
         for (const char* column : {"nees_ratio", "nis_ratio"}) {
             const Summary& summary = column_named(arm->columns, column).summary;
             cells.push_back(mean_cell(summary.mean, summary.ci95));
         }
-        cells.push_back(failed_cell(*arm));
+        const std::string unseen = unseen_text(*arm);
+        cells.push_back(failed_cell(*arm) + (unseen.empty() ? "" : " (" + unseen + ")"));
         table.row(std::move(cells));
         if (const std::string reasons = why(*arm); !reasons.empty()) table.group(reasons);
     }

@@ -9,16 +9,20 @@
 namespace credence {
 inline namespace CREDENCE_TARGET {
 
-/// A trial's status and the pose where it happened. Failures are final; a diverged trial may still fail.
+/// A trial's status, and the pose where it failed.
 template <class Real>
 struct Outcome {
     Real status = Real(0), pose = Real(-1);
 
     void note(Mask<Real> happened, Status what, int k) {
-        const Real code = Real(static_cast<int>(what));
-        const Mask<Real> worse = both(happened, both(status < Real(2), status < code));
-        status = select(worse, code, status);
-        pose = select(worse, Real(k), pose);
+        const Mask<Real> first = both(happened, status == Real(0));
+        status = select(first, Real(static_cast<int>(what)), status);
+        pose = select(first, Real(k), pose);
+    }
+    /// After the last step.
+    void note_lost(Real nees_ratio) {
+        const Mask<Real> lost = both(nees_ratio > Real(lost_nees_ratio), status == Real(0));
+        status = select(lost, Real(static_cast<int>(Status::lost)), status);
     }
 };
 
@@ -68,9 +72,8 @@ void note_trouble(const Belief<Real, capacity>& belief, int n, Real squared_erro
             zero_if_finite = fma(p, Real(0), zero_if_finite);
         }
     }
-    outcome.note(negated(zero_if_finite == Real(0)), Status::non_finite, k);
+    outcome.note(negated(both(zero_if_finite == Real(0), largest <= Real(largest_number))), Status::non_finite, k);
     outcome.note(negated(positive_definite), Status::covariance_not_positive_definite, k);
-    outcome.note(largest > Real(divergence_bound), Status::diverged, k);
 }
 
 /// Whether note_trouble could find anything. For a positive definite P the diagonal suffices: |P_ij| <= max P_ii, and
@@ -82,7 +85,7 @@ bool trouble(const Belief<Real, capacity>& belief, const Layout& layout, Real sq
     each(zero, layout.size(), [&](auto i) {
         total = total + (absolute(belief.mean[i]) + absolute(belief.covariance.entry[i][i]));
     });
-    return any(negated(both(positive_definite, total <= Real(divergence_bound))));
+    return any(negated(both(positive_definite, total <= Real(largest_number))));
 }
 
 /// Normalised errors of a belief: NEES of every group, in the order of Layout's, with each group's own P;
@@ -217,13 +220,14 @@ CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout
 
 /// The trial's columns in the order of ColumnIndex; those of a failed trial are filled by the engine.
 template <class Real>
-void write_columns(const CommonView& problem, const Sums<Real>& sums, const Outcome<Real>& outcome, Real* columns) {
+void write_columns(const CommonView& problem, const Sums<Real>& sums, Outcome<Real>& outcome, Real* columns) {
     const int n = problem.state_size, steps = problem.poses - 1;
     const double log_scale = n * (log_two_pi + problem.filter.log_covariance_factor);
     columns[column_trace_P] = sums.trace;
     columns[column_unseen] = sums.unseen;
     columns[column_pose_error] = sums.pose_error;
     columns[column_nees_ratio] = sums.nees / Real(steps * n);
+    outcome.note_lost(columns[column_nees_ratio]);
     columns[column_nis_ratio] = sums.nis / sums.rows;
     columns[column_mean_trace_P] = sums.traces / Real(steps);
     columns[column_log_score] =

@@ -34,19 +34,18 @@ TrialMoments complete_trials(const TrialMoments& trials, const std::vector<int>&
     return complete;
 }
 
-/// The number at which all requirements hold in the share of draws, if the studies have exp(growths) times as many
-/// trials as this one.
-double number_for_all(const std::vector<Requirement>& requirements, double growths) {
+/// The number at which all requirements hold in the share of draws.
+double number_for_all(const std::vector<Requirement>& requirements) {
     Eigen::VectorXd most = Eigen::VectorXd::Zero(advice_draws);
-    for (const Requirement& one : requirements) most = most.cwiseMax(one.trials(growths));
+    for (const Requirement& one : requirements) most = most.cwiseMax(one.trials());
     return quantile_of(most, advised_share);
 }
 
-const Requirement& binding_one(const std::vector<Requirement>& requirements, double growths) {
+const Requirement& binding_one(const std::vector<Requirement>& requirements) {
     std::size_t binding = 0;
     double most = -1;
     for (std::size_t r = 0; r < requirements.size(); ++r)
-        if (const double number = quantile_of(requirements[r].trials(growths), advised_share); number > most) {
+        if (const double number = quantile_of(requirements[r].trials(), advised_share); number > most) {
             most = number;
             binding = r;
         }
@@ -58,27 +57,22 @@ const Requirement& binding_one(const std::vector<Requirement>& requirements, dou
 std::optional<Advice> trials_for_consistent(const TrialMoments& trials, const std::vector<int>& state,
                                             std::uint64_t root_seed, const AdviceLimits& limits) {
     const TrialMoments complete = complete_trials(trials, state);
-    const auto kept = static_cast<double>(complete.trials());
-    if (kept < advice_trials) return std::nullopt;
+    if (static_cast<double>(complete.trials()) < advice_trials) return std::nullopt;
     const auto requirements = requirements_of(complete, state, root_seed, limits);
     if (!requirements) return std::nullopt;
     const double least = state.size() >= 2 ? direction_trials : 2;
-    double growths = 0, number = kept;
-    for (int round = 0; round < 3; ++round) {  // the largest value grows with the number of trials
-        growths = std::max(0.0, std::log(number / kept));
-        number = std::max(least, number_for_all(*requirements, growths));
-    }
-    const Requirement& binding = binding_one(*requirements, growths);
+    const double number = std::max(least, number_for_all(*requirements));
+    const Requirement& binding = binding_one(*requirements);
     const double factor = binding.uncertainty();
     return Advice{number, {number / factor, number * factor}, binding.need, binding.where};
 }
 
 double trials_to_show(const PositiveSample& sample, double level, double margin) {
     const double a = t_quantile(2 * level, sample.trials - 1) * sample.standard_deviation;
-    if (sample.mean > 1 + margin) return std::pow(a / (sample.mean - 1 - margin), 2);
-    const double room = 1 - margin - sample.mean;
+    const double room = std::abs(sample.mean - 1) - margin;
     if (!(room > 0)) return std::numeric_limits<double>::infinity();
-    const double c = -std::log(level) * (std::max(sample.largest, unseen_size * sample.mean) - sample.mean);
+    // To first order in 1/N, what is allowed for trials that were not seen; only where the mean is too small.
+    const double c = sample.mean < 1 ? -std::log(levels::unseen) * (unseen_size - 1) * sample.mean : 0;
     return std::pow((a + std::sqrt(a * a + 4 * room * c)) / (2 * room), 2);
 }
 

@@ -38,8 +38,8 @@ struct Advice {
 std::optional<Advice> trials_for_consistent(const TrialMoments& trials, const std::vector<int>& state,
                                             std::uint64_t root_seed, const AdviceLimits& limits = {});
 
-/// Number of trials at which a finding at `level` would be made if mean, deviation and largest value stay: for a mean
-/// that lies outside 1 -+ margin; infinite for one inside, and where trials that were not seen would still explain it.
+/// Number of trials at which a finding at `level` would be made if mean and deviation stay: for a mean that lies
+/// outside 1 -+ margin; infinite for one inside.
 double trials_to_show(const PositiveSample& sample, double level, double margin);
 
 /// The same for a bias beyond `margin`, `level` one-sided.

@@ -35,12 +35,12 @@ Extremes extremes_of(const MatrixXd& S, const MatrixXd& C, const MatrixXd& basis
 
 double form(const VectorXd& v, const MatrixXd& matrix) { return v.dot(matrix * v); }
 
-/// Moments and largest value of y_i = R + (a_i - R b_i) / mean b: one number per trial whose mean is R = sum a / sum b,
+/// Moments of y_i = R + (a_i - R b_i) / mean b: one number per trial whose mean is R = sum a / sum b,
 /// to first order. R is given, over all trials of the study.
 PositiveSample linearised_ratio(const VectorXd& a, const VectorXd& b, double ratio, double trials) {
     const VectorXd y = (ratio + (a - ratio * b).array() / b.mean()).matrix();
     const double squares = (y.array() - y.mean()).square().sum();
-    return {trials, ratio, std::sqrt(squares / static_cast<double>(y.size() - 1)), y.maxCoeff()};
+    return {trials, ratio, std::sqrt(squares / static_cast<double>(y.size() - 1))};
 }
 
 /// The same direction v for every trial.
@@ -150,9 +150,9 @@ DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& 
     accepted.state = all.known() ? GroupDirections::State::known : GroupDirections::State::singular;
     if (!all.known()) return accepted;
     const PositiveSample smallest = ratio_in(all.of(false), state, sums), largest = ratio_in(all.of(true), state, sums);
-    accepted.acceptance = accept_means(smallest, largest, limits.accepted);
     accepted.spectrum = {all.values.begin(), all.values.end()};
-    accepted.bounds = {lower_bound(smallest, levels::acceptance), upper_bound(largest, levels::acceptance, 0)};
+    accepted.bounds = acceptance_interval(smallest, largest);
+    accepted.shown = margin_shown(accepted.bounds);
     return accepted;
 }
 

@@ -18,7 +18,6 @@ inline constexpr double direction_trials = 200;
 
 struct DirectionLimits {
     double margin = 0.05;                                     ///< findings lie outside 1 -+ margin
-    double accepted = 0.10;                                   ///< acceptances lie inside 1 -+ accepted
     double epsilon = std::numeric_limits<double>::epsilon();  ///< of the data's type; 2^-23 for 32 bits
 };
 
@@ -48,14 +47,14 @@ struct GroupDirections {
 };
 
 /// Directions of a group of at least two components. `sums` may be over more trials than `group`, whose numbers give
-/// spread and largest value. `level`: one-sided, corrected for groups and for both directions.
+/// the spread. `level`: one-sided, corrected for groups and for both directions.
 GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums, double level,
                                 const DirectionLimits& limits = {});
 
-/// Whether all directions of the whole state, and so of all its groups, are shown to lie within 1 -+ accepted.
+/// Within which margin all directions of the whole state, and so of all its groups, are shown to lie.
 struct DirectionsAccepted {
     GroupDirections::State state = GroupDirections::State::few_trials;
-    Acceptance acceptance = Acceptance::more_trials;
+    double shown = std::numeric_limits<double>::infinity();  ///< the smallest margin within which they are
     int left_out = 0;
     std::vector<double> spectrum;  ///< ratios of all trials, rising, d - left_out: their range is too wide on average
     Interval bounds;               ///< lower bound of the smallest to upper bound of the largest, 95 %

@@ -16,15 +16,6 @@ double deviation(const VectorXd& values) {
     return std::sqrt((values.array() - values.mean()).square().sum() / static_cast<double>(values.size() - 1));
 }
 
-/// The mean excess of the values over their 90 % quantile: for exponential tails the largest of N grows so.
-double tail_growth(const VectorXd& values) {
-    const double bound = quantile_of(values, 0.9);
-    double sum = 0, count = 0;
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-        if (values[i] >= bound) sum += values[i] - bound, ++count;
-    return sum / count;
-}
-
 /// One number per trial.
 template <class Value>
 VectorXd by_trial(const TrialMoments& trials, const Value& value) {
@@ -57,7 +48,7 @@ void require_run(const VectorXd& X, int group, const MatrixXd& drawn, double mar
     const VectorXd values = X / X.mean(), deviates = drawn.transpose() * values;
     const double half = normal_quantile(2 * levels::acceptance) * deviation(values);
     const VectorXd above = deviates.array() + half * (1 + margin), below = half - deviates.array();
-    all.push_back({Need::run_above, group, margin, values, above, values.maxCoeff() - 1, tail_growth(values)});
+    all.push_back({Need::run_above, group, margin, values, above});
     all.push_back({Need::run_below, group, margin, values, below});
 }
 
@@ -90,7 +81,7 @@ MatrixXd residuals(const GroupMoments& group) {
 void require_directions(const MatrixXd& R, int dimension, const MatrixXd& drawn, double margin,
                         std::vector<Requirement>& all) {
     const double z = normal_quantile(2 * levels::acceptance);
-    VectorXd above(advice_draws), below(advice_draws), largest(advice_draws), up, down;
+    VectorXd above(advice_draws), below(advice_draws), up, down;
     for (int b = advice_draws - 1; b >= 0; --b) {  // the values of the first draw stay
         const VectorXd triangle = R.transpose() * drawn.col(b);
         const Eigenpairs pairs = eigenpairs(symmetric(triangle, dimension));
@@ -98,9 +89,8 @@ void require_directions(const MatrixXd& R, int dimension, const MatrixXd& drawn,
         down = R * form_coefficients(pairs.vectors.col(0));
         above[b] = pairs.values[dimension - 1] + z * deviation(up) * (1 + margin);
         below[b] = z * deviation(down) - pairs.values[0];
-        largest[b] = up.maxCoeff();
     }
-    all.push_back({Need::direction_above, 0, margin, up, above, quantile_of(largest, 0.5), tail_growth(up)});
+    all.push_back({Need::direction_above, 0, margin, up, above});
     all.push_back({Need::direction_below, 0, margin, down, below});
 }
 

@@ -11,23 +11,16 @@ namespace credence {
 /// Number of studies that are drawn.
 inline constexpr int advice_draws = 400;
 
-/// One thing that must be shown: N trials are enough where scaled / sqrt(N) + ln(1/level) largest / N is at most the
-/// margin.
+/// One thing that must be shown: N trials are enough if scaled / sqrt(N) is at most the margin.
 struct Requirement {
     Need need = Need::run_above;
     int where = 0;
     double margin = 0;
-    Eigen::VectorXd values;          ///< [trials] of this study
-    Eigen::VectorXd scaled;          ///< by draw
-    double largest = 0, growth = 0;  ///< largest value less the mean, and by how much it grows per factor e in N
+    Eigen::VectorXd values;  ///< [trials] of this study
+    Eigen::VectorXd scaled;  ///< by draw
 
-    /// The least N of each draw, if the studies have exp(growths) times as many trials as this one.
-    Eigen::VectorXd trials(double growths) const {
-        const double c = -std::log(levels::acceptance) * std::max(largest + growth * growths, 0.0);
-        return scaled.unaryExpr([&](double a) {
-            return a > 0 ? std::pow((a + std::sqrt(a * a + 4 * margin * c)) / (2 * margin), 2) : c / margin;
-        });
-    }
+    /// The least N of each draw.
+    Eigen::VectorXd trials() const { return (scaled.cwiseMax(0) / margin).cwiseAbs2(); }
 
     /// The number's uncertainty as a factor, 90 %: sd^2 has the relative variance (kurtosis - 1)/T, the number is
     /// proportional to it, and 10 % are for what else is estimated.

@@ -48,6 +48,7 @@ struct RecordShape {
     std::vector<RowGroup> row_groups;
     std::vector<std::string> known, known_groups;  ///< left out: components that are known exactly, and groups of these
     bool has_errors = true;              ///< false: NEES alone
+    bool of_innovations = false;         ///< the errors are innovations
     bool has_variances = false;          ///< the covariance is [trial, step, n]
 
     GroupSource source(std::size_t group) const { return sources.empty() ? GroupSource::joint : sources[group]; }
@@ -100,10 +101,6 @@ struct CheckedStep {
     /// Whether all components of the group are in the state.
     bool whole(const ComponentGroup& group) const;
 };
-
-/// What of a step is beyond the bound at which a trial counts as diverged, as in a study: its error or its covariance.
-/// Empty where nothing is.
-std::string divergence_of(const CheckedStep& step);
 
 /// The series of a record.
 StateSeries record_series(const RecordShape& shape);

@@ -15,7 +15,7 @@ namespace {
 /// Position of a value on an axis, in the scale's own measure.
 double measure(ScaleKind kind, double value) {
     if (kind == ScaleKind::logarithmic) return std::log10(value);
-    if (kind == ScaleKind::normal) return normal_quantile(1 - value);
+    if (kind == ScaleKind::normal) return std::isnan(value) ? value : normal_quantile(1 - value);
     return value;
 }
 

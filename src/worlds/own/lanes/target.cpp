@@ -47,6 +47,7 @@ void simulate_own(const OwnView& view, const Batch& batch) {
                                 batch.errors != nullptr ? errors : nullptr, moments);
         view.run(view, pack);
         pack.note_columns();
+        pack.note_lost();
         pack.columns(columns);
         double* to = batch.columns + i / octet * view.column_count * octet + i % octet;
         for (int c = 0; c < view.column_count; ++c) store(columns[c], to + c * octet);

@@ -71,10 +71,8 @@ public:
         step = take_step;
     }
 
-    /// The trials of the pack that have not failed.
-    Mask<Real> counts() const {
-        return both(there_, outcome.status < Real(static_cast<int>(Status::covariance_not_positive_definite)));
-    }
+    /// The trials of the pack that have not failed and, after note_lost(), are not lost.
+    Mask<Real> counts() const { return both(there_, outcome.status == Real(0)); }
 
     /// After the last step: notes the trials of which a column of whole numbers is none of 32 bits.
     void note_columns() {
@@ -88,19 +86,17 @@ public:
         }
     }
 
+    /// After the last step: notes the trials that are lost.
+    void note_lost() { outcome.note_lost(nees_ratio()); }
+
     /// Writes the columns [column_count], in the order of own_columns().
     void columns(Real* to) const {
         const int steps_of_trial = poses - 1;
-        const auto total = [&](int f) {
-            Real sum = Real(0);
-            for (int k = 0; k < steps_of_trial; ++k) sum = sum + all_series_[f * steps_of_trial + k];
-            return sum;
-        };
         const auto write = [&](Real value) { *to++ = value; };
         write(all_series_[(view_.variance + 1) * steps_of_trial - 1]);
         for (int c = 0; c < view_.own_column_count; ++c) write(load<Real>(own_columns + c * lanes<Real>));
         write(total(view_.squared_error));
-        write(total(0) / Real(steps_of_trial) / Real(state_size));
+        write(nees_ratio());
         write(largest_innovation > 0 ? total(view_.nis) / total(view_.nis + 1) : Real(__builtin_nan("")));
         write(total(view_.variance) / Real(steps_of_trial));
         write(Real(0.5) *
@@ -130,6 +126,15 @@ private:
         ++steps;
         return any(counts());
     }
+
+    /// The sum of a series over the steps.
+    Real total(int f) const {
+        const int steps_of_trial = poses - 1;
+        Real sum = Real(0);
+        for (int k = 0; k < steps_of_trial; ++k) sum = sum + all_series_[f * steps_of_trial + k];
+        return sum;
+    }
+    Real nees_ratio() const { return total(0) / Real(poses - 1) / Real(state_size); }
 
     Real* series(int f) { return all_series_ + f * (poses - 1) + steps; }
     void note(Mask<Real> happened, Status what) { outcome.note(happened, what, steps + 1); }
@@ -257,12 +262,6 @@ private:
         Mask<Real> good = all_lanes<Real>();
         for (int f = 0; f < view_.series_count; ++f) good = both(good, absolute(*series(f)) <= Real(largest_figure));
         note(negated(good), Status::non_finite);
-        Real largest = Real(0);
-        for (int j = 0; j < state_size; ++j) {
-            const Real size = absolute(load<Real>(step.error + j * lanes<Real>));
-            largest = select(size > largest, size, largest);
-        }
-        note(largest > Real(divergence_bound), Status::diverged);
     }
 
     const OwnView& view_;

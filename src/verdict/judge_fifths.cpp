@@ -1,0 +1,86 @@
+// Calibration given P: whether NEES is right where P is small and where it is large, which one mean over all hides
+// (spread against skill, as of ensemble forecasts).
+
+#include "statistics/mean_bounds.hpp"
+#include "verdict/evidence_parts.hpp"
+#include "verdict/judgement.hpp"
+
+#include <credence/columns.hpp>
+#include <credence/statistics.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+namespace {
+
+constexpr std::size_t fifths = 5, least_trials = 20;  ///< of a fifth
+
+/// The whole state's NEES/n of a trial, and its log det P, means over the steps.
+struct CalibratedTrial {
+    double log_det = 0, nees_ratio = 0;
+};
+
+/// Of the trials that count, by log det P; empty where trials or the columns are not kept.
+std::vector<CalibratedTrial> trials_by_size(const ScenarioResults& results, const ArmResults& arm) {
+    const auto column = [&](const std::string& name) -> const std::vector<double>* {
+        for (std::size_t c = 0; c < arm.columns.size(); ++c)
+            if (results.columns[c].name == name) return &arm.columns[c];
+        return nullptr;
+    };
+    const std::vector<double>*score = column("log_score"), *nees = column("nees_ratio"), *status = column("status");
+    std::vector<CalibratedTrial> trials;
+    if (score == nullptr || nees == nullptr || status == nullptr) return trials;
+    const double n = results.state_size();
+    for (std::size_t i = 0; i < score->size(); ++i)
+        if (counts(static_cast<Status>(static_cast<int>((*status)[i]))) && std::isfinite((*score)[i]))
+            trials.push_back({2 * (*score)[i] - n * (*nees)[i], (*nees)[i]});  // but for n log 2 pi
+    std::ranges::stable_sort(trials, {}, &CalibratedTrial::log_det);
+    return trials;
+}
+
+}  // namespace
+
+std::vector<Moments> fifths_by_size(const ScenarioResults& results, const ArmResults& arm) {
+    if (!results.has_joint_covariance) return {};
+    const std::vector<CalibratedTrial> trials = trials_by_size(results, arm);
+    if (trials.size() < fifths * least_trials) return {};
+    // Between the middles of the outer fifths the variances of the state differ by 2 % at least.
+    const double smaller = trials[trials.size() / 10].log_det, larger = trials[trials.size() * 9 / 10].log_det;
+    if (!(larger - smaller > std::log(1.02) * results.state_size())) return {};
+    std::vector<Moments> all;
+    for (std::size_t fifth = 0; fifth < fifths; ++fifth) {
+        std::vector<double> ratios;
+        for (std::size_t i = fifth * trials.size() / fifths; i < (fifth + 1) * trials.size() / fifths; ++i)
+            ratios.push_back(trials[i].nees_ratio);
+        all.push_back(moments_of(exact_moments(ratios)));
+    }
+    return all;
+}
+
+void judge_fifths(const Evidence& evidence, Judgement& judgement) {
+    if (evidence.fifths.empty() || evidence.segments.count) return;
+    const GroupEvidence& state = evidence.groups.front();
+    if (is_rounded(state, judgement.limits())) return;
+    static const char* const places[fifths] = {"smallest", "second smallest", "middle", "second largest", "largest"};
+    const double margin = margins_of_part * judgement.limits().margin, level = levels::calibration / fifths / 2;
+    std::vector<std::string> beyond;
+    for (std::size_t fifth = 0; fifth < fifths; ++fifth) {
+        const PositiveSample sample = positive_sample(evidence.fifths[fifth]);
+        const std::string when = std::string("the fifth of the trials with the ") + places[fifth] + " P";
+        const double degrees = degrees_over_steps(sample, state.dimension, evidence.steps);
+        const MeanClaim claim = claim_on_nees(sample, degrees, level, margin);
+        if (claim.above || claim.below)
+            judgement.add(claim.above ? Side::above : Side::below, {Subject::calibration, Fault{}, state.name, when,
+                                                                    sample.mean, claim.bounds, "NEES/dim"});
+        else if (std::abs(sample.mean - 1) > margin)
+            beyond.push_back(when);
+    }
+    if (!beyond.empty())
+        judgement.not_shown("NEES/dim of " + state.name + " in " + first_of(beyond) +
+                                ": beyond three times the margin",
+                            true);
+}
+
+}  // namespace credence

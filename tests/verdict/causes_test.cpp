@@ -1,0 +1,136 @@
+// The causes that are named, each of a record in which it was planted, and none of exact records of odd kinds.
+
+#include <numbers>
+#include <random>
+
+#include "record_support.hpp"
+#include "verdict/consistency_parts.hpp"
+
+using namespace credence;
+using namespace credence::test;
+using Catch::Contains;
+
+namespace {
+
+/// Errors and diagonal covariances, one variance for each step and component.
+struct Planted {
+    int trials = 400, steps = 12, n = 3;
+    Eigen::MatrixXd variance = Eigen::MatrixXd(12, 3);  ///< [step, component] of the errors
+    Eigen::MatrixXd said;                               ///< what P says of them
+
+    Planted() {
+        for (int k = 0; k < steps; ++k)
+            for (int j = 0; j < n; ++j) variance(k, j) = std::exp(0.8 * std::sin(1 + 3 * k + 5 * j) - 2 * j);
+        said = variance;
+    }
+
+    std::vector<std::string> causes(const std::function<void(DrawnRecord&)>& change = {}) const {
+        DrawnRecord record(trials, steps, n);
+        std::mt19937_64 random(7);
+        std::normal_distribution<double> normal;
+        for (int i = 0; i < trials; ++i)
+            for (int k = 0; k < steps; ++k) {
+                for (int j = 0; j < n; ++j)
+                    record.error[record.at(i, k)](j) = std::sqrt(variance(k, j)) * normal(random);
+                record.covariance[record.at(i, k)] = said.row(k).asDiagonal();
+            }
+        if (change) change(record);
+        return causes_in(record);
+    }
+
+    static std::vector<std::string> causes_in(const DrawnRecord& drawn) {
+        const Record record = read_written([&](const Handle& root) { write_drawn(root, drawn); });
+        return causes_of(evidence_of(record.results, record.results.arms.front()), Limits());
+    }
+};
+
+std::string first_cause(const Planted& planted, const std::function<void(DrawnRecord&)>& change = {}) {
+    const std::vector<std::string> causes = planted.causes(change);
+    return causes.empty() ? "" : causes.front();
+}
+
+}  // namespace
+
+TEST_CASE("causes: what P holds in place of variances") {
+    Planted planted;
+    CHECK(planted.causes().empty());
+    planted.said = planted.variance.cwiseSqrt();
+    CHECK_THAT(first_cause(planted), Contains("does P hold standard deviations"));
+    planted.said = planted.variance.cwiseAbs2();
+    CHECK_THAT(first_cause(planted), Contains("does P hold squared variances"));
+    planted.said = planted.variance.cwiseInverse();
+    CHECK_THAT(first_cause(planted), Contains("does P hold the inverse of the covariance"));
+    planted.said = 4 * planted.variance;  // a scale is no power
+    CHECK(planted.causes().empty());
+    planted.variance.setConstant(4);  // without a spread, a power is a scale
+    planted.said.setConstant(2);
+    CHECK(planted.causes().empty());
+}
+
+TEST_CASE("causes: degrees, components that are exchanged, and variances that stand for unknown") {
+    Planted planted;
+    const double squared_degrees = std::pow(180 / std::numbers::pi, 2);
+    planted.said.col(2) /= squared_degrees;
+    CHECK_THAT(first_cause(planted), Contains("errors of x2 are 57 times P's sigma"));
+    planted.said.col(2) *= squared_degrees * squared_degrees;
+    CHECK_THAT(first_cause(planted), Contains("errors of x2 are 1/57 of P's sigma"));
+    planted.said = planted.variance;
+    planted.said.col(0).swap(planted.said.col(2));
+    CHECK_THAT(first_cause(planted),
+               Contains("errors of x0 are as large as P says of x2, and the other way round"));
+    planted.said = planted.variance;
+    planted.said.col(1).setConstant(1e12);
+    CHECK_THAT(first_cause(planted), Contains("P says next to nothing of x1"));
+}
+
+TEST_CASE("causes: P of the step before or after, a start alone, and few trials that are wrong") {
+    Planted planted;
+    planted.said.bottomRows(11) = planted.variance.topRows(11);
+    CHECK_THAT(first_cause(planted), Contains("P of the step after says: is P a step late?"));
+    planted.said = planted.variance;
+    planted.said.topRows(11) = planted.variance.bottomRows(11);
+    CHECK_THAT(first_cause(planted), Contains("P of the step before says: is P a step early?"));
+    planted.said = planted.variance;
+    planted.said.topRows(2) /= 4;
+    CHECK_THAT(first_cause(planted), Contains("NEES/dim is near 1 from step 3 on"));
+    planted.said = planted.variance;
+    const auto spoil = [](DrawnRecord& record) {
+        for (int i = 0; i < 20; ++i)
+            for (int k = 0; k < record.steps; ++k) record.error[record.at(i, k)] *= 4;  // NEES/dim 16: not lost
+    };
+    CHECK_THAT(first_cause(planted, spoil), Contains("half of the trials have NEES/dim below"));
+}
+
+TEST_CASE("causes: none is named of exact records of odd kinds") {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> uniform;
+    const auto between = [&](double low, double high) { return low + (high - low) * uniform(random); };
+    for (int number = 0; number < 200; ++number) {
+        DrawnRecord record(static_cast<int>(between(25, 120)), static_cast<int>(between(1, 12)),
+                           static_cast<int>(between(1, 5)), 0, static_cast<unsigned>(number));
+        Eigen::VectorXd unit(record.n);
+        for (double& one : unit) one = std::exp(between(-8, 8));
+        const bool heavy = number % 3 == 0;
+        for (std::size_t i = 0; i < record.error.size(); ++i) {
+            const double scale = heavy ? (uniform(random) < 0.05 ? 3 : 1) / std::sqrt(1.4) : 1;
+            record.error[i] = (scale * unit.array() * record.error[i].array()).matrix();
+            record.covariance[i] = unit.asDiagonal() * record.covariance[i] * unit.asDiagonal();
+        }
+        CAPTURE(number, record.trials, record.steps, record.n);
+        CHECK(Planted::causes_in(record) == std::vector<std::string>());
+    }
+}
+
+TEST_CASE("causes: two trials that are the same run are named, however many there are") {
+    DrawnRecord drawn(60, 5, 2);
+    const auto named = [&] {
+        const Record record = read_written([&](const Handle& root) { write_drawn(root, drawn); });
+        return repeated_trials(evidence_of(record.results, record.results.arms.front()));
+    };
+    CHECK(named().empty());
+    for (int k = 0; k < drawn.steps; ++k) {
+        drawn.error[drawn.at(41, k)] = drawn.error[drawn.at(3, k)];
+        drawn.covariance[drawn.at(41, k)] = drawn.covariance[drawn.at(3, k)];
+    }
+    CHECK(named() == "trials 3 and 41 are the same run: was a seed used twice?");
+}
