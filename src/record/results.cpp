@@ -77,6 +77,9 @@ std::string groups_of(const RecordShape& shape, GroupSource source) {
 /// What a record cannot show, in sentences.
 std::vector<std::string> not_judged(const RecordShape& shape) {
     std::vector<std::string> sentences;
+    if (shape.of_innovations)
+        sentences.push_back("There is no ground truth: the verdict is on the innovations and their S, which stand for "
+                            "errors and P, and says nothing of the P of the state.");
     if (!shape.known.empty())
         sentences.push_back(
             "Not in the state, because their errors and variances are 0 at every step: " + joined(shape.known) + ".");

@@ -102,7 +102,9 @@ void require_room(const RecordShape& shape) {
 
 RecordLayout open_record(const RecordSource& source) {
     check_version(source);
-    RecordLayout layout = open_datasets(source);
+    const bool of_innovations = has_innovations_alone(source);
+    RecordLayout layout = open_datasets(of_innovations ? *innovations_of(source) : source);
+    layout.shape.of_innovations = of_innovations;
     require_room(layout.shape);
     return layout;
 }

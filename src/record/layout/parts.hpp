@@ -29,6 +29,10 @@ int open_nees(const RecordSource& source, const std::string& path, std::size_t b
 PlacedExtents open_errors(const RecordSource& source, RecordDatasets& data);
 /// A record with errors.
 void open_states(const RecordSource& source, const PlacedExtents& error, RecordLayout& layout);
+/// Whether a record has innovations and neither errors nor NEES.
+bool has_innovations_alone(const RecordSource& source);
+/// Its innovations as errors whose covariance is S; `source` must outlive it.
+std::unique_ptr<RecordSource> innovations_of(const RecordSource& source);
 /// One of NEES alone: /nees, and /group/NAME/nees of groups that need not be named elsewhere. Returns the extents that
 /// an error of one component would have.
 PlacedExtents open_nees_alone(const RecordSource& source, RecordLayout& layout);
