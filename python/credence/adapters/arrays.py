@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError, judge
+from credence.adapters.tables import existing, needed
 
 
 def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -33,20 +34,95 @@ def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = Non
     InputError
         If an array of `names` is not in the file, or none is that `judge` takes.
     """
+    with np.load(existing(path), allow_pickle=False) as file:
+        return _arguments(os.fspath(path), {name: file[name] for name in file.files}, names)
+
+
+def from_mat(
+    path: str | os.PathLike[str], names: Mapping[str, str] | None = None, *, order: str | None = None
+) -> dict[str, Any]:
+    """Variables of a ``.mat`` file (to version 7) that are called as the arguments of :func:`credence.judge`.
+
+    Needs SciPy. A file of version 7.3 is HDF5: where its datasets are called so, ``credence judge`` reads it as it is.
+
+    Parameters
+    ----------
+    path
+        A file that ``save`` of MATLAB or Octave, or ``scipy.io.savemat``, wrote.
+    names : dict
+        As of :func:`from_npz`.
+    order : ``"F"`` or ``"C"``
+        ``"F"`` is [n, step, trial] with covariances [n, n, step, trial], as one writes them in MATLAB; ``"C"`` is
+        [trial, step, n]. By default what the shapes of error and covariance say.
+
+    Returns
+    -------
+    dict
+        The arguments that are there, in their shapes. Other variables are ignored.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a variable of `names` is not in it, the order cannot be told, or none of its
+        variables is an argument of `judge`.
+    """
+    source = existing(path)
+    scipy_io = needed("scipy.io", "scipy", "read .mat")
+    try:
+        variables = scipy_io.loadmat(source)
+    except NotImplementedError:
+        why = "it is of version 7.3, which is HDF5"
+        raise InputError(f"{source}: cannot be read here ({why}). Give it to credence.judge as a path.") from None
+    except Exception as error:  # what its parser runs into
+        raise InputError(f"{source}: it cannot be read as a .mat file ({error}). Check the path.") from None
+    arguments = _arguments(source, {name: array for name, array in variables.items() if name[:2] != "__"}, names)
+    order = order or _order(source, arguments)
+    if order not in ("F", "C"):
+        raise InputError(f"invalid order={order} (must be F or C). Give one of them.")
+
+    def turned(name: str, array: Any) -> Any:
+        if not isinstance(array, np.ndarray):
+            return array
+        if array.dtype.kind == "U":
+            return [text.strip() for text in array.ravel().tolist()] if array.size > 1 else str(array.ravel()[0])
+        array = array.T if order == "F" else array
+        return array.ravel() if name == "steps" or (name == "time" and 1 in array.shape) else array
+
+    return {
+        name: {group: turned(name, one) for group, one in value.items()}
+        if isinstance(value, dict)
+        else turned(name, value)
+        for name, value in arguments.items()
+    }
+
+
+def _order(source: str, arguments: Mapping[str, Any]) -> str:
+    """What the shapes of the errors and of their covariances say of the order of dimensions."""
+    for name in ("error", "estimate"):
+        if name in arguments and "covariance" in arguments:
+            e, c = arguments[name].shape, arguments["covariance"].shape
+            fits = {"C": c[:-2] == e[:-1] and c[-1:] == c[-2:-1], "F": c[2:] == e[1:] and c[:1] == c[1:2]}
+            if len(c) == len(e) + 1 and sum(fits.values()) == 1:
+                return "F" if fits["F"] else "C"
+    raise InputError(
+        f"{source}: the shapes of its variables fit both orders, or none. Give order, F for [n, step, trial]."
+    )
+
+
+def _arguments(source: str, file: Mapping[str, Any], names: Mapping[str, str] | None) -> dict[str, Any]:
+    """The arrays of a file that are arguments of judge."""
     known = [name for name in inspect.signature(judge).parameters if name not in ("progress", "name")]
     called = {name: name for name in known} | dict(names or {})
-    with np.load(path, allow_pickle=False) as file:
-        missing = [array for array in (names or {}).values() if array not in file.files]
-        if missing:
-            there = ", ".join(file.files)
-            raise InputError(f"{os.fspath(path)}: there is no array {missing[0]} in it (it has {there})")
-        arguments: dict[str, Any] = {name: file[array] for name, array in called.items() if array in file.files}
-        for what in ("covariance", "nees"):
-            found = {name.split("/")[1]: file[name] for name in file.files if _is_group(name, what)}
-            if found:
-                arguments[f"group_{what}"] = found
+    missing = [array for array in (names or {}).values() if array not in file]
+    if missing:
+        raise InputError(f"{source}: there is no array {missing[0]} in it (it has {', '.join(file)})")
+    arguments: dict[str, Any] = {name: file[array] for name, array in called.items() if array in file}
+    for what in ("covariance", "nees"):
+        found = {name.split("/")[1]: file[name] for name in file if _is_group(name, what)}
+        if found:
+            arguments[f"group_{what}"] = found
     if not arguments:
-        raise InputError(f"{os.fspath(path)}: no array in it is an argument of judge. Give their names.")
+        raise InputError(f"{source}: no array in it is an argument of judge. Give their names.")
     single = {name: value for name, value in arguments.items() if isinstance(value, np.ndarray) and not value.ndim}
     return arguments | {name: value.item() for name, value in single.items()}
 

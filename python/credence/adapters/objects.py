@@ -126,3 +126,35 @@ def from_stonesoup(truth: Iterable[Iterable[Any]], track: Iterable[Iterable[Any]
         "covariance": stacked([np.array(run) for run in covariances]),
         "steps": np.array([len(pairs) for pairs in runs]),
     }
+
+
+def from_navlie(results: Any) -> dict[str, Any]:
+    """Results of navlie.
+
+    Parameters
+    ----------
+    results
+        A ``MonteCarloResult``, one ``GaussianResultList``, or a list of them: a run each, with `error` [step, n],
+        `covariance` [step, n, n] and `stamp` [step] (s).
+
+    Returns
+    -------
+    dict
+        `error` [trial, step, n], with the sign of estimate - truth (navlie's is the other one), `covariance`
+        [trial, step, n, n], `steps` [trial] and `time` [trial, step].
+
+    Raises
+    ------
+    InputError
+        If there are no results.
+    """
+    runs = getattr(results, "trial_results", results)
+    runs = [runs] if hasattr(runs, "covariance") else list(runs)
+    if not runs:
+        raise InputError("there are no results of navlie. Give a MonteCarloResult, or a list of GaussianResultList.")
+    return {
+        "error": stacked([-np.asarray(run.error, dtype=float) for run in runs]),
+        "covariance": stacked([np.asarray(run.covariance, dtype=float) for run in runs]),
+        "steps": np.array([len(run.stamp) for run in runs]),
+        "time": stacked([np.asarray(run.stamp, dtype=float) for run in runs]),
+    }

@@ -9,13 +9,27 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
-from credence.adapters.tables import Array, Path, from_upper, match_times, normalised, path_list, read_table, stacked
+from credence.adapters.poses import Poses, pose_arguments, quaternions
+from credence.adapters.tables import (
+    Array,
+    Path,
+    existing,
+    from_upper,
+    match_times,
+    normalised,
+    paired,
+    read_table,
+    stacked,
+)
 
 _pose_columns = 8  # time, x, y, z, and the quaternion x, y, z, w
-_names = {"component_names": ["x", "y", "z", "rx", "ry", "rz"], "component_units": ["m"] * 3 + ["rad"] * 3}
+_names: dict[str, Any] = {
+    "component_names": ["x", "y", "z", "rx", "ry", "rz"],
+    "component_units": ["m"] * 3 + ["rad"] * 3,
+}
 
 
-def _associated(estimate: Path, truth: Path, columns: Sequence[int], max_difference: float) -> tuple[Array, Array]:
+def _nearest(estimate: Path, truth: Path, columns: Sequence[int], max_difference: float) -> tuple[Array, Array]:
     """Rows of the estimate's file, and the poses of the truth's at the same times."""
     estimated, true = read_table(estimate, *columns), read_table(truth)
     if true.shape[1] < _pose_columns:
@@ -34,57 +48,125 @@ def _poses(rows: Sequence[Array]) -> Array:
     return stacked([np.hstack([run[:, 1:4], normalised(run[:, 4:8])]) for run in rows])
 
 
+def read_poses(path: Path, times: Path | None = None) -> Poses:
+    """Poses of a text file in the format of TUM, EuRoC or KITTI, which its separators and columns tell."""
+    source = os.fspath(path)
+    with open(existing(path), encoding="utf-8-sig", errors="replace") as file:
+        euroc = "," in next((line for line in file if line.strip() and not line.startswith("#")), "")
+    if euroc:
+        table = read_table(path, delimiter=",")
+        wide, count = table.shape[1], {8 + 36: 36, 8 + 21: 21}.get(table.shape[1], 0)
+        if wide < _pose_columns:
+            raise InputError(f"{source}: its lines have {wide} numbers (must be at least {_pose_columns})")
+        return Poses(source, table[:, 0] / 1e9, table[:, [1, 2, 3, 5, 6, 7, 4]], _behind(table, 8, count))
+    table = read_table(path)
+    wide = table.shape[1]
+    if wide in (12, 12 + 36, 12 + 21):
+        matrices = table[:, :12].reshape(-1, 3, 4)
+        stamps = np.arange(float(len(table))) if times is None else read_table(times, 1)[:, 0]
+        if len(stamps) != len(table):
+            raise InputError(f"{os.fspath(times or '')}: it has {len(stamps)} times, and {source} {len(table)} poses")
+        pose = np.hstack([matrices[:, :, 3], quaternions(matrices[:, :, :3])])
+        return Poses(source, stamps, pose, _behind(table, 12, wide - 12))
+    if wide < _pose_columns:
+        raise InputError(f"{source}: its lines have {wide} numbers (must be at least {_pose_columns})")
+    count = wide - _pose_columns if wide in (44, 29) else 0
+    return Poses(source, table[:, 0], table[:, 1:8], _behind(table, 8, count))
+
+
+def _behind(table: Array, first: int, count: int) -> Array | None:
+    """The covariances in `count` numbers behind the poses."""
+    rest = table[:, first : first + count]
+    return None if not count else rest.reshape(-1, 6, 6) if count == 36 else from_upper(rest, 6)
+
+
+def from_files(
+    estimate: Path | Sequence[Path], truth: Path | Sequence[Path], times: Path | None = None, **options: Any
+) -> dict[str, Any]:
+    """Of files in any of the three formats, with the options of from_tum."""
+    pairs = [(read_poses(e, times), read_poses(t, times)) for e, t in paired(estimate, truth)]
+    return pose_arguments(pairs, **options)
+
+
 def from_tum(
     estimate: Path | Sequence[Path],
     truth: Path | Sequence[Path],
     *,
     manifold: str = "SE3",
     chart: str = "local",
-    max_difference: float = 0.01,
+    max_gap: float = 0.2,
+    align: str = "none",
+    time_offset: float = 0.0,
+    planar: bool | None = None,
 ) -> dict[str, Any]:
     """Trajectories in TUM's format, with the covariance of each pose behind it.
 
     A line is ``time x y z qx qy qz qw`` (s, m), and in the estimate 36 further numbers, the covariance of
     (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, its upper triangle.
 
+    What is found and not used (frames that seem to differ, a time offset, poses without a truth, components that are
+    not estimated) is noted as a Python warning.
+
     Parameters
     ----------
     estimate, truth : path, or list of paths
-        A file for each run. The truth may be one file for all runs; columns behind its poses are ignored.
+        A file for each run. The truth may be one file for all runs, in the format of TUM, EuRoC or KITTI; columns
+        behind its poses are ignored.
     manifold : ``"SE3"`` or ``"R3 x SO3"``
         What the covariance is of: Log on SE(3), or the difference of positions beside the rotation vector.
     chart : ``"local"`` or ``"global"``
-        Whether the error is in the body's frame or in the world's.
-    max_difference : float
-        How far the times of a pose and of its truth may be apart (s). Poses without a truth are left out.
+        Whether the error is in the body's frame or in the world's; of ``"R3 x SO3"`` the rotation's alone.
+    max_gap : float
+        The truth is interpolated between two poses that are at most so far apart (s). Poses without a truth are left
+        out.
+    align : ``"none"``, ``"first"`` or ``"se3"``
+        What moves the truth to the estimate: nothing, the first pose, or the rigid motion that makes the squared
+        differences of positions smallest (in ``evo``: ``--align``). It makes errors smaller than they are.
+    time_offset : float
+        What is added to the times of the estimate (s).
+    planar : bool
+        Whether x, y and yaw alone are judged, on ``SE2`` or, of ``"R3 x SO3"``, on ``R2 x SO2``. By default what the
+        log estimates is judged: without components whose variance is a placeholder (zero, negative, 10^6), and without
+        z, roll and pitch that never change.
 
     Returns
     -------
     dict
         `truth` and `estimate` [trial, step, 7], `covariance` [trial, step, 6, 6], `steps` [trial], `time` [trial, step]
-        (s), and what these are: `manifold`, `chart`, `quaternion`, names and units.
+        (s), and what these are: `manifold`, `chart`, `quaternion`, names and units. Where fewer components are judged,
+        the states and covariances of these, or `error`.
 
     Raises
     ------
     InputError
-        If a line has another number of columns, or no pose has a truth.
+        If a line has another number of columns, the estimate has no covariances, or no pose has a truth.
     """
-    estimates, truths = path_list(estimate), path_list(truth)
-    truths = truths * len(estimates) if len(truths) == 1 else truths
-    pairs = [_associated(e, t, (44, 29), max_difference) for e, t in zip(estimates, truths, strict=True)]
-    behind = [run[:, _pose_columns:] for run, _ in pairs]
-    covariances = [rest.reshape(-1, 6, 6) if rest.shape[1] == 36 else from_upper(rest, 6) for rest in behind]
-    return {
-        "truth": _poses([run for _, run in pairs]),
-        "estimate": _poses([run for run, _ in pairs]),
-        "covariance": stacked(covariances),
-        "steps": np.array([len(run) for run, _ in pairs]),
-        "time": stacked([run[:, 0] for run, _ in pairs]),
-        "manifold": manifold,
-        "chart": chart,
-        "quaternion": "xyzw",
-        **_names,
-    }
+    return from_files(
+        estimate, truth,
+        manifold=manifold, chart=chart, max_gap=max_gap, align=align, time_offset=time_offset, planar=planar,
+    )  # fmt: skip
+
+
+def from_euroc(estimate: Path | Sequence[Path], truth: Path | Sequence[Path], **options: Any) -> dict[str, Any]:
+    """Trajectories in the format of EuRoC's ground truth (ASL), with the covariance of each pose behind it.
+
+    A line is ``time,x,y,z,qw,qx,qy,qz`` (ns, m), and in the estimate 36 or 21 further numbers, as of :func:`from_tum`.
+    The truth may be a file of EuRoC (``state_groundtruth_estimate0/data.csv``) or TUM. Options, what is returned and
+    what is raised are those of :func:`from_tum`.
+    """
+    return from_files(estimate, truth, **options)
+
+
+def from_kitti(
+    estimate: Path | Sequence[Path], truth: Path | Sequence[Path], times: Path | None = None, **options: Any
+) -> dict[str, Any]:
+    """Trajectories in KITTI's format, with the covariance of each pose behind it.
+
+    A line has the 12 numbers of the upper rows of the pose's matrix [R t], row by row (m), and in the estimate 36 or 21
+    further numbers, as of :func:`from_tum`. `times` is the file of their times (s); without it they are counted.
+    Options, what is returned and what is raised are those of :func:`from_tum`.
+    """
+    return from_files(estimate, truth, times, **options)
 
 
 def from_openvins(
@@ -122,12 +204,11 @@ def from_openvins(
     InputError
         If a line has another number of columns, no pose has a truth, or files of a simulation differ in their times.
     """
-    estimates, truths = path_list(estimate), path_list(truth)
-    truths = truths * len(estimates) if len(truths) == 1 else truths
+    files = paired(estimate, truth)
     if deviation is not None:
-        runs = [_simulated(*files) for files in zip(estimates, truths, path_list(deviation), strict=True)]
+        runs = [_simulated(*pair, sigmas) for pair, (_, sigmas) in zip(files, paired(estimate, deviation))]
         return _of_simulations(runs)
-    pairs = [_associated(e, t, (20,), max_difference) for e, t in zip(estimates, truths, strict=True)]
+    pairs = [_nearest(e, t, (20,), max_difference) for e, t in files]
     return {
         "truth": _poses([run for _, run in pairs]),
         "estimate": _poses([run for run, _ in pairs]),

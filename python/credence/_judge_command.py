@@ -1,0 +1,198 @@
+"""``python -m credence judge LOG --truth GT``: the verdict on logs in formats that the adapters read."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from credence import Failure, InputError
+
+_columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
+_of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
+_poses = ("manifold", "chart", "max_gap", "align", "time_offset", "planar")
+
+
+def parser() -> argparse.ArgumentParser:
+    made = argparse.ArgumentParser(
+        prog="python -m credence judge",
+        description="The verdict on a filter from its log, whose suffix says what it is: poses with covariances (TUM "
+        ".txt, EuRoC .csv, KITTI), a table (.csv with names), a bag (.bag, .mcap, .db3, a folder of ROS 2), .mat, "
+        ".npz, .ulg. Records (.h5) are read by `credence judge`, whose options are taken here, too.",
+        epilog="Exit codes: 0 done, 1 what --require asks for does not hold, 2 bad input.",
+        allow_abbrev=False,
+    )
+    made.add_argument("log", nargs="+", metavar="LOG", help="a log for each run")
+    made.add_argument("--truth", nargs="+", action="extend", metavar="GT", help="its ground truth, or one for each log")
+    made.add_argument("--topic", help="of a bag: its poses with covariances")
+    made.add_argument("--truth-topic", metavar="TOPIC", help="of a bag: its truth, such as /gt or /tf:PARENT.CHILD")
+    made.add_argument("--times", metavar="FILE", help="of KITTI: the times of the poses")
+    made.add_argument("--rows", metavar="NAME", nargs="+", help="of .ulg: fields, such as gps_hpos")
+    made.add_argument(
+        "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
+        help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t; "
+        "of .npz and .mat: arrays, such as error=e covariance=P",
+    )  # fmt: skip
+    made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
+    made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
+    made.add_argument("--max-gap", type=float, metavar="SECONDS", help="between true poses that are interpolated (0.2)")
+    made.add_argument("--align", choices=["none", "first", "se3"], help="what moves the truth to the poses (none)")
+    made.add_argument("--time-offset", type=float, metavar="SECONDS", help="what is added to the times of the log")
+    made.add_argument("--planar", choices=["yes", "no"], help="judge x, y and yaw alone, or all (what is estimated)")
+    made.add_argument("--record", metavar="FILE.h5", help="keep the record of what was judged")
+    for name in _of_judge:
+        made.add_argument(f"--{name}", metavar="…", help="as of credence judge")
+    made.add_argument("-o", "--output", metavar="FILE", help="as of credence judge")
+    for name in ("strict", "quiet", "overwrite"):
+        made.add_argument(f"--{name}", action="store_true", help="as of credence judge")
+    return made
+
+
+def is_for_adapters(words: Sequence[str]) -> bool:
+    """Whether the words of `judge` name a log that is no record."""
+    asks = any(word in ("-h", "--help") or word.split("=")[0] in ("--truth", "--names") for word in words)
+    return asks or any(_kind(word) for word in words if not word.startswith("-"))
+
+
+def _kind(word: str) -> str | None:
+    """The kind of log that a path is of, or None where it is not one."""
+    from credence.adapters.rosbag import is_bag
+
+    suffix = Path(word).suffix.lower()
+    if is_bag(word):
+        return "bag"
+    if suffix in (".ulg", ".mat", ".npz"):
+        return suffix[1:]
+    return "text" if suffix in (".csv", ".txt", ".tum", ".kitti") else None
+
+
+def _names(given: Sequence[str]) -> dict[str, list[str]]:
+    parted = [word.partition("=") for word in given]
+    for what, _, name in parted:
+        if not what or not name:
+            raise InputError(f"--names: {what} has no name (must be WHAT=NAME). Give one, such as error=e.")
+    return {what: name.split(",") for what, _, name in parted}
+
+
+def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
+    """The arguments of judge from the logs that the command line names."""
+    from credence import adapters
+    from credence.adapters import trajectories
+
+    kinds = {_kind(log) for log in given.log}
+    if len(kinds) != 1 or None in kinds:
+        raise InputError("logs have unknown suffixes or several formats. Give logs of one format, named as it is.")
+    kind = kinds.pop()
+    single = given.log[0] if len(given.log) == 1 else given.log
+    names = _names(given.names)
+    poses = {name: getattr(given, name) for name in _poses if getattr(given, name) is not None}
+    if "planar" in poses:
+        poses["planar"] = poses["planar"] == "yes"
+    used = {"text": {"truth", "times", "names", *_poses}, "bag": {"truth", "topic", "truth_topic", *_poses}}
+    allowed = used.get(kind or "", {"rows"} if kind == "ulg" else {"names"})
+    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", *_poses):
+        if getattr(given, option) not in (None, []) and option not in allowed:
+            raise InputError(f"--{option.replace('_', '-')}: says nothing about a log of this kind. Leave it out.")
+    if kind == "bag":
+        return adapters.from_rosbag(given.log, given.truth, topic=given.topic, truth_topic=given.truth_topic, **poses)
+    if kind != "text" and not isinstance(single, str):
+        raise InputError(f"a verdict is on one .{kind} at a time, which has all runs in it. Give one.")
+    if kind == "ulg":
+        return adapters.from_ulog(single, given.rows)
+    if kind in ("mat", "npz"):
+        read = adapters.from_mat if kind == "mat" else adapters.from_npz
+        return read(single, {what: name[0] for what, name in names.items()})
+    if names:
+        return _of_table(single, given.truth, names, given.max_gap)
+    if given.truth is None:
+        raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
+    return trajectories.from_files(given.log, given.truth, given.times, **poses)
+
+
+def _of_table(
+    log: Any, truth: Sequence[str] | None, names: dict[str, list[str]], max_gap: float | None
+) -> dict[str, Any]:
+    from credence.adapters import from_table
+
+    unknown = [what for what in names if what not in (*_columns, "time", "runs")]
+    if unknown:
+        raise InputError(f"--names: unknown {unknown[0]}. Give some of {', '.join((*_columns, 'time', 'runs'))}.")
+    if not isinstance(log, str) or len(truth or ()) > 1:
+        raise InputError(
+            "a verdict is on one table at a time. Put runs below each other, and name their column (runs)."
+        )
+    options: dict[str, Any] = {what: name[0] if what in ("time", "runs") else name for what, name in names.items()}
+    if max_gap is not None:
+        options["max_gap"] = max_gap
+    return from_table(log, truth[0] if truth else None, **options)
+
+
+def write_record(path: str, arguments: Mapping[str, Any]) -> None:
+    """Write arguments of judge as a record."""
+    from credence import _arrays, _names
+    from credence.adapters.tables import needed
+
+    h5py = needed("h5py", "h5py", "keep a record")
+    arguments = {name: value for name, value in arguments.items() if value is not None}
+    runs, groups = arguments.pop("runs", None), arguments.get("groups")
+    own = {what: arguments.pop(f"group_{what}", {}) for what in ("covariance", "nees")}
+    texts_of = ("groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion")
+    plain, lists = _names.texts_and_lists({name: arguments.pop(name) for name in texts_of if name in arguments})
+    dimensions = _names.dimensions(arguments.pop("dimension", None), groups, "nees" in arguments, own["nees"])
+    arrays = {**arguments, **{f"group/{name}/{what}": array for what in own for name, array in own[what].items()}}
+    with h5py.File(path, "w") as file:
+        file.attrs["record_version"] = 2
+        for name, text in plain.items():
+            file.attrs[name] = text
+        for name, entries in lists.items():
+            file.attrs[name] = ", ".join(" ".join(entry) for entry in entries)
+        for name, array in _arrays.prepared(arrays, runs).items():
+            file[name] = array
+        for name, dimension in dimensions.items():
+            file[name].attrs["dimension"] = dimension
+
+
+def _said(message: str) -> str:
+    """A message of the package with its arguments as options."""
+    message = re.sub(r"\((align|topic|times)\)", r"(--\1)", message)
+    return re.sub(
+        r"\b(?:max|time|truth)_(?:gap|offset|topic)\b", lambda name: "--" + name[0].replace("_", "-"), message
+    )
+
+
+def main(words: Sequence[str]) -> int:
+    """Run the command and return its exit code."""
+    given = parser().parse_args(words)
+    values = {name: getattr(given, name.replace("-", "_")) for name in _of_judge}
+    options = [f"--{name}={value}" for name, value in values.items() if value is not None]
+    options += [f"--{name}" for name in ("strict", "overwrite") if getattr(given, name)]
+    options += [f"--output={os.path.abspath(given.output)}"] if given.output else []
+    try:
+        if given.record and Path(given.record).suffix != ".h5":
+            raise InputError(f"invalid record {given.record} (must end in .h5). Give another name.")
+        if given.record and os.path.exists(given.record) and not given.overwrite:
+            raise InputError(f"cannot write {given.record} (it exists). Give --overwrite, or another name.")
+        with warnings.catch_warnings(record=True) as notes:
+            warnings.simplefilter("always", UserWarning)
+            arguments = arguments_of(given)
+        for one in notes:
+            print(f"credence judge: note: {_said(str(one.message))}", file=sys.stderr)
+        with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+            name = f"{Path(given.log[0]).name}.h5"
+            record = os.path.abspath(given.record) if given.record else os.path.join(folder, name)
+            write_record(record, arguments)
+            # The program, in a process of its own: the folder goes when a signal ends it, too.
+            program = [sys.executable, "-m", "credence", "judge", given.record or name, "--quiet", *options]
+            where = None if given.record else folder  # the report names the record by its path
+            code = subprocess.run(program, cwd=where, check=False).returncode
+    except (InputError, Failure) as error:
+        print(f"credence judge: {_said(str(error))}", file=sys.stderr)
+        return 2 if isinstance(error, InputError) else 1
+    return code if code >= 0 else 128 - code

@@ -1,0 +1,161 @@
+"""Arguments of :func:`credence.judge` from bags of ROS 1 and 2 and MCAP files, read by `rosbags`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from credence import InputError
+from credence.adapters.poses import Poses, pose_arguments
+from credence.adapters.tables import Path, existing, needed, note, paired
+from credence.adapters.trajectories import read_poses
+
+_with_covariance = ("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseWithCovarianceStamped")
+_without = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TransformStamped")
+_transforms = "tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"
+
+
+def is_bag(path: Path) -> bool:
+    """Whether the path is that of a bag: a file ``.bag``, ``.mcap`` or ``.db3``, or a folder of ROS 2."""
+    return FilePath(path).suffix in (".bag", ".mcap", ".db3") or (FilePath(path) / "metadata.yaml").exists()
+
+
+def _pose(message: Any) -> tuple[Any, Any, Any]:
+    """The position, the orientation and the covariance, if any, of a message with a pose or a transform."""
+    if hasattr(message, "transform"):
+        return message.transform.translation, message.transform.rotation, None
+    pose = message.pose
+    if hasattr(pose, "covariance"):
+        return pose.pose.position, pose.pose.orientation, pose.covariance
+    return pose.position, pose.orientation, None
+
+
+def _messages(reader: Any, topic: str) -> Iterator[tuple[int, Any]]:
+    connections = [one for one in reader.connections if one.topic == topic]
+    for connection, at, raw in reader.messages(connections=connections):
+        yield at, reader.deserialize(raw, connection.msgtype)
+
+
+def _links(reader: Any, topic: str) -> dict[str, list[tuple[int, Any]]]:
+    """The transforms of a topic, by ``PARENT.CHILD``."""
+    links: dict[str, list[tuple[int, Any]]] = {}
+    for at, message in _messages(reader, topic):
+        for one in message.transforms:
+            name = f"{one.header.frame_id.lstrip('/')}.{one.child_frame_id.lstrip('/')}"
+            links.setdefault(name, []).append((at, one))
+    return links
+
+
+def _topic_messages(reader: Any, topic: str, source: str) -> list[tuple[int, Any]]:
+    name, of_link, link = topic.partition(":")
+    types = {of: info.msgtype for of, info in reader.topics.items()}
+    known = [one for one in types if types[one] in (*_with_covariance, *_without, *_transforms)]
+    if name not in known:
+        raise InputError(
+            f"{source}: there is no topic {name} of poses in it. Give one of {', '.join(known) or 'none'}."
+        )
+    if types[name] not in _transforms:
+        return list(_messages(reader, name))
+    links = _links(reader, name)
+    if not of_link or link not in links:
+        raise InputError(
+            f"{source}: {name} has no transform `{link}`. Give one as {name}:PARENT.CHILD, of {', '.join(links)}."
+        )
+    return links[link]
+
+
+def _chosen(reader: Any, source: str, types: Sequence[str], option: str, without: str | None) -> str:
+    """The only topic of these types."""
+    found: list[str] = [topic for topic, info in reader.topics.items() if info.msgtype in types and topic != without]
+    if len(found) == 1:
+        return found[0]
+    transforms = [topic for topic, info in reader.topics.items() if info.msgtype in _transforms]
+    links = [f"{topic}:{link}" for topic in transforms for link in _links(reader, topic)] if without else []
+    why = "several topics have" if found else "no topic has"
+    what = "poses for a truth" if without else "poses with covariances"
+    choice = ", ".join([*found, *links])
+    raise InputError(f"{source}: {why} {what}. Name the topic ({option})" + (f": {choice}." if choice else "."))
+
+
+def _read(bag: Path, topic: str | None, estimate_topic: str | None) -> tuple[Poses, str]:
+    """The poses of a topic and its name; of the truth where there is the topic of an estimate."""
+    rosbags = needed("rosbags.highlevel", "rosbags", "read bags")
+    stores = needed("rosbags.typesys", "rosbags", "read bags")
+    source = existing(bag)
+    types = (*_with_covariance, *(_without if estimate_topic else ()))
+    try:
+        store = stores.get_typestore(stores.Stores.LATEST)
+        with rosbags.AnyReader([FilePath(bag)], default_typestore=store) as reader:
+            option = "truth_topic" if estimate_topic else "topic"
+            topic = topic or _chosen(reader, source, types, option, estimate_topic)
+            messages = _topic_messages(reader, topic, source)
+    except InputError:
+        raise
+    except Exception as error:  # what its parsers run into
+        raise InputError(f"{source}: it cannot be read as a bag ({error}). Give a whole bag.") from None
+    if not messages:
+        raise InputError(f"{source}: the topic {topic} has no messages. Name another topic.")
+    return _poses(messages, f"{source} {topic}"), topic
+
+
+def _poses(messages: list[tuple[int, Any]], source: str) -> Poses:
+    stamps = np.array([message.header.stamp.sec + message.header.stamp.nanosec * 1e-9 for _, message in messages])
+    if not stamps.any():
+        note(f"{source}: its headers have no times; those at which its messages were recorded are taken")
+        stamps = np.array([at for at, _ in messages]) * 1e-9
+    parts = [_pose(message) for _, message in messages]
+    pose = np.array([(p.x, p.y, p.z, q.x, q.y, q.z, q.w) for p, q, _ in parts])
+    first = parts[0][2]
+    covariance = None if first is None else np.array([each for _, _, each in parts], dtype=float).reshape(-1, 6, 6)
+    return Poses(source, stamps, pose, covariance, messages[0][1].header.frame_id.lstrip("/"))
+
+
+def from_rosbag(
+    bag: Path | Sequence[Path],
+    truth: Path | Sequence[Path] | None = None,
+    *,
+    topic: str | None = None,
+    truth_topic: str | None = None,
+    manifold: str = "R3 x SO3",
+    chart: str = "global",
+    **options: Any,
+) -> dict[str, Any]:
+    """Poses with covariances in bags of ROS 1 (``.bag``) or ROS 2 (a folder, ``.db3``, ``.mcap``).
+
+    Needs `rosbags`. The times are those of the headers. A covariance of ROS is of x, y, z and of turns about the fixed
+    axes X, Y, Z, all in the frame of the header: the difference of the positions, and the rotation vector in the
+    world's frame. Many programs write another one into it: say so by `manifold` and `chart`.
+
+    Parameters
+    ----------
+    bag : path, or list of paths
+        A bag for each run.
+    truth : path, or list of paths
+        Bags, or text files as of :func:`from_tum`. By default the truth is in the same bag.
+    topic : str
+        Of ``nav_msgs/Odometry`` or ``geometry_msgs/PoseWithCovarianceStamped``; the only one, by default.
+    truth_topic : str
+        Of such messages, or ``PoseStamped``, ``TransformStamped``, or of a transform in messages of TF:
+        ``"/tf:PARENT.CHILD"``; the only one that is not `topic`, by default.
+    manifold, chart, **options
+        As of :func:`from_tum`.
+
+    Returns
+    -------
+    dict
+        As of :func:`from_tum`.
+
+    Raises
+    ------
+    InputError
+        If a bag or a topic cannot be read, or a topic must be named; or as of :func:`from_tum`.
+    """
+    pairs = []
+    for one, other in paired(bag, bag if truth is None else truth):
+        estimate, name = _read(one, topic, None)
+        true = _read(other, truth_topic, name)[0] if truth is None or is_bag(other) else read_poses(other)
+        pairs.append((estimate, true))
+    return pose_arguments(pairs, manifold=manifold, chart=chart, **options)

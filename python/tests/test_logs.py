@@ -1,0 +1,469 @@
+"""Adapters of formats that people have, on files that the libraries of these formats write."""
+
+from __future__ import annotations
+
+import struct
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, ClassVar
+
+import numpy as np
+import pandas as pd
+import pytest
+import scipy.io
+from evo.core import metrics, sync
+from evo.tools import file_interface
+from logs import Log, log, truth_at, write_bag
+from scipy.spatial.transform import Rotation
+
+import credence
+from credence import adapters
+from credence._judge_command import main as judge_command
+
+Array = np.ndarray[Any, Any]
+Arguments = dict[str, Any]
+
+
+def write(path: Path, rows: Array, delimiter: str = " ", header: str = "") -> Path:
+    np.savetxt(path, rows, delimiter=delimiter, header=header, fmt="%.12g" if delimiter == " " else "%.18g")
+    return path
+
+
+def tum(folder: Path, of: Log) -> tuple[Path, Path]:
+    return write(folder / "estimate.txt", of.rows()), write(folder / "truth.txt", of.truth_rows())
+
+
+def nees(arguments: Arguments) -> Array:
+    """[step], of errors in the world's frame."""
+    true, estimated = arguments["truth"][0], arguments["estimate"][0]
+    turn = Rotation.from_quat(estimated[:, 3:]) * Rotation.from_quat(true[:, 3:]).inv()
+    error = np.hstack([estimated[:, :3] - true[:, :3], turn.as_rotvec()])
+    solved = np.linalg.solve(arguments["covariance"][0], error[..., None])[..., 0]
+    values: Array = (error * solved).sum(axis=-1)
+    return values
+
+
+def judged(arguments: Arguments) -> float:
+    """What judge has as the mean of NEES/n."""
+    return float(np.mean(credence.judge(**arguments)["groups"][0]["anees"]["ratio"]))
+
+
+@pytest.mark.filterwarnings("error")
+class TestPoses:
+    def test_truth_is_interpolated(self, tmp_path: Path) -> None:
+        of = log()
+        arguments = adapters.from_tum(*tum(tmp_path, of), manifold="R3 x SO3", chart="global")
+        between = truth_at(of.time - 100)
+        np.testing.assert_allclose(arguments["truth"][0, :, :3], between[:, :3], atol=5e-5)  # a² h²/8
+        turn = Rotation.from_quat(arguments["truth"][0, :, 3:]).inv() * Rotation.from_quat(between[:, 3:])
+        assert turn.magnitude().max() < 1e-5
+        assert judged(arguments) == pytest.approx(nees(arguments).mean() / 6)
+
+    def test_formats_have_the_same_errors(self, tmp_path: Path) -> None:
+        of = log(60)
+        wxyz = [0, 1, 2, 6, 3, 4, 5]
+        how: Any = {"manifold": "R3 x SO3", "chart": "global"}
+        expected = adapters.from_tum(*tum(tmp_path, of), **how)
+        behind = of.covariance.reshape(-1, 36)
+        csv = [
+            write(tmp_path / f"{name}.csv", np.c_[np.round(1e9 * at), pose[:, wxyz], rest], ",", "#timestamp [ns]")
+            for name, at, pose, rest in (
+                ("estimate", of.time, of.pose, behind),
+                ("truth", of.truth_time, of.truth, np.zeros((len(of.truth), 9))),
+            )
+        ]
+        matrices = [
+            np.concatenate([Rotation.from_quat(pose[:, 3:]).as_matrix(), pose[:, :3, None]], axis=2).reshape(-1, 12)
+            for pose in (of.pose, of.truth)
+        ]
+        kitti = write(tmp_path / "kitti.txt", np.hstack([matrices[0], behind]))
+        times = write(tmp_path / "times.txt", of.time)
+        euroc = adapters.from_euroc(*csv, **how)
+        from_kitti = adapters.from_kitti(kitti, csv[1], times, **how)
+        for other in (euroc, from_kitti):
+            np.testing.assert_allclose(nees(other), nees(expected), rtol=1e-6)
+        truth = write(tmp_path / "kitti_truth.txt", matrices[1][: len(matrices[0])])
+        read = file_interface.read_kitti_poses_file(str(truth))
+        counted = adapters.from_kitti(kitti, truth, align="first")
+        np.testing.assert_allclose(counted["truth"][0, 0, :3], of.pose[0, :3], atol=1e-9)
+        assert counted["time"][0].tolist() == list(range(read.num_poses))
+
+    @pytest.mark.parametrize("align", ["first", "se3"])
+    def test_alignment_is_that_of_evo(self, tmp_path: Path, align: str) -> None:
+        of = log(80)
+        turn = Rotation.from_rotvec([0.3, -0.2, 1.0])
+        moved = np.hstack(
+            [turn.apply(of.truth[:, :3]) + np.array([5, 6, 7]), (turn * Rotation.from_quat(of.truth[:, 3:])).as_quat()]
+        )
+        estimate, truth = tum(tmp_path, of._replace(truth=moved))
+        plain = write(tmp_path / "plain.txt", of.rows()[:, :8])
+        both = [file_interface.read_tum_trajectory_file(str(path)) for path in (truth, plain)]
+        matched = sync.associate_trajectories(*both, sync_method=sync.SyncMethod.interpolation)
+        if align == "first":
+            matched[1].align_origin(matched[0])
+        else:
+            matched[1].align(matched[0])
+        ape = metrics.APE(metrics.PoseRelation.translation_part)
+        ape.process_data(matched)
+        arguments = adapters.from_tum(estimate, truth, align=align)
+        distance = np.linalg.norm((arguments["estimate"] - arguments["truth"])[0, :, :3], axis=1)
+        np.testing.assert_allclose(distance, ape.error, atol=1e-8)
+
+    def test_frames_that_differ_are_said(self, tmp_path: Path) -> None:
+        of = log(60)
+        files = tum(tmp_path, of._replace(truth=of.truth + 4 * np.eye(7)[0]))
+        with pytest.warns(UserWarning, match=r"its first pose is 4\.\d* m from the truth, \d+ sigmas. Are both in one"):
+            adapters.from_tum(*files)
+
+    @pytest.mark.parametrize("late", [0.0, 0.12, -0.35])
+    def test_a_time_offset_is_found_and_not_applied(self, tmp_path: Path, late: float) -> None:
+        of = log(400, scale=300)  # so that the first pose is within 5 sigmas all the same
+        files = tum(tmp_path, of._replace(time=of.time + late))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            arguments = adapters.from_tum(*files)
+        np.testing.assert_allclose(arguments["time"][0], of.time + late, atol=1e-6)
+        if not late:
+            assert not said
+            return
+        (message,) = [str(one.message) for one in said]
+        assert "would be" in message
+        assert float(message.split("with ")[1].split(" s added")[0]) == pytest.approx(-late, abs=0.003)
+        again = adapters.from_tum(*files, time_offset=-late)  # says nothing: warnings are errors here
+        np.testing.assert_allclose(again["truth"], adapters.from_tum(*tum(tmp_path, of))["truth"], atol=1e-6)
+
+    def test_poses_at_the_same_time(self, tmp_path: Path) -> None:
+        of = log(30)
+        rows = of.rows()
+        estimate = write(tmp_path / "twice.txt", np.vstack([rows, rows[3] + np.r_[0, 1, np.zeros(42)]]))
+        with pytest.warns(UserWarning, match="of 1 poses another one has the same time, and the last counts"):
+            arguments = adapters.from_tum(estimate, write(tmp_path / "truth.txt", of.truth_rows()))
+        assert arguments["estimate"][0, 3, 0] == pytest.approx(of.pose[3, 0] + 1)
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        files = tum(tmp_path, log(20))
+        for how, message in (
+            ({"align": "yaw"}, "invalid align=yaw"),
+            ({"manifold": "SO3"}, "invalid manifold=SO3"),
+        ):
+            with pytest.raises(credence.InputError, match=message):
+                adapters.from_tum(*files, **how)
+        with pytest.raises(credence.InputError, match="there are 1 runs and 2 truths"):
+            adapters.from_tum(files[0], [files[1]] * 2)
+        with pytest.raises(credence.InputError, match=r"nowhere.txt: the file: cannot be found"):
+            adapters.from_tum("nowhere.txt", files[1])
+
+
+class TestPlanar:
+    """z, roll and pitch that no filter estimated."""
+
+    @staticmethod
+    def flat(of: Log) -> Log:
+        """The poses in the plane, as of the components x, y and yaw of P."""
+        yaw = Rotation.from_quat(of.pose[:, 3:]).as_euler("ZYX")[:, 0]
+        pose = np.c_[of.pose[:, :2], np.zeros((len(yaw), 3)), np.sin(yaw / 2), np.cos(yaw / 2)]
+        return of._replace(pose=pose, covariance=of.covariance.copy())
+
+    @pytest.mark.parametrize("placeholder", [0.0, 1e-9, -1.0, 1e6, 99999.0, np.nan])
+    def test_placeholders(self, tmp_path: Path, placeholder: float) -> None:
+        of = self.flat(log(60))
+        of.covariance[:, [2, 3, 4]] = of.covariance[:, :, [2, 3, 4]] = 0
+        of.covariance[:, [2, 3, 4], [2, 3, 4]] = placeholder
+        with pytest.warns(UserWarning, match="z, roll, pitch: not estimated .*; judged: x, y, yaw"):
+            arguments = adapters.from_tum(*tum(tmp_path, of), manifold="R3 x SO3")
+        assert arguments["manifold"] == "R2 x SO2"
+        assert arguments["component_names"] == ["x", "y", "yaw"]
+        np.testing.assert_allclose(arguments["covariance"][0, 0], log(60).covariance[0][np.ix_([0, 1, 5], [0, 1, 5])])
+        e = arguments["estimate"][0] - arguments["truth"][0]
+        e[:, 2] = np.remainder(e[:, 2] + np.pi, 2 * np.pi) - np.pi
+        expected = np.einsum("ki,kij,kj->k", e, np.linalg.inv(arguments["covariance"][0]), e).mean() / 3
+        assert judged(arguments) == pytest.approx(expected)
+
+    def test_on_the_manifold(self, tmp_path: Path) -> None:
+        files = tum(tmp_path, self.flat(log(60)))
+        assert adapters.from_tum(*files, planar=True)["manifold"] == "SE2"
+        assert adapters.from_tum(*files, planar=False)["manifold"] == "SE3"
+
+    def test_positions_alone(self, tmp_path: Path) -> None:
+        of = log(60)
+        of.covariance[:, 3:] = of.covariance[:, :, 3:] = 0
+        with pytest.warns(UserWarning, match="roll, pitch, yaw: not estimated"):
+            arguments = adapters.from_tum(*tum(tmp_path, of))
+        assert arguments["manifold"] == "R3"
+        np.testing.assert_allclose(arguments["estimate"], of.pose[None, :, :3], atol=1e-10)
+
+    def test_height_missing(self, tmp_path: Path) -> None:
+        of = log(60)
+        of.covariance[:, 2] = of.covariance[:, :, 2] = 0
+        files = tum(tmp_path, of)
+        with pytest.warns(UserWarning, match="z: not estimated"):
+            arguments = adapters.from_tum(*files, manifold="R3 x SO3", chart="global")
+        whole = adapters.from_tum(*files, manifold="R3 x SO3", chart="global", planar=False)
+        turn = Rotation.from_quat(whole["estimate"][0, :, 3:]) * Rotation.from_quat(whole["truth"][0, :, 3:]).inv()
+        np.testing.assert_allclose(arguments["error"][0, :, 2:], turn.as_rotvec(), atol=1e-12)
+        with (
+            pytest.warns(UserWarning, match="not estimated"),
+            pytest.raises(credence.InputError, match="cannot judge a part of SE3"),
+        ):
+            adapters.from_tum(*files)
+
+    def test_no_covariances_at_all(self, tmp_path: Path) -> None:
+        of = log(60)
+        with pytest.raises(credence.InputError, match="no covariances \\(all its variances are placeholders"):
+            adapters.from_tum(*tum(tmp_path, of._replace(covariance=0 * of.covariance)))
+
+
+@pytest.mark.filterwarnings("error")
+class TestBags:
+    @pytest.mark.parametrize(("kind", "truth"), [("ros1", "pose"), ("sqlite3", "tf"), ("mcap", "tf")])
+    def test_bags_have_the_numbers_of_text_and_of_evo(self, tmp_path: Path, kind: str, truth: str) -> None:
+        of = log(60)
+        bag = write_bag(tmp_path / ("run.bag" if kind == "ros1" else "run"), of, kind, truth=truth)
+        path = next(bag.glob("*.mcap")) if kind == "mcap" else bag
+        arguments = adapters.from_rosbag(path, truth_topic="/tf:map.base_link" if truth == "tf" else None)
+        text = adapters.from_tum(*tum(tmp_path, of), manifold="R3 x SO3", chart="global")
+        np.testing.assert_allclose(nees(arguments), nees(text), rtol=1e-5)
+        apart = adapters.from_rosbag(path, tmp_path / "truth.txt")
+        np.testing.assert_allclose(nees(apart), nees(text), rtol=1e-5)
+        read = file_interface.read_tum_trajectory_file(str(write(tmp_path / "plain.txt", of.rows()[:, :8])))
+        np.testing.assert_allclose(arguments["estimate"][0, :, :3], read.positions_xyz, atol=1e-11)
+
+    def test_topics(self, tmp_path: Path) -> None:
+        bag = write_bag(tmp_path / "run", log(20), "sqlite3")
+        for how, message in (
+            ({}, "no topic has poses for a truth. Name the topic \\(truth_topic\\): /tf:map.base_link"),
+            ({"topic": "/odometry"}, "there is no topic /odometry of poses in it. Give one of /odom, /tf"),
+            ({"truth_topic": "/tf:map.camera"}, "/tf has no transform `map.camera`. Give one .*, of map.base_link"),
+            ({"topic": "/tf:map.base_link", "truth_topic": "/odom"}, "its poses have no covariances"),
+        ):
+            with pytest.raises(credence.InputError, match=message):
+                adapters.from_rosbag(bag, **how)
+        whole = write_bag(tmp_path / "whole.bag", log(20), "ros1", truth="pose").read_bytes()
+        (tmp_path / "torn.bag").write_bytes(whole[: len(whole) // 2])
+        with pytest.raises(credence.InputError, match=r"torn.bag: .*Give a whole bag"):
+            adapters.from_rosbag(tmp_path / "torn.bag")
+
+
+def ulog_bytes(topics: dict[str, tuple[list[str], Array]]) -> bytes:
+    """A log in PX4's format, whose topics have a row a time (µs) and fields of singles."""
+
+    def message(kind: bytes, body: bytes) -> bytes:
+        return struct.pack("<H", len(body)) + kind + body
+
+    parts = [b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0), message(b"B", bytes(40))]
+    for name, (fields, _) in topics.items():
+        parts.append(
+            message(b"F", (f"{name}:uint64_t timestamp;" + "".join(f"float{one};" for one in fields)).encode())
+        )
+    for number, name in enumerate(topics):
+        parts.append(message(b"A", struct.pack("<BH", 0, number) + name.encode()))
+    for number, (_, rows) in enumerate(topics.values()):
+        for time, *values in rows.tolist():
+            parts.append(message(b"D", struct.pack(f"<HQ{len(values)}f", number, int(time), *values)))
+    return b"".join(parts)
+
+
+class TestUlog:
+    """Two elements of the horizontal position, measured every other time, and a barometer."""
+
+    @staticmethod
+    def write(path: Path, names: tuple[str, ...]) -> tuple[Path, Array, Array]:
+        rng = np.random.default_rng(3)
+        times, S = 1e5 * np.arange(1, 401), np.array([0.25, 0.5, 2.0])
+        nu = (np.sqrt(S) * rng.normal(size=(400, 3))).astype(np.float32).astype(float)
+        nu[1::2, :2] = nu[::2, :2]
+        fields, V = ["[2] gps_hpos", " baro_vpos", " flow"], np.tile(S, (400, 1))
+        zeros = np.zeros((400, 1))
+        if len(names) == 2:
+            topics = {name: (fields, np.c_[times, rows, zeros]) for name, rows in zip(names, (nu, V))}
+        else:
+            both = ["[2] gps_hpos_innov", " baro_vpos_innov", "[2] gps_hpos_innov_var", " baro_vpos_innov_var"]
+            topics = {names[0]: (both, np.c_[times, nu, V])}
+        path.write_bytes(ulog_bytes(topics))
+        return path, nu, S
+
+    @pytest.mark.parametrize(
+        "names", [("estimator_innovations", "estimator_innovation_variances"), ("ekf2_innovations",)]
+    )
+    def test_innovations(self, tmp_path: Path, names: tuple[str, ...]) -> None:
+        path, nu, S = self.write(tmp_path / "flight.ulg", names)
+        with pytest.warns(UserWarning, match=r"observed at 200 of 400 times \(gps_hpos\[0\] 200, .* baro_vpos 400\)"):
+            arguments = adapters.from_ulog(path)
+        assert arguments["groups"] == {"gps_hpos": [0, 1], "baro_vpos": [2]}
+        np.testing.assert_array_equal(arguments["error"][0], nu[::2])
+        np.testing.assert_array_equal(arguments["covariance"][0], np.tile(S, (200, 1)))
+        assert judged(adapters.from_ulog(path, ["baro_vpos"])) == pytest.approx(np.mean(nu[:, 2] ** 2 / 2), rel=1e-6)
+        assert adapters.from_ulog(path, ["gps_hpos"])["time"][0, :2] == pytest.approx([0.1, 0.3])
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        path, *_ = self.write(tmp_path / "a.ulg", ("ekf2_innovations",))
+        with pytest.raises(credence.InputError, match=r"no row was observed. Give some of gps_hpos"):
+            adapters.from_ulog(path, ["mag_field"])
+        with pytest.raises(credence.InputError, match="of instance 1 \\(it has ekf2_innovations 0\\)"):
+            adapters.from_ulog(path, instance=1)
+        (tmp_path / "b.ulg").write_text("no log\n")
+        with pytest.raises(credence.InputError, match=r"b.ulg: it cannot be read as a log of PX4"):
+            adapters.from_ulog(tmp_path / "b.ulg")
+
+
+class TestMat:
+    @pytest.mark.parametrize("order", ["F", "C"])
+    def test_orders(self, tmp_path: Path, order: str) -> None:
+        rng = np.random.default_rng(4)
+        error, P = rng.normal(size=(40, 7, 2)), np.tile(np.array([[1.0, 0.3], [0.3, 2.0]]), (40, 7, 1, 1))
+        arrays = {"e": error.T if order == "F" else error, "covariance": P.T if order == "F" else P}
+        texts = {"component_names": ["x", "vx"], "time": np.arange(7.0), "groups": "speed 1", "fs": 2.0}
+        scipy.io.savemat(tmp_path / "a.mat", {**arrays, **texts})
+        arguments = adapters.from_mat(tmp_path / "a.mat", {"error": "e"})
+        np.testing.assert_array_equal(arguments["error"], error)
+        assert arguments["component_names"] == ["x", "vx"]
+        same = credence.judge(error, P, component_names=["x", "vx"], groups="speed 1", time=np.arange(7.0))
+        assert credence.judge(**arguments).json == same.json
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        scipy.io.savemat(tmp_path / "a.mat", {"error": np.ones((3, 4)), "covariance": np.ones((3, 4))})
+        with pytest.raises(credence.InputError, match=r"fit both orders, or none. Give order"):
+            adapters.from_mat(tmp_path / "a.mat")
+        assert adapters.from_mat(tmp_path / "a.mat", order="F")["error"].shape == (4, 3)
+        with pytest.raises(credence.InputError, match="there is no array e in it \\(it has error, covariance\\)"):
+            adapters.from_mat(tmp_path / "a.mat", {"error": "e"})
+        (tmp_path / "b.mat").write_text("words")
+        with pytest.raises(credence.InputError, match=r"b.mat: it cannot be read as a .mat file"):
+            adapters.from_mat(tmp_path / "b.mat")
+
+
+class TestTables:
+    @staticmethod
+    def frame() -> pd.DataFrame:
+        rng = np.random.default_rng(6)
+        t = np.arange(200.0) / 10
+        truth = np.c_[np.sin(t), np.cos(t), t]
+        estimate = truth + 0.1 * rng.normal(size=(200, 3))
+        estimate[:, 2] = np.remainder(estimate[:, 2] + np.pi, 2 * np.pi) - np.pi
+        return pd.DataFrame(np.c_[t, estimate, truth], columns=["t", *"xya", "gx", "gy", "ga"]).assign(s=0.1, run="a")
+
+    HOW: ClassVar[Arguments] = {
+        "estimate": [*"xya"],
+        "truth": ["gx", "gy", "ga"],
+        "sigma": ["s"] * 3,
+        "angles": "a",
+        "time": "t",
+    }
+
+    def test_frames_and_files(self, tmp_path: Path) -> None:
+        frame = self.frame()
+        arguments = adapters.from_table(frame, **self.HOW)
+        assert np.abs(arguments["error"]).max() < 0.5  # the angle is wrapped
+        assert arguments["covariance"] == pytest.approx(0.01 * np.ones((1, 200, 3)))
+        for separator in (",", ";"):
+            frame.to_csv(tmp_path / "a.csv", index=False, sep=separator)
+            read = adapters.from_table(tmp_path / "a.csv", **self.HOW)
+            np.testing.assert_allclose(read["error"], arguments["error"])
+        by_run = adapters.from_table(pd.concat([frame, frame.assign(run="b")]), **self.HOW, runs="run")
+        assert credence.judge(**by_run)["trials"] == 2
+
+    def test_a_truth_of_its_own(self) -> None:
+        frame = self.frame()
+        t = np.arange(0, 19.5, 0.15)
+        truth = pd.DataFrame({"t": t, "gx": np.sin(t), "gy": np.cos(t), "ga": np.remainder(t, 2 * np.pi)})
+        with pytest.warns(UserWarning, match="of 200 poses have no truth"):
+            arguments = adapters.from_table(frame, truth, **self.HOW)
+        inside = frame["t"] <= t[-1]
+        expected = adapters.from_table(frame[inside], **self.HOW)
+        np.testing.assert_allclose(arguments["error"], expected["error"], atol=4e-3)  # h²/8
+
+    def test_covariances(self) -> None:
+        table = {name: np.arange(1.0, 4) for name in ("e", "f", "ee", "ef", "ff")}
+        triangle = adapters.from_table(table, error=["e", "f"], covariance=["ee", "ef", "ff"])
+        whole = adapters.from_table(table, error=["e", "f"], covariance=["ee", "ef", "ef", "ff"])
+        np.testing.assert_array_equal(triangle["covariance"], whole["covariance"])
+        assert triangle["covariance"].shape == (1, 3, 2, 2)
+
+    @pytest.mark.parametrize(
+        ("how", "message"),
+        [
+            ({"error": "x"}, "takes error, or estimate and truth, and one of sigma"),
+            ({"error": "e", "sigma": "s"}, "there is no column e in it \\(it has t, x"),
+            ({"error": "run", "sigma": "s"}, "column run: could not convert"),
+            ({"error": "x", "sigma": ["s", "s"]}, "sigma has 2 columns \\(must be 1"),
+            ({"error": ["x", "y"], "covariance": ["s", "s"]}, "covariance has 2 columns \\(must be 4 or 3"),
+            ({"error": "x", "sigma": "s", "angles": "y"}, "y is no column of the errors"),
+            ({"estimate": ["x", "y"], "truth": "gx", "sigma": "s"}, "truth has 1 columns \\(must be 2"),
+        ],
+    )
+    def test_refusals(self, how: Arguments, message: str) -> None:
+        with pytest.raises(credence.InputError, match=message):
+            adapters.from_table(self.frame(), **how)
+
+    def test_files_that_are_no_tables(self, tmp_path: Path) -> None:
+        (tmp_path / "a.csv").write_text("x,y\n1,2\n3\n")
+        with pytest.raises(credence.InputError, match=r"a.csv: row 2 .* has 1 cells \(must be 2"):
+            adapters.from_table(tmp_path / "a.csv", error="x", sigma="y")
+
+
+def test_navlie_s_results() -> None:
+    rng = np.random.default_rng(7)
+    runs = [
+        SimpleNamespace(stamp=np.arange(k), error=rng.normal(size=(k, 3)), covariance=np.tile(np.eye(3), (k, 1, 1)))
+        for k in (5, 4)
+    ]
+    arguments = adapters.from_navlie(SimpleNamespace(trial_results=runs))
+    assert arguments["steps"].tolist() == [5, 4]
+    np.testing.assert_array_equal(arguments["error"][0], -runs[0].error)
+    assert adapters.from_navlie(runs[0])["error"].shape == (1, 5, 3)
+    with pytest.raises(credence.InputError, match="there are no results"):
+        adapters.from_navlie([])
+
+
+class TestCommand:
+    @staticmethod
+    def run(folder: Path, *words: object) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "credence", "judge", *map(str, words)]
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+    def test_a_bag_with_its_truth(self, tmp_path: Path) -> None:
+        bag = write_bag(tmp_path / "run.bag", log(scale=0.25), "ros1", truth="pose")
+        arguments = adapters.from_rosbag(bag)
+        said = self.run(tmp_path, "run.bag", "--margin", "10%", "--require=no-finding")
+        assert said.returncode == 1
+        assert said.stdout == str(credence.judge(**arguments, margin="10%", name="run.bag.h5"))
+        assert "optimistic" in said.stdout
+
+    def test_formats_and_options(self, tmp_path: Path) -> None:
+        tum(tmp_path, log())
+        said = self.run(
+            tmp_path, "estimate.txt", "--truth", "truth.txt", "--manifold", "R3 x SO3", "--chart=global",
+            "--require", "no-finding", "--format", "json", "-o", "verdict.json", "--record", "kept.h5",
+        )  # fmt: skip
+        assert (said.returncode, said.stdout, said.stderr) == (0, "", "")
+        assert (tmp_path / "verdict.json").read_text() == self.run(tmp_path, "kept.h5", "--format=json").stdout
+        TestTables.frame().to_csv(tmp_path / "table.csv")
+        names = ["estimate=x,y,a", "truth=gx,gy,ga", "sigma=s,s,s", "angles=a", "time=t"]
+        assert "one log of 200 steps" in self.run(tmp_path, "table.csv", "--names", *names).stdout
+
+    @pytest.mark.parametrize(
+        ("words", "message"),
+        [
+            (["estimate.txt"], "poses need a truth. Give --truth FILE"),
+            (["estimate.txt", "--truth", "nowhere.txt"], "nowhere.txt: the file: cannot be found. Check the path."),
+            (["estimate.txt", "--truth", "truth.txt", "--topic", "/a"], "--topic: says nothing about a log"),
+            (["estimate.txt", "a.ulg", "--truth", "truth.txt"], "several formats"),
+            (["estimate.txt", "--truth", "truth.txt", "--margin", "x"], "--margin"),
+            (["table.csv", "--names", "error=x", "sd=s"], "--names: unknown sd"),
+            (["estimate.txt", "--truth", "truth.txt", "--max-gap", "1e-9"], "or a larger --max-gap"),
+        ],
+    )
+    def test_refusals(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str],
+        words: list[str], message: str,
+    ) -> None:  # fmt: skip
+        tum(tmp_path, log(20))
+        monkeypatch.chdir(tmp_path)
+        assert judge_command(words) == 2
+        said = capfd.readouterr()
+        assert message in said.err
+        assert len(said.err.splitlines()) == 1
+        assert not said.out
