@@ -65,9 +65,10 @@ struct Record {
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};
     RecordSegments segments{};
-    std::string chart{};                  ///< of errors that differ between charts: `local` or `global`; else empty
-    /// Reads the record again, with its errors in the other chart; else empty.
-    std::function<Record()> in_other_chart{};
+    std::string chart{};  ///< of errors that differ between charts: `local`, `global` or `plain`; else empty
+    /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
+    /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.
+    std::vector<std::function<Record()>> in_other_charts{};
 };
 
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of

@@ -95,22 +95,22 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
 namespace {
 
 Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
-                     bool other) {
+                     int chart) {
     return hdf5::read_file(path,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
                            [&](const Handle& root) {
                                return read_in_chart(
-                                   RecordReader(FileSource(root)), path, progress, segments, other,
-                                   [path, segments](bool again) { return read_in_chart(path, {}, segments, again); });
+                                   RecordReader(FileSource(root)), path, progress, segments, chart,
+                                   [path, segments](int again) { return read_in_chart(path, {}, segments, again); });
                            });
 }
 
 }  // namespace
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
-    return read_in_chart(path, progress, segments, false);
+    return read_in_chart(path, progress, segments, 0);
 }
 
 void require_same_runs(const std::string& first, const std::string& path) {

@@ -100,9 +100,20 @@ Manifold Manifold::read(const RecordSource& source) {
     return manifold;
 }
 
-bool Manifold::has_charts() const {
-    return std::ranges::any_of(factors_,
-                               [](const Factor& factor) { return factor.kind != Kind::SO2 && factor.kind != Kind::R; });
+std::string Manifold::chart() const { return plain_ ? "plain" : chart_ == ErrorChart::local ? "local" : "global"; }
+
+int Manifold::charts() const {
+    int charts = 1;
+    for (const Factor& factor : factors_) {
+        if (factor.kind == Kind::SO3) charts = std::max(charts, 2);
+        if (factor.kind == Kind::SE2 || factor.kind == Kind::SE3) charts = 3;
+    }
+    return charts;
+}
+
+void Manifold::take_chart(int number) {
+    if (number == 1) chart_ = chart_ == ErrorChart::local ? ErrorChart::global : ErrorChart::local;
+    plain_ = number == 2;
 }
 
 /// `first` is the index of its first component in the whole error.
@@ -171,7 +182,9 @@ void Manifold::factor_error(const Factor& factor, const double* truth, const dou
         case Kind::SE2: {
             const double angle = wrapped(estimate[2] - truth[2]);
             const Vector2d T(truth[0], truth[1]), E(estimate[0], estimate[1]);
-            const Vector2d t = unturned(angle, local ? turned(-truth[2], E - T) : Vector2d(E - turned(angle, T)));
+            const Vector2d t =
+                plain_ ? Vector2d(E - T)
+                       : unturned(angle, local ? turned(-truth[2], E - T) : Vector2d(E - turned(angle, T)));
             error[0] = t.x();
             error[1] = t.y();
             error[2] = angle;
@@ -186,8 +199,9 @@ void Manifold::factor_error(const Factor& factor, const double* truth, const dou
             std::copy_n(phi.data(), 3, error + at);
             if (at == 0) return;
             const Vector3d of_truth(truth[0], truth[1], truth[2]), of_estimate(estimate[0], estimate[1], estimate[2]);
-            const Vector3d t = unturned(phi, local ? Vector3d(T.conjugate() * (of_estimate - of_truth))
-                                                   : Vector3d(of_estimate - between * of_truth));
+            const Vector3d t = plain_ ? Vector3d(of_estimate - of_truth)
+                                      : unturned(phi, local ? Vector3d(T.conjugate() * (of_estimate - of_truth))
+                                                            : Vector3d(of_estimate - between * of_truth));
             std::copy_n(t.data(), 3, error);
             return;
         }

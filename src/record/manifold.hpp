@@ -23,14 +23,17 @@ public:
     int coordinates() const { return coordinates_; }  ///< q, of a truth and of an estimate
     int dimension() const { return dimension_; }      ///< n, of the error
 
-    ErrorChart chart() const { return chart_; }
-    /// Whether the error differs between the charts: angles and numbers alone have but one.
-    bool has_charts() const;
+    /// local, global, or plain where positions are subtracted.
+    std::string chart() const;
+    /// How many charts differ in the error: one of angles and numbers alone, two of rotations, three of poses.
+    int charts() const;
+    /// The record's own chart at 0; at 1 the other of local and global; at 2 plain: the differences of positions in the
+    /// world's frame, and the rotation as in the record's own.
+    void take_chart(int number);
 
     /// Names and units of the error's components, such as x, y, theta (rad) of SE2; x3 for a number (R) that is the
     /// fourth. A name that several factors have ends in the number of its factor. Empty where all are numbers.
     std::vector<Component> components() const;
-    void take_other_chart() { chart_ = chart_ == ErrorChart::local ? ErrorChart::global : ErrorChart::local; }
 
     /// Writes the error [n]. In a factor of the product where a coordinate is not finite, all of it is so: NaN, or
     /// infinite.
@@ -53,6 +56,7 @@ private:
     int coordinates_ = 0, dimension_ = 0;
     bool scalar_first_ = true;  ///< quaternions are w x y z
     ErrorChart chart_ = ErrorChart::local;
+    bool plain_ = false;
 };
 
 }  // namespace credence

@@ -18,9 +18,9 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 void each_step(const RecordReader& reader, const std::function<void(const RecordStep&)>& use,
                const ReportProgress& progress = {});
 
-/// Reads the record in its own chart or, of states on a manifold with charts, in the other one. `name` names the
-/// scenario; `read_again(other)` does the same once more. Throws PlacedError.
+/// Reads the record in its own chart, or in another one of its manifold [manifold.hpp, take_chart]. `name` names the
+/// scenario; `read_again(chart)` does the same once more. Throws PlacedError.
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                     bool other, const std::function<Record(bool)>& read_again);
+                     int chart, const std::function<Record(int)>& read_again);
 
 }  // namespace credence

@@ -50,26 +50,26 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 }
 
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                     bool other, const std::function<Record(bool)>& read_again) {
+                     int chart, const std::function<Record(int)>& read_again) {
     std::optional<Manifold>& manifold = reader.manifold();
-    const bool has_charts = manifold && manifold->has_charts();
-    if (has_charts && other) manifold->take_other_chart();
+    if (manifold) manifold->take_chart(chart);
     Record record = read_record(reader, name, progress, segments);
-    if (!has_charts) return record;
-    record.chart = manifold->chart() == ErrorChart::local ? "local" : "global";
-    record.in_other_chart = [read_again, other] { return read_again(!other); };
+    const int charts = manifold ? manifold->charts() : 1;
+    if (charts > 1) record.chart = manifold->chart();
+    for (int other = 1; chart == 0 && other < charts; ++other)
+        record.in_other_charts.push_back([read_again, other] { return read_again(other); });
     return record;
 }
 
 namespace {
 
 Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments,
-                     bool other) {
+                     int chart) {
     constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;  // the arrays are in memory: a part fits a cache
     try {
         return read_in_chart(
-            RecordReader(ArraySource(arrays), part_numbers), name, progress, segments, other,
-            [&arrays, name, segments](bool again) { return read_in_chart(arrays, name, {}, segments, again); });
+            RecordReader(ArraySource(arrays), part_numbers), name, progress, segments, chart,
+            [&arrays, name, segments](int again) { return read_in_chart(arrays, name, {}, segments, again); });
     } catch (const RecordError& error) {
         throw InputError(error.what() + (". " + error.remedy_of_arrays()) + ".");
     }
@@ -78,7 +78,7 @@ Record read_in_chart(const RecordArrays& arrays, const std::string& name, const 
 }  // namespace
 
 Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
-    return read_in_chart(arrays, name, progress, segments, false);
+    return read_in_chart(arrays, name, progress, segments, 0);
 }
 
 }  // namespace credence

@@ -79,21 +79,34 @@ void set_means(const ScenarioResults& segments, ArmReport& arm) {
     }
 }
 
-/// NEES with the error in the other chart, where the given one is doubted: beside the record's own, without a verdict.
-void try_other_chart(const Record& record, ArmReport& arm) {
+/// NEES with the error in the other charts, where the given one is doubted: beside the record's own, without a verdict.
+void try_other_charts(const Record& record, ArmReport& arm) {
     Consistency& verdict = arm.consistency;
+    const GroupEvidence& own = arm.evidence.groups.front();
     const bool doubted = verdict.chart_doubted || std::ranges::any_of(verdict.findings, is_too_large);
-    if (!record.in_other_chart || !doubted || !(arm.evidence.groups.front().run.count > 0)) return;
-    const Record other = record.in_other_chart();
-    const Evidence evidence = evidence_of(other);
-    for (const GroupEvidence& group : evidence.groups)
-        arm.evidence.charts.push_back({other.chart, group.name, group.dimension, group.run, group.step, group.anees});
-    const GroupEvidence &own = arm.evidence.groups.front(), &theirs = evidence.groups.front();
-    const bool nearer = std::abs(std::log(theirs.run.mean)) < std::abs(std::log(own.run.mean)) / 2;
-    verdict.hints.push_back(
-        "NEES/dim of " + own.name + " is " + nees_text(own) + " with the error in the chart `" + record.chart +
-        "`, and " + nees_text(theirs) + " in the chart `" + other.chart + "`" +
-        (nearer ? ": does the covariance belong to the latter?" : ": the chart is not what is wrong"));
+    if (record.in_other_charts.empty() || !doubted || !(own.run.count > 0)) return;
+    const auto off = [](const GroupEvidence& group) { return std::abs(std::log(group.run.mean)); };
+    std::string nearest;
+    std::vector<std::string> tried{nees_text(own) + " with the error in the chart `" + record.chart + "`"};
+    double least = off(own) / 2;
+    for (const auto& read : record.in_other_charts) {
+        const Record other = read();
+        const Evidence evidence = evidence_of(other);
+        for (const GroupEvidence& group : evidence.groups)
+            arm.evidence.charts.push_back(
+                {other.chart, group.name, group.dimension, group.run, group.step, group.anees});
+        const GroupEvidence& theirs = evidence.groups.front();
+        tried.push_back(nees_text(theirs) + " in the chart `" + other.chart + "`");
+        if (off(theirs) < least) {
+            least = off(theirs);
+            nearest = other.chart;
+        }
+    }
+    const std::string form = nearest == "plain" ? " (position in the world, heading apart: R2 x SO2, or R3 x SO3)" : "";
+    verdict.hints.push_back("NEES/dim of " + own.name + " is " + joined(tried, ", and ") +
+                            (nearest.empty() ? ": the chart is not what is wrong"
+                                             : ": does the covariance belong to the error in `" + nearest + "`" + form +
+                                                   "?"));
 }
 
 }  // namespace
@@ -122,7 +135,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     name_absent_groups(arm.evidence, limits, report.not_judged);
-    try_other_chart(record, arm);
+    try_other_charts(record, arm);
     return report;
 }
 

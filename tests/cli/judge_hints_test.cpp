@@ -52,13 +52,13 @@ TEST_CASE("judge: where errors are too large on a manifold, NEES of the other ch
     write_poses(here.path("r.h5"), "local");
     const Json wrong = judged(here);
     CHECK(wrong["verdict"] == "optimistic");
-    REQUIRE(wrong["other_charts"].size() == 2);
+    REQUIRE(wrong["other_charts"].size() == 4);
     CHECK(wrong["other_charts"][0]["chart"] == "global");
     CHECK(wrong["other_charts"][0]["group"] == "all");
     CHECK(wrong["other_charts"][0]["nees_ratio"].get<double>() == Approx(1).margin(0.05));  // 2,000 steps: 4 sigma
     const std::string hint = wrong["hints"].back();
-    CHECK_THAT(hint, Contains("in the chart `local`, and ") &&
-                         Contains("in the chart `global`: does the covariance belong to the latter?"));
+    CHECK_THAT(hint, Contains("in the chart `local`, ") && Contains("in the chart `plain`: ") &&
+                         Contains("does the covariance belong to the error in `global`?"));
     write_poses(here.path("r.h5"), "global");
     const Json right = judged(here);
     CHECK(right["groups"][0]["nees_ratio"] ==
@@ -66,6 +66,37 @@ TEST_CASE("judge: where errors are too large on a manifold, NEES of the other ch
     CHECK(right["verdict"] == "undecided");
     CHECK_FALSE(right.contains("other_charts"));  // not tried where nothing is too large
     CHECK(right["hints"].empty());
+}
+
+TEST_CASE("judge: a position in the world beside a heading is told from Log") {
+    const Workplace here;
+    constexpr int trials = 200, steps = 10;
+    std::vector<double> truth, estimate, covariance;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    const double sigma[3] = {0.1, 2, 0.3};
+    for (int i = 0; i < trials * steps; ++i) {
+        for (const double x : {20 * normal(random), 20 * normal(random), 2 * normal(random)}) truth.push_back(x);
+        for (int a = 0; a < 3; ++a) estimate.push_back(truth[truth.size() - 3 + a] + sigma[a] * normal(random));
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) covariance.push_back(a == b ? sigma[a] * sigma[a] : 0);
+    }
+    const auto write = [&](const std::string& manifold) {
+        write_file(here.path("r.h5"), [&](const Handle& root) {
+            write_values(root, "truth", {trials, steps, 3}, truth);
+            write_values(root, "estimate", {trials, steps, 3}, estimate);
+            write_values(root, "covariance", {trials, steps, 3, 3}, covariance);
+            hdf5::write_text(root, "manifold", manifold);
+            hdf5::write_text(root, "chart", "local");
+        });
+        return judged(here);
+    };
+    const Json pose = write("SE2"), apart = write("R2 x SO2");
+    CHECK_THAT(pose["hints"].back().get<std::string>(), Contains("error in `plain` (position in the world, heading"));
+    REQUIRE(pose["other_charts"].size() == 2);
+    CHECK(pose["other_charts"][1]["chart"] == "plain");
+    CHECK(pose["other_charts"][1]["nees_ratio"] == apart["groups"][0]["nees_ratio"]);  // to the last bit
+    CHECK_FALSE(apart.contains("other_charts"));
 }
 
 TEST_CASE("judge: where errors are too large in either chart, the chart is not blamed") {

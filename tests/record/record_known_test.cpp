@@ -180,7 +180,7 @@ TEST_CASE("record: planar poses of SE(3) are judged as poses in the plane, in ei
         CHECK(space.results.not_judged ==
               std::vector<std::string>{"Not in the state, because their errors and variances are 0 at every step: "
                                        "translation_z, rotation_x, rotation_y."});
-        const Record other = space.in_other_chart(), flat_other = flat.in_other_chart();
+        const Record other = space.in_other_charts[0](), flat_other = flat.in_other_charts[0]();
         for (std::size_t k = 0; k < 3; ++k)  // the exponentials of the plane and of space differ in rounding
             for (const auto& [a, b] : {std::pair{&space, &flat}, std::pair{&other, &flat_other}})
                 CHECK(relative(totals_named(*a, "nees").sum[k].rounded(), totals_named(*b, "nees").sum[k].rounded()) <

@@ -57,12 +57,17 @@ std::string groups_part(const ArmReport& arm, const std::vector<const GroupEvide
 
 /// NEES in other charts, after the groups' own.
 std::string charts_part(const Evidence& evidence) {
-    if (evidence.charts.empty()) return "";
-    std::vector<std::string> parts;
-    for (const ChartEvidence& chart : evidence.charts)
-        parts.push_back(chart.name + " " + with_interval(chart.run.mean, t_interval(chart.run)));
-    return "    " + wrapped_list("NEES/dim in the " + evidence.charts.front().chart + " chart, not judged:", parts, 4) +
-           "\n";
+    std::string text;
+    for (std::size_t first = 0; first < evidence.charts.size();) {
+        const std::string chart = evidence.charts[first].chart;
+        std::vector<std::string> parts;
+        for (; first < evidence.charts.size() && evidence.charts[first].chart == chart; ++first) {
+            const ChartEvidence& one = evidence.charts[first];
+            parts.push_back(one.name + " " + with_interval(one.run.mean, t_interval(one.run)));
+        }
+        text += "    " + wrapped_list("NEES/dim in the " + chart + " chart, not judged:", parts, 4) + "\n";
+    }
+    return text;
 }
 
 std::string innovations_part(const Evidence& evidence) {
