@@ -30,11 +30,11 @@ def parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     made.add_argument("log", nargs="+", metavar="LOG", help="a log for each run")
-    made.add_argument("--truth", nargs="+", action="extend", metavar="GT", help="its ground truth, or one for each log")
+    made.add_argument("--truth", action="append", metavar="GT", help="its ground truth; or once for each log")
     made.add_argument("--topic", help="of a bag: its poses with covariances")
     made.add_argument("--truth-topic", metavar="TOPIC", help="of a bag: its truth, such as /gt or /tf:PARENT.CHILD")
     made.add_argument("--times", metavar="FILE", help="of KITTI: the times of the poses")
-    made.add_argument("--rows", metavar="NAME", nargs="+", help="of .ulg: fields, such as gps_hpos")
+    made.add_argument("--rows", metavar="NAME,…", help="of .ulg: fields, such as gps_hpos,baro_vpos")
     made.add_argument(
         "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
         help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t; "
@@ -58,7 +58,8 @@ def parser() -> argparse.ArgumentParser:
 def is_for_adapters(words: Sequence[str]) -> bool:
     """Whether the words of `judge` name a log that is no record."""
     asks = any(word in ("-h", "--help") or word.split("=")[0] in ("--truth", "--names") for word in words)
-    return asks or any(_kind(word) for word in words if not word.startswith("-"))
+    paths = [word for before, word in zip(["", *words], words) if before not in ("-o", "--output")]
+    return asks or any(_kind(word) for word in paths if not word.startswith("-"))
 
 
 def _kind(word: str) -> str | None:
@@ -105,7 +106,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if kind != "text" and not isinstance(single, str):
         raise InputError(f"a verdict is on one .{kind} at a time, which has all runs in it. Give one.")
     if kind == "ulg":
-        return adapters.from_ulog(single, given.rows)
+        return adapters.from_ulog(single, given.rows and given.rows.split(","))
     if kind in ("mat", "npz"):
         read = adapters.from_mat if kind == "mat" else adapters.from_npz
         return read(single, {what: name[0] for what, name in names.items()})

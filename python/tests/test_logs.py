@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import struct
 import subprocess
 import sys
@@ -120,7 +121,7 @@ class TestPoses:
 
     @pytest.mark.parametrize("late", [0.0, 0.12, -0.35])
     def test_a_time_offset_is_found_and_not_applied(self, tmp_path: Path, late: float) -> None:
-        of = log(400, scale=300)  # so that the first pose is within 5 sigmas all the same
+        of = log(400)
         files = tum(tmp_path, of._replace(time=of.time + late))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
@@ -440,6 +441,7 @@ class TestCommand:
         )  # fmt: skip
         assert (said.returncode, said.stdout, said.stderr) == (0, "", "")
         assert (tmp_path / "verdict.json").read_text() == self.run(tmp_path, "kept.h5", "--format=json").stdout
+        assert not self.run(tmp_path, "kept.h5", "-o", "verdict.txt").stderr  # of the program: a record is no log
         TestTables.frame().to_csv(tmp_path / "table.csv")
         names = ["estimate=x,y,a", "truth=gx,gy,ga", "sigma=s,s,s", "angles=a", "time=t"]
         assert "one log of 200 steps" in self.run(tmp_path, "table.csv", "--names", *names).stdout
@@ -467,3 +469,47 @@ class TestCommand:
         assert message in said.err
         assert len(said.err.splitlines()) == 1
         assert not said.out
+
+
+class TestPage:
+    """docs/logs.md, on files as it names them."""
+
+    @pytest.fixture
+    def _files(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.chdir(tmp_path)
+        of = log()
+        write_bag(tmp_path / "run.bag", of, "ros1", truth="pose")
+        ros2 = write_bag(tmp_path / "ros2", of, "mcap")
+        next(ros2.glob("*.mcap")).rename("run.mcap")
+        tum(tmp_path, of)
+        for name in "ab":
+            write(tmp_path / f"{name}.txt", of.rows())
+        wxyz = [0, 1, 2, 6, 3, 4, 5]
+        rows = np.c_[np.round(1e9 * of.time), of.pose[:, wxyz], of.covariance.reshape(-1, 36)]
+        write(tmp_path / "estimate.csv", rows, ",", "#timestamp [ns]")
+        write(tmp_path / "data.csv", np.c_[np.round(1e9 * of.truth_time), of.truth[:, wxyz]], ",", "#timestamp [ns]")
+        matrices = np.concatenate([Rotation.from_quat(of.pose[:, 3:]).as_matrix(), of.pose[:, :3, None]], axis=2)
+        write(tmp_path / "kitti.txt", np.c_[matrices.reshape(-1, 12), of.covariance.reshape(-1, 36)])
+        write(tmp_path / "poses.txt", matrices.reshape(-1, 12))
+        write(tmp_path / "times.txt", of.time)
+        self.frame().to_csv("table.csv")
+        scipy.io.savemat("results.mat", {"e": np.ones((2, 30)), "P": np.tile(np.eye(2)[:, :, None], (1, 1, 30))})
+        TestUlog.write(tmp_path / "flight.ulg", ("ekf2_innovations",))
+
+    @staticmethod
+    def frame() -> pd.DataFrame:
+        names = {"a": "yaw", "ga": "gyaw"}
+        return TestTables.frame().rename(columns=names).assign(sx=0.1, sy=0.1, syaw=0.1)
+
+    @pytest.mark.usefixtures("_files")
+    @pytest.mark.filterwarnings("ignore")
+    def test_commands_and_code(self, capfd: pytest.CaptureFixture[str]) -> None:
+        page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
+        code = {name: page.split(f"```{name}\n")[1].split("```")[0] for name in ("sh", "python")}
+        commands = [shlex.split(line, comments=True) for line in code["sh"].splitlines() if line.startswith("python")]
+        assert len(commands) == 9
+        for _, _, _, _, *words in commands:
+            assert judge_command(words) == 0, capfd.readouterr().err
+            assert "one log of " in capfd.readouterr().out
+        exec(code["python"], {"frame": self.frame()})
+        assert capfd.readouterr().out.count("A consistent filter has NEES/dim 1") == 3

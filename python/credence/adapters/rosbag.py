@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path as FilePath
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from credence import InputError
 from credence.adapters.poses import Poses, pose_arguments
-from credence.adapters.tables import Path, existing, needed, note, paired
+from credence.adapters.tables import Path, needed, note, paired
 from credence.adapters.trajectories import read_poses
 
 _with_covariance = ("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseWithCovarianceStamped")
@@ -84,7 +85,7 @@ def _read(bag: Path, topic: str | None, estimate_topic: str | None) -> tuple[Pos
     """The poses of a topic and its name; of the truth where there is the topic of an estimate."""
     rosbags = needed("rosbags.highlevel", "rosbags", "read bags")
     stores = needed("rosbags.typesys", "rosbags", "read bags")
-    source = existing(bag)
+    source = os.fspath(bag)
     types = (*_with_covariance, *(_without if estimate_topic else ()))
     try:
         store = stores.get_typestore(stores.Stores.LATEST)

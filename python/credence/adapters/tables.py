@@ -117,11 +117,13 @@ def stacked(arrays: Sequence[Array]) -> Array:
 
 
 def paired(estimate: Path | Sequence[Path], truth: Path | Sequence[Path]) -> list[tuple[Path, Path]]:
-    """A pair of files for each run; one truth is that of all runs."""
+    """A pair of files, which are there, for each run; one truth is that of all runs."""
     estimates, truths = ([each] if isinstance(each, (str, os.PathLike)) else list(each) for each in (estimate, truth))
     truths = truths * len(estimates) if len(truths) == 1 else truths
     if len(truths) != len(estimates):
         raise InputError(
             f"there are {len(estimates)} runs and {len(truths)} truths. Give one truth, or one for each run."
         )
+    for path in (*estimates, *truths):
+        existing(path)
     return list(zip(estimates, truths))

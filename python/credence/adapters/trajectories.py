@@ -13,7 +13,6 @@ from credence.adapters.poses import Poses, pose_arguments, quaternions
 from credence.adapters.tables import (
     Array,
     Path,
-    existing,
     from_upper,
     match_times,
     normalised,
@@ -51,7 +50,7 @@ def _poses(rows: Sequence[Array]) -> Array:
 def read_poses(path: Path, times: Path | None = None) -> Poses:
     """Poses of a text file in the format of TUM, EuRoC or KITTI, which its separators and columns tell."""
     source = os.fspath(path)
-    with open(existing(path), encoding="utf-8-sig", errors="replace") as file:
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
         euroc = "," in next((line for line in file if line.strip() and not line.startswith("#")), "")
     if euroc:
         table = read_table(path, delimiter=",")
