@@ -1,4 +1,4 @@
-"""The records of experiments/known: what is true of each is what credence finds, but for three."""
+"""The records of experiments/known: what is true of each is what credence finds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import pytest
 import credence
 
 SCRIPT = Path(__file__).parents[2] / "experiments" / "known" / "known.py"
-UNSEEN = {"lost", "by_run", "repeated"}  # docs/theory/known.md says so
 
 
 @pytest.fixture(scope="module")
@@ -37,4 +36,5 @@ def test_what_is_wrong_is_found(folder: Path) -> None:
     for truth in truths:
         verdict = credence.judge(str(folder / f"{truth['record']}.h5"))
         refuted = verdict.verdict not in ("consistent", "undecided") or bool(verdict["cautions"])
-        assert refuted == (truth["right"] == "no" and truth["record"] not in UNSEEN), (truth, str(verdict))
+        twice = "are the same run" in str(verdict)
+        assert (refuted or twice) == (truth["right"] == "no"), (truth, str(verdict))

@@ -57,9 +57,11 @@ void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
         verdict.hints.push_back(
             "the correlation of innovations was not tested: no row was measured often enough");
-    if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) verdict.hints.push_back(repeated);
     std::vector<std::string> causes;
-    if (!verdict.findings.empty()) causes = causes_of(evidence, verdict.limits);
+    if (!verdict.findings.empty()) {
+        if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) verdict.hints.push_back(repeated);
+        causes = causes_of(evidence, verdict.limits);
+    }
     std::ranges::copy(causes, std::back_inserter(verdict.hints));
     if (causes.empty()) hint_at_angles(evidence, verdict.hints);
     if (verdict.findings.empty()) return;
