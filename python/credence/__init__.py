@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from credence.simulating import Simulation, simulate
     from credence.study import Scenario, Study, open
     from credence.trajectory import Trajectory, open_trajectories
+    from credence.tuning import Tuned, tune
 
 _modules = {
     "Arm": "arm",
@@ -35,6 +36,7 @@ _modules = {
     "Simulation": "simulating",
     "Study": "study",
     "Trajectory": "trajectory",
+    "Tuned": "tuning",
     "Verdict": "judging",
     "animate": "pictures",
     "assert_consistent": "judging",
@@ -50,6 +52,7 @@ _modules = {
     "run": "program",
     "show": "program",
     "simulate": "simulating",
+    "tune": "tuning",
 }
 
 __all__ = [
@@ -64,6 +67,7 @@ __all__ = [
     "Simulation",
     "Study",
     "Trajectory",
+    "Tuned",
     "Verdict",
     "animate",
     "assert_consistent",
@@ -79,6 +83,7 @@ __all__ = [
     "run",
     "show",
     "simulate",
+    "tune",
 ]
 
 

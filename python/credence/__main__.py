@@ -13,7 +13,7 @@ def main() -> int:
     """Run the command line and return the exit code.
 
     Signals do what they do in the program: Python catches or ignores some of them, unless its parent asked for that.
-    ``simulate`` runs functions of Python, and ``judge`` reads logs, which the program cannot.
+    ``simulate`` and ``tune`` run functions of Python, and ``judge`` reads logs, which the program cannot.
     """
     if sys.argv[1:2] == ["simulate"]:
         from credence._simulate_command import main as simulate
@@ -25,6 +25,10 @@ def main() -> int:
 
         if is_for_adapters(sys.argv[2:]):
             return judge(sys.argv[2:])
+    if sys.argv[1:2] == ["tune"]:
+        from credence._tune_command import main as tune
+
+        return tune(sys.argv[2:])
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     for ignored in (signal.SIGPIPE, signal.SIGXFSZ):

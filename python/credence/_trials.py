@@ -357,7 +357,7 @@ def _traceback(error: BaseException) -> str:
     return "".join(traceback.format_exception(type(error), error, frames))
 
 
-class _Chunk:
+class Chunk:
     """Collects trials: those of the same form become one segment, whose arrays have a dimension of trials."""
 
     def __init__(self) -> None:
@@ -393,9 +393,9 @@ class _Chunk:
         return framed(header, body)
 
 
-def _chunk(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> _Chunk:
+def collected(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> Chunk:
     """Run trials under every arm. With batches `numbers` is one whole batch, of which those in `keep` are kept."""
-    chunk, texts = _Chunk(), {arm: _Texts() for arm in work.arms}
+    chunk, texts = Chunk(), {arm: _Texts() for arm in work.arms}
     for group in [numbers] if work.batch else [[number] for number in numbers]:
         for arm, options in work.arms.items():
             generators = [generator(work.seed, number) for number in group]
@@ -422,11 +422,11 @@ def _chunk(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> _Chunk:
 def run_chunk(work: Work, numbers: Sequence[int], keep: Sequence[int], twice: bool = False) -> bytes:
     """Run a chunk of trials, and return it as a frame; with `twice` it says whether a second time gives the same."""
     begun = time.perf_counter()
-    chunk = _chunk(work, numbers, keep)
+    chunk = collected(work, numbers, keep)
     seconds = time.perf_counter() - begun
     repeats = {}
     if twice:
-        again = _chunk(work, numbers, keep)
+        again = collected(work, numbers, keep)
         repeats = {arm: same(chunk.frame([], 0, (), {}), again.frame([], 0, (), {}), arm) for arm in work.arms}
     return chunk.frame(keep, seconds, work.metrics, repeats)
 

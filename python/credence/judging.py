@@ -19,6 +19,13 @@ if TYPE_CHECKING:
 
 
 NOT_REFUTED = ("consistent", "undecided")
+REFUTED = ("optimistic", "pessimistic", "mixed")
+
+
+def tune_hint(run: str = "run", free: str = "{...}") -> str:
+    """The last line of what is said of a filter that is refuted: the call that says what to change."""
+    return f"hint: what to change in it: credence.tune({run}, free={free})"
+
 
 
 class _Printed(NamedTuple):
@@ -32,8 +39,9 @@ class _Printed(NamedTuple):
 class Verdict:
     """The verdict on a filter, with everything that it rests on.
 
-    ``str(verdict)`` is the text that ``credence judge`` prints, and a notebook shows its page. ``verdict[name]`` is an
-    entry of `json`, such as ``verdict["groups"]``.
+    ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted, the call that
+    says what to change; a notebook shows its page. ``verdict[name]`` is an entry of `json`, such as
+    ``verdict["groups"]``.
 
     Attributes
     ----------
@@ -55,7 +63,7 @@ class Verdict:
         return self.json[0][name]
 
     def __str__(self) -> str:
-        return self._judgement.text
+        return self._judgement.text + (f"{tune_hint()}\n" if self.verdict in REFUTED else "")
 
     def __repr__(self) -> str:
         return f"<credence.Verdict {self.verdict}>"

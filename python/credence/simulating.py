@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import inspect
 import math
 import os
 import re
@@ -34,7 +35,7 @@ from credence._names import printable
 from credence._trial_files import Trials, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, run_chunk, same
 from credence._workers import TRIES, Workers
-from credence.judging import Verdict, judge
+from credence.judging import REFUTED, Verdict, judge, tune_hint
 from credence.program import Interrupted
 
 if TYPE_CHECKING:
@@ -263,6 +264,7 @@ class Simulation:
     def __init__(self, files: _Files, trials: int, seed: int, failures: list[Failure], limit: float | str) -> None:
         self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, True
         self._limit = limit
+        self._tune_hint = tune_hint()
         self._arms = {
             name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
             for name, path in files.records.items()
@@ -317,6 +319,8 @@ class Simulation:
             where = f"the first: trial {first.trial} of {first.arm}"
             lines.append(f"\n{len(self.failures)} without a result, {where}: {first.reason}")
             lines += [first.traceback.rstrip("\n")] if first.traceback else []
+        if any(verdict.verdict in REFUTED for verdict in self.verdicts.values()):
+            lines.append(self._tune_hint)
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
@@ -506,6 +510,19 @@ class _Engine:
         return True
 
 
+def _tune_hint(run: Callable[..., Any]) -> str:
+    """The call of `tune` with the options of a function that are numbers, each within a factor of ten."""
+    with contextlib.suppress(TypeError, ValueError):
+        numbers = {
+            name: one.default
+            for name, one in inspect.signature(run).parameters.items()
+            if isinstance(one.default, float) and one.default > 0
+        }
+        free = ", ".join(f'"{name}": ({value / 10:g}, {value * 10:g})' for name, value in numbers.items())
+        return tune_hint(getattr(run, "__name__", "run"), f"{{{free or '...'}}}")
+    return tune_hint()
+
+
 def _refuse_missing(module: str, why: str) -> None:
     if importlib.util.find_spec(module) is None:
         raise _core.InputError(f"{module} is not installed ({why}). Install it: pip install {module}.")
@@ -628,7 +645,7 @@ def _simulated(
     def written(numbers: Array, lost: list[Failure]) -> Simulation:
         failures = write_records(file, files.records, numbers, work.seed, lost)
         study = Simulation(files, len(numbers), work.seed, failures, failed)
-        study.is_repeatable = engine.is_repeatable
+        study.is_repeatable, study._tune_hint = engine.is_repeatable, _tune_hint(work.run)
         return study
 
     with (

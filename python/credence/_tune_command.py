@@ -1,0 +1,99 @@
+"""``python -m credence tune``: the parameters of a function in a module, or the keys of a scenario."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import warnings
+from collections.abc import Sequence
+
+from credence import Failure, InputError
+from credence._names import printable
+from credence._simulate_command import CONSISTENT, _executor, _function, _stop
+from credence.judging import NOT_REFUTED
+
+STOPPED = 130
+
+
+def _free(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
+    """Bounds from words such as ``q=0.01:10``; None for a key without."""
+    free: dict[str, tuple[float, float] | None] = {}
+    for word in words:
+        name, equals, bounds = word.partition("=")
+        try:
+            low, high = map(float, bounds.split(":")) if equals else (0.0, 0.0)
+        except ValueError:
+            raise InputError(f"invalid --free {printable(word)} (must be NAME=LOW:HIGH). Give two numbers.") from None
+        free[name] = (low, high) if equals else None
+    return free
+
+
+def _start(words: Sequence[str]) -> dict[str, float]:
+    start = {}
+    for word in words:
+        name, _, value = word.partition("=")
+        try:
+            start[name] = float(value)
+        except ValueError:
+            raise InputError(f"invalid --start {printable(word)} (must be NAME=NUMBER). Give a number.") from None
+    return start
+
+
+def parser() -> argparse.ArgumentParser:
+    made = argparse.ArgumentParser(
+        prog="python -m credence tune",
+        description="Find the parameters of a filter: credence.tune from the command line.",
+        epilog="Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.",
+    )
+    made.add_argument("what", metavar="MODULE:FUNCTION|SCENARIO.ini", help="a function as of simulate, or a scenario")
+    made.add_argument(
+        "--free", nargs="+", action="extend", required=True, metavar="NAME=LOW:HIGH",
+        help="a parameter and its bounds, which a scenario's key need not have",
+    )  # fmt: skip
+    made.add_argument("--start", nargs="+", action="extend", default=[], metavar="NAME=NUMBER")
+    made.add_argument("--trials", type=float, default=200, help="that are tuned on (200)")
+    made.add_argument("--held-out", type=float, help="that are judged (at least 2000)")
+    made.add_argument("--seed", type=int, default=1)
+    made.add_argument("--objective", default="errors", metavar="NAME", help="errors, innovations or nees")
+    made.add_argument("--executor", metavar="WHERE", help="a number of processes, dask, dask:ADDRESS or mpi")
+    made.add_argument(
+        "--batch", type=int, nargs="?", const=True, default=False, help="the function takes many generators"
+    )
+    made.add_argument("--arm", help="that of the scenario which is tuned (its first)")
+    made.add_argument("--program", metavar="PATH", help="the program of a world of your own")
+    made.add_argument("--picture", metavar="FILE", help="draw the score over the parameters: .png, .pdf or .svg")
+    made.add_argument("--require", choices=["consistent", "no-finding"], help="exit code 1 where the filter is not")
+    made.add_argument("--quiet", action="store_true", help="no progress")
+    return made
+
+
+def main(words: Sequence[str]) -> int:
+    """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
+    given = parser().parse_args(words)
+    signal.signal(signal.SIGTERM, _stop)
+    warnings.showwarning = lambda message, *_: print(f"credence tune: {message}", file=sys.stderr)
+    try:
+        from credence.tuning import tune
+
+        if given.picture is not None and not given.picture.lower().endswith((".png", ".pdf", ".svg")):
+            raise InputError(f"invalid --picture {printable(given.picture)} (must be a .png, .pdf or .svg). Name one.")
+        is_function = ":" in given.what and not given.what.endswith(".ini")
+        with _executor(given.executor) as executor:
+            tuned = tune(
+                _function(given.what) if is_function else given.what, free=_free(given.free), trials=given.trials,
+                seed=given.seed, objective=given.objective, start=_start(given.start), executor=executor,
+                batch=given.batch, held_out=given.held_out, arm=given.arm, program=given.program,
+                progress=False if given.quiet else None,
+            )  # fmt: skip
+            print(tuned, end="")
+            if given.picture is not None:
+                tuned.plot().save(given.picture)
+    except KeyboardInterrupt:
+        print("credence tune: it was stopped.", file=sys.stderr)
+        return STOPPED
+    except (InputError, Failure) as error:
+        print(f"credence tune: {error}", file=sys.stderr)
+        return 2 if isinstance(error, InputError) else 1
+    passes = {"consistent": CONSISTENT, "no-finding": NOT_REFUTED}.get(given.require or "")
+    return 1 if passes and tuned.verdict.verdict not in passes else 0

@@ -1,0 +1,328 @@
+"""`credence.tune`: what it finds and how well it says that it knows it, where it cannot know, and what it refuses."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import math
+import pathlib
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+from scipy import stats
+from test_simulate import environment, refusal
+
+import credence
+from credence import _scores
+from credence._tune_search import FAILED, Objective, Space
+
+SIGMA, K, N = 2.0, 100, 100
+CLOSED_FORM_ERROR = SIGMA / math.sqrt(2 * N * K)
+MATCHED = """[scenario]
+name = matched
+poses = 8
+[arms]
+controllers = fixed
+[model]
+process = translation
+[truth]
+deformation = walk
+edge_noise = independent
+[sensor]
+range_min = 0
+range_max = inf
+"""
+
+
+def normal(rng, s=1.0, t=1.0, bias=0.0, fails_above=1e9):
+    """Errors and innovations with a sigma of 2, of which the filter says that it is s t."""
+    if s > fails_above:
+        raise ValueError("s is too large")
+    error, innovation = SIGMA * rng.standard_normal((2, K, 1))
+    P = np.full((K, 1, 1), (s * t) ** 2)
+    return credence.Run(error + bias, P, innovation=innovation, innovation_covariance=P)
+
+
+def rms(seed=1, trials=N, which=0):
+    """The best s: the root mean square over all trials, which has a closed form."""
+    values = [SIGMA * credence.simulating.generator(seed, i).standard_normal((2, K, 1))[which] for i in range(trials)]
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def tuned(free=("s",), **options):
+    bounds = {"s": (0.05, 50), "t": (0.1, 10), "bias": (-3, 3)}
+    box = {name: bounds[name] for name in free}
+    return credence.tune(normal, free=box, **{"trials": N, "held_out": 500, **options})
+
+
+@pytest.fixture(scope="module")
+def best():
+    return tuned()
+
+
+# What is minimised.
+
+
+def test_scores_are_those_of_scipy_and_of_the_verdict():
+    rng = np.random.default_rng(3)
+    error, root = rng.standard_normal((6, 3)), rng.standard_normal((6, 3, 3))
+    P = root @ root.transpose(0, 2, 1) + np.eye(3)
+    densities = _scores.step_scores("errors", {"error": error, "covariance": P})
+    expected = [-stats.multivariate_normal(np.zeros(3), cov).logpdf(e) for e, cov in zip(error, P)]
+    assert densities == pytest.approx(expected, rel=1e-12)
+    error[0, 1] = P[0, 1] = P[0, :, 1] = np.nan  # a component that is not yet in the state
+    for arrays in ({"error": error, "covariance": P}, {"error": error, "covariance": np.diagonal(P, axis1=1, axis2=2)}):
+        ours = _scores.run_score("errors", arrays, {})
+        judged = credence.judge(arrays["error"][None], arrays["covariance"][None], segments="off")
+        assert ours == pytest.approx(judged["log_score"]["mean"], rel=1e-12)
+    joint = {"error": error, "covariance": P}
+    ratio = credence.judge(error[None], P[None], segments="off")["nees_ratio"]["mean"]
+    assert _scores.run_score("nees", joint, {}) == pytest.approx(ratio, rel=1e-12)
+    assert math.isnan(_scores.run_score("errors", {"error": error, "covariance": -P}, {}))
+
+
+def test_states_on_a_manifold_have_the_score_of_the_verdict():
+    rng = np.random.default_rng(4)
+    truth, P = rng.uniform(-1, 1, (5, 3)), np.broadcast_to(0.01 * np.eye(3), (5, 3, 3))
+    arrays = {"truth": truth, "estimate": truth + 0.1 * rng.standard_normal((5, 3)), "covariance": P}
+    words = {"texts": {"manifold": "SE2", "chart": "local"}}
+    judged = credence.judge(**{name: array[None] for name, array in arrays.items()}, **words["texts"], segments="off")
+    assert _scores.run_score("errors", arrays, words) == judged["log_score"]["mean"]
+
+
+# What is found.
+
+
+def test_the_best_and_its_error_are_those_of_the_closed_form(best):
+    value, se = best.parameters["s"]
+    assert value == pytest.approx(rms(), rel=1e-4)
+    assert se == pytest.approx(CLOSED_FORM_ERROR, rel=0.15)  # of 100 trials the spread of scores is known to 10 %
+    assert best.start == {"s": 1.0}
+    assert (best.verdict.verdict, best.verdict_before.verdict) == ("consistent", "optimistic")
+    assert best.score_after == best.verdict.log_score["mean"] < best.score_before
+    assert best.verdict["trials"] == 500
+    assert best.gains["s"] > 0
+    assert str(best.parameters["s"]) == f"{value:.3f} ± {se:.3f}"
+    assert "On 500 other trials (seed 2):" in str(best)
+
+
+def test_innovations_need_no_truth():
+    found = tuned(objective="innovations")
+    assert found.parameters["s"].value == pytest.approx(rms(which=1), rel=1e-4)
+    assert found.score_after < found.score_before
+
+
+def test_the_custom_of_the_field_is_warned_of():
+    with pytest.warns(UserWarning, match="NEES/n first is 1"):
+        custom = tuned(free=("s", "t"), objective="nees")
+    product = math.prod(one.value for one in custom.parameters.values())
+    assert product == pytest.approx(rms(), rel=1e-3)
+    assert len(custom.unidentified) == 1
+
+
+def test_directions_that_the_score_does_not_see_are_named():
+    found = tuned(free=("s", "t"))
+    (flat,) = found.unidentified
+    assert flat["s"] == pytest.approx(-flat["t"], rel=0.01)
+    assert math.prod(one.value for one in found.parameters.values()) == pytest.approx(rms(), rel=1e-4)
+    assert all(math.isinf(one.se) for one in found.parameters.values())
+    assert "does not tell" in str(found)
+    assert "with" in str(found).split("does not tell")[1]
+
+
+def test_a_parameter_that_is_not_used_is_named():
+    found = credence.tune(lambda rng, s=1.0, nothing=1.0: normal(rng, s), free={"s": (0.1, 9), "nothing": (0.1, 9)},
+                          trials=50, held_out=100)  # fmt: skip
+    assert "The score does not see nothing." in str(found)
+    assert math.isfinite(found.parameters["s"].se)
+
+
+def test_a_bound_that_is_active_is_said():
+    found = credence.tune(normal, free={"s": (0.1, 1.5)}, trials=50, held_out=100)
+    assert found.at_bounds == {"s": "upper"}
+    assert found.parameters["s"].value == pytest.approx(1.5, rel=1e-3)
+    assert "s is at its upper bound" in str(found)
+
+
+def test_parameters_without_logarithms():
+    found = tuned(free=("s", "bias"), start={"bias": 1.0})
+    assert abs(found.parameters["bias"].value) < 4 * found.parameters["bias"].se
+    assert found.parameters["bias"].se == pytest.approx(SIGMA / math.sqrt(N * K), rel=0.15)
+
+
+def test_a_region_that_fails_is_survived():
+    def run(rng, s=20.0):
+        return normal(rng, s, fails_above=5)
+
+    found = credence.tune(run, free={"s": (0.05, 50)}, trials=50, held_out=100)
+    assert found.parameters["s"].value == pytest.approx(rms(trials=50), rel=1e-3)
+    assert "had no result, the first: trial 0: ValueError: s is too large" in str(found)
+    assert found.verdict_before is None
+    assert math.isnan(found.score_before)
+    with pytest.raises(credence.Failure, match=r"no point has a result.*s is too large"):
+        credence.tune(run, free={"s": (6, 50)}, trials=50)
+
+
+def test_trials_without_a_result_count_as_the_worst_of_the_others():
+    class Given:
+        objective, trouble = "errors", ""
+
+        def scores(self, values, count):
+            return np.where(np.arange(count) < values["failed"], np.nan, np.arange(count, dtype=float))
+
+    space = Space(("failed",), np.array([0.0]), np.array([200.0]))
+    objective = Objective(Given(), space, 200, lambda *_: None)
+    assert objective.scores(np.array([200 * FAILED / 200])).tolist() == [199, 199, *range(2, 200)]
+    assert np.isnan(objective.scores(np.array([0.1]))).all()
+
+
+def test_what_no_parameter_repairs_is_said():
+    found = credence.tune(lambda rng, s=1.0: normal(rng, s, bias=3.0), free={"s": (0.1, 10)}, trials=100)
+    assert found.verdict.verdict not in ("consistent", "undecided")
+    assert "do not make the filter right" in str(found)
+    assert "left: biased" in str(found)
+
+
+def test_the_bits_are_the_same_for_any_executor(best):
+    with concurrent.futures.ThreadPoolExecutor(3) as threads:
+        for executor in (2, threads):
+            found = tuned(executor=executor)
+            assert (found.parameters, found.verdict.json[0]["log_score"]) == (
+                best.parameters,
+                best.verdict.json[0]["log_score"],
+            )
+            assert str(found) == str(best)
+
+
+def test_many_at_once():
+    def run(rngs, s=1.0):
+        each = [normal(rng, s).arrays for rng in rngs]
+        return credence.Run(*(np.array([one[name] for one in each]) for name in ("error", "covariance")))
+
+    found = credence.tune(run, free={"s": (0.05, 50)}, trials=N, batch=128, held_out=500)
+    assert found.parameters["s"].value == pytest.approx(rms(), rel=1e-4)
+
+
+# One log.
+
+
+def test_a_log_is_tuned_on_its_first_half():
+    rng = np.random.default_rng(5)
+    error = SIGMA * rng.standard_normal((3000, 1))
+    found = credence.tune(lambda s: credence.Run(error, np.full((3000, 1, 1), s**2)), free={"s": (0.1, 10)})
+    assert found.parameters["s"].value == pytest.approx(np.sqrt(np.mean(error[:1500] ** 2)), rel=1e-4)
+    assert found.parameters["s"].se == pytest.approx(SIGMA / math.sqrt(2 * 1500), rel=0.2)
+    second = stats.norm(0, found.parameters["s"].value).logpdf(error[1500:]).mean()
+    assert found.score_after == pytest.approx(-second, rel=1e-6)
+    assert "segments of the first half of the log" in str(found)
+
+
+def test_a_log_without_truth():
+    nu = SIGMA * np.random.default_rng(6).standard_normal((2000, 2))
+
+    def log(s):
+        return credence.Run(innovation=nu, innovation_covariance=np.broadcast_to(s**2 * np.eye(2), (2000, 2, 2)))
+
+    found = credence.tune(log, free={"s": (0.1, 10)}, objective="innovations")
+    assert found.parameters["s"].value == pytest.approx(np.sqrt(np.mean(nu[:1000] ** 2)), rel=1e-4)
+    assert "has no error beside a covariance" in refusal(lambda: credence.tune(log, free={"s": (0.1, 10)}))
+
+
+# Scenarios.
+
+
+def test_keys_of_a_scenario():
+    text = MATCHED + "[filter]\nmeasurement = 0.5\n"
+    found = credence.tune(text, free=["filter.measurement"], trials=500, held_out=20_000)
+    value, se = found.parameters["filter.measurement"]
+    assert abs(value - 1) < 4 * se < 0.2
+    assert (found.verdict.verdict, found.verdict_before.verdict) == ("consistent", "optimistic")
+
+
+# Pictures.
+
+
+def test_the_profile_has_its_least_at_the_best(best, tmp_path):
+    values, scores = best.profile("s", points=5)
+    assert values[2] == pytest.approx(best.parameters["s"].value, rel=0.01)
+    assert np.argmin(scores) == 2
+    best.plot().save(tmp_path / "s.png")
+    assert (tmp_path / "s.png").stat().st_size > 3000
+    with pytest.raises(KeyError, match=r"t was not tuned\. Those are s"):
+        best.profile("t")
+    assert "cannot make a grid of 1 parameters" in refusal(best.grid)
+
+
+def test_the_picture_of_two_has_contours():
+    found = tuned(free=("s", "bias"), start={"bias": 1.0}, trials=20)
+    x, y, scores = found.grid(4)
+    assert scores.shape == (len(x), len(y))
+    assert np.nanmin(scores) == pytest.approx(found._objective.value(found._w), abs=1e-9)
+    assert len(found.plot().axes) == 3
+
+
+# What is refused.
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"free": {}}, "invalid free (it has no parameter)"),
+        ({"free": "s"}, "invalid free=s (must be a dict of bounds)"),
+        ({"free": ["s"]}, "invalid free (s has no bounds)"),
+        ({"free": {"s": 3}}, "invalid free (s has no pair of bounds)"),
+        ({"free": {"s": (2, 1)}}, "invalid free (s is from 2 to 1)"),
+        ({"free": {"s": (0, math.inf)}}, "must be a finite number"),
+        ({"free": {"u": (1, 2)}}, "invalid free (u is no option of the function). It has rng, s, t, bias"),
+        ({"free": {"s": (2, 3)}}, "invalid start (s starts at 1, outside 2 to 3)"),
+        ({"free": {"s": (0.1, 3)}, "start": {"t": 1}}, "invalid start (t is not free)"),
+        ({"free": {"s": (0.1, 3)}, "objective": "rmse"}, "invalid objective=rmse"),
+        ({"free": {"s": (0.1, 3)}, "trials": 1}, "invalid trials=1"),
+        ({"free": {"s": (0.1, 3)}, "arm": "kf"}, "arm and program: say nothing of a function"),
+    ],
+)
+def test_bad_input_is_refused(options, said):
+    assert said in refusal(lambda: credence.tune(normal, **options))
+
+
+def test_bad_keys_are_refused():
+    for free, said in (
+        (["filter.nothing"], "filter.nothing is no key of the scenario"),
+        (["sensor.noise"], "sensor.noise is constant, not a number"),
+        ({"filter.measurement": (-1, 1)}, "filter.measurement"),
+    ):
+        assert said in refusal(lambda free=free: credence.tune(MATCHED, free=free))
+    assert "no likelihood of its innovations" in refusal(
+        lambda: credence.tune(MATCHED, free=["filter.measurement"], objective="innovations")
+    )
+    assert "cannot be called" in refusal(lambda: credence.tune(3, free={"s": (1, 2)}))
+
+
+# python -m credence tune.
+
+
+def command(*words, folder):
+    done = subprocess.run(
+        [sys.executable, "-m", "credence", "tune", *words], capture_output=True, text=True, check=False, cwd=folder,
+        env=environment(str(pathlib.Path(__file__).parent)), timeout=60,
+    )  # fmt: skip
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_the_command_says_what_the_function_says(tmp_path, best):
+    words = ["test_tune:normal", "--trials", f"{N}", "--held-out=500", "--quiet"]
+    code, said, err = command(*words, "--free", "s=0.05:50", "--picture=s.png", "--require=no-finding", folder=tmp_path)
+    assert (code, said, err) == (0, str(best), "")
+    assert (tmp_path / "s.png").exists()
+    assert command(*words, "--free", "s=a:b", folder=tmp_path)[::2] == (
+        2,
+        "credence tune: invalid --free s=a:b (must be NAME=LOW:HIGH). Give two numbers.\n",
+    )
+
+
+def test_no_warning_but_of_the_custom(best):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tuned(trials=20, held_out=50)
