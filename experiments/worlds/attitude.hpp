@@ -15,6 +15,7 @@ struct Attitude {
     struct Settings {
         double period = 0.1, rate = 0.5, gyro = 0.01, walk = 1e-4, direction = 0.05;
         double sigma_attitude = 0.3, sigma_bias = 0.05;
+        double gyro_factor = 1, walk_factor = 1, direction_factor = 1;
     };
     static constexpr const char* name = "attitude";
     static void keys(credence::OwnKeys<Settings>& keys) {
@@ -25,6 +26,9 @@ struct Attitude {
         keys.real("sensor.direction", &Settings::direction, 1e-6, 1, "sigma of a direction, each axis (1)");
         keys.real("start.attitude", &Settings::sigma_attitude, 1e-6, 3, "sigma of the first attitude, each axis (rad)");
         keys.real("start.bias", &Settings::sigma_bias, 1e-9, 1, "sigma of the first bias, each axis (rad/s)");
+        keys.real("filter.gyro", &Settings::gyro_factor, 1e-6, 1e6, "factor on the believed sensor.gyro");
+        keys.real("filter.walk", &Settings::walk_factor, 1e-6, 1e6, "factor on the believed sensor.walk");
+        keys.real("filter.direction", &Settings::direction_factor, 1e-6, 1e6, "factor on the believed directions");
     }
     static std::vector<credence::Component> components(const Settings&) {
         return {{"phi_x", "rad"}, {"phi_y", "rad"}, {"phi_z", "rad"},
@@ -74,6 +78,9 @@ struct Attitude {
         enum Source { start, gyro, walk, direction };
         const double T = s.period;
         const bool global = trial.arm() == 2, resets = trial.arm() == 1;
+        const double believed_gyro = s.gyro_factor * s.gyro, believed_walk = s.walk_factor * s.walk;
+        const double believed_direction = s.direction_factor * s.direction;
+        const double variance = believed_direction * believed_direction;
         const Vector<double> directions[] = {{0, 0, 1}, {0.6, 0, -0.8}};  // gravity, and a magnetic field
         const auto draw = [&](int source, int k, int index) {
             const Eigen::Matrix<Real, 2, 1> two = trial.normal(source, k, 2 * index);
@@ -82,7 +89,7 @@ struct Attitude {
 
         Turn<Real> estimate, R = Turn<Real>::exp(s.sigma_attitude * draw(start, 0, 0));
         Vector<Real> bias = Vector<Real>::Zero(), b = s.sigma_bias * draw(start, 0, 1);
-        Eigen::Matrix<double, 6, 1> sigma, seen = Eigen::Matrix<double, 6, 1>::Constant(s.direction * s.direction);
+        Eigen::Matrix<double, 6, 1> sigma, seen = Eigen::Matrix<double, 6, 1>::Constant(variance);
         sigma << s.sigma_attitude, s.sigma_attitude, s.sigma_attitude, s.sigma_bias, s.sigma_bias, s.sigma_bias;
         Matrix<Real> P = sigma.cwiseAbs2().cast<Real>().asDiagonal();
         const Matrix<double> noise = seen.asDiagonal();
@@ -96,8 +103,8 @@ struct Attitude {
 
             estimate = estimate * Turn<Real>::exp(angle);
             const Matrix<Real> F = motion_jacobian(global, estimate, angle, T);
-            const Eigen::Matrix<Real, 3, 3> by_noise = s.gyro * F.template topRightCorner<3, 3>();
-            Matrix<Real> Q = Matrix<Real>::Identity() * Real(s.walk * s.walk);
+            const Eigen::Matrix<Real, 3, 3> by_noise = believed_gyro * F.template topRightCorner<3, 3>();
+            Matrix<Real> Q = Matrix<Real>::Identity() * Real(believed_walk * believed_walk);
             Q.template topLeftCorner<3, 3>() = by_noise * by_noise.transpose();
             P = credence::predicted_covariance(F, P, Q);
 

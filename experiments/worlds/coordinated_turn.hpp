@@ -17,6 +17,7 @@ struct CoordinatedTurn {
         double period = 1, rate = 0.05, acceleration = 0.1, sigma_rate = 0.002;
         double place = 2000, speed = 100, first_place = 200, first_speed = 10, first_rate = 0.02;
         double sigma_range = 5, sigma_bearing = 0.05;
+        double acceleration_factor = 1, rate_factor = 1, range_factor = 1, bearing_factor = 1;
     };
     static constexpr const char* name = "coordinated_turn";
     static void keys(credence::OwnKeys<Settings>& keys) {
@@ -31,6 +32,11 @@ struct CoordinatedTurn {
         keys.real("start.sigma_rate", &Settings::first_rate, 1e-9, 1, "of the first turn (rad/s)");
         keys.real("sensor.range", &Settings::sigma_range, 1e-6, 1e4, "sigma of a range (m)");
         keys.real("sensor.bearing", &Settings::sigma_bearing, 1e-6, 1, "sigma of a bearing (rad)");
+        keys.real("filter.acceleration", &Settings::acceleration_factor, 1e-6, 1e6,
+                  "factor on the believed noise.acceleration");
+        keys.real("filter.rate", &Settings::rate_factor, 1e-6, 1e6, "factor on the believed noise.rate");
+        keys.real("filter.range", &Settings::range_factor, 1e-6, 1e6, "factor on the believed sensor.range");
+        keys.real("filter.bearing", &Settings::bearing_factor, 1e-6, 1e6, "factor on the believed sensor.bearing");
     }
     static std::vector<credence::Component> components(const Settings&) {
         return {{"p_x", "m"}, {"p_y", "m"}, {"v_x", "m/s"}, {"v_y", "m/s"}, {"rate", "rad/s"}};
@@ -83,9 +89,12 @@ struct CoordinatedTurn {
         G.topLeftCorner<2, 2>().diagonal().setConstant(s.acceleration * T * T / 2);
         G.block<2, 2>(2, 0).diagonal().setConstant(s.acceleration * T);
         G(4, 2) = s.sigma_rate;
-        const Matrix<double> Q = G * G.transpose();
+        Eigen::Matrix<double, 5, 3> believed = s.acceleration_factor * G;
+        believed(4, 2) = s.rate_factor * s.sigma_rate;
+        const Matrix<double> Q = believed * believed.transpose();
         const Plane<double> sigma(s.sigma_range, s.sigma_bearing);
-        const Eigen::Matrix2d R = sigma.cwiseAbs2().asDiagonal();
+        const Plane<double> believed_sigma(s.range_factor * s.sigma_range, s.bearing_factor * s.sigma_bearing);
+        const Eigen::Matrix2d R = believed_sigma.cwiseAbs2().asDiagonal();
 
         Vector<double> sigma_0, x_0;
         sigma_0 << s.first_place, s.first_place, s.first_speed, s.first_speed, s.first_rate;
