@@ -21,7 +21,8 @@ def noises(sensors):
 
 def run(rng, variances="its own", span=np.pi):
     sensors = Sensors(num_samples=101, freq=100.0, gyr_noise=GYRO, span=(-span, span), rng=rng)
-    given = {"noises": noises(sensors)} if variances == "simulated" else {}
+    its_own = isinstance(variances, str) and variances == "its own"
+    given = {} if its_own else {"noises": noises(sensors) if isinstance(variances, str) else variances}
     ekf = EKF(frequency=100.0, magnetic_ref=sensors.reference_magnetic_vector, P=P0, **given)
     ekf.mag = sensors.magnetometers  # update() expects magnetometers where the filter has some
     start = Rotation.from_quat(sensors.quaternions[0], scalar_first=True)

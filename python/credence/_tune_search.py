@@ -23,6 +23,7 @@ STEP = 0.03  # of w in differences, where it is a logarithm; of others this shar
 AT_BOUND = 1e-3  # of the range: so near to a bound is at it
 FLAT = 1e-6  # a curvature is nothing if it is less than this share of the largest
 DOUBTFUL = 0.05  # share of the largest curvature below which one is measured along its own direction
+FEW_TRIALS = 20  # the spread of fewer curvatures says nothing
 FAILED = 0.01  # share of trials without a result beyond which a point has none
 
 
@@ -223,7 +224,7 @@ def _is_flat(objective: Objective, w: Array, v: Array, found: Array, largest: fl
     if objective.source.objective != "nees":
         here = objective.scores(w)
         found = (objective.scores(w + STEP * v) + objective.scores(w - STEP * v) - 2 * here) / STEP**2
-    mean, spread = float(np.mean(found)), float(np.std(found, ddof=1)) if len(found) > 1 else 0.0
+    mean, spread = float(np.mean(found)), float(np.std(found, ddof=1)) if len(found) >= FEW_TRIALS else 0.0
     return not mean > max(2 * spread / math.sqrt(len(found)), FLAT * largest)
 
 

@@ -215,15 +215,26 @@ class ScenarioSource:
 
 
 class LogSource:
-    """One log: a function of the parameters on fixed data, tuned on its first half in segments that are trials."""
+    """One log: a function of the parameters on fixed data, whose first steps are tuned on in segments that are trials.
 
-    def __init__(self, run: Callable[..., Any], objective: str, start: Values) -> None:
+    Attributes
+    ----------
+    first : int
+        Steps that are tuned on; all others are held out.
+    segments : int
+    """
+
+    def __init__(self, run: Callable[..., Any], objective: str, start: Values, held_out: int | None) -> None:
         self.run, self.objective, self.trouble = run, objective, ""
         arrays, texts = self._arrays(start)
-        self.half = len(step_scores(objective, arrays)) // 2
-        said = self._judged(arrays, texts, slice(0, None))
-        steps = (said["segments"] or {}).get("steps") or max(1, self.half // FEW_SEGMENTS)
-        self.segments = max(1, self.half // int(steps))
+        steps = len(step_scores(objective, arrays))
+        self.first = steps // 2 if held_out is None else steps - held_out
+        if self.first < 2:
+            raise InputError(f"invalid held_out={held_out} (the log has {steps} steps). Leave some to tune on.")
+        self.rest = slice(self.first % steps, None)  # where nothing is held out, all of it
+        said = self._judged(arrays, texts, slice(None))
+        each = (said["segments"] or {}).get("steps") or self.first // FEW_SEGMENTS
+        self.segments = max(2, self.first // max(1, int(each)))
 
     def _arrays(self, values: Values) -> tuple[dict[str, Array], dict[str, Any]]:
         run = self.run(**values)
@@ -245,7 +256,7 @@ class LogSource:
 
     def scores(self, values: Values, count: int) -> Array:
         try:
-            each = self._step_scores(values)[: self.half]
+            each = self._step_scores(values)[: self.first]
         except InputError:
             raise
         except Exception as error:
@@ -260,8 +271,8 @@ class LogSource:
 
     def judged(self, values: Values, count: int) -> tuple[Verdict, float]:
         arrays, texts = self._arrays(values)
-        each = step_scores(self.objective, arrays)[self.half :]
-        return self._judged(arrays, texts, slice(self.half, None)), float(np.nanmean(each))
+        each = step_scores(self.objective, arrays)[self.rest]
+        return self._judged(arrays, texts, self.rest), float(np.nanmean(each))
 
     def close(self) -> None:
         """Nothing is kept running."""

@@ -388,7 +388,7 @@ def tune(
     what : function, path, or str
         ``run(rng, **options)`` as of `simulate`. Or a scenario, as a path or a text of several lines. Or, for one log,
         a function of the parameters alone that runs the filter on its data and returns a `Run`: its first half is tuned
-        on, in segments that take the place of trials, and its second half is held out.
+        on, in segments that take the place of trials, and the rest is held out.
     free : dict of pairs, or list of str
         The bounds of each parameter: ``{"q": (0.01, 10)}``. Of a scenario these are keys, such as
         ``filter.measurement``, whose bounds may be left out: a hundredth and a hundred times of their values.
@@ -404,7 +404,8 @@ def tune(
     executor, batch
         As of `simulate`; with a scenario as of `run`.
     held_out : int
-        Trials that are judged (`trials`, at least 2,000).
+        Trials that are judged (`trials`, at least 2,000); of a log its last steps (half of them), or 0: what it was
+        tuned on is judged, and nothing shows whether too little was tuned on.
     arm : str
         That of the scenario which is tuned (its first).
     program : path
@@ -429,7 +430,7 @@ def tune(
     if not is_scenario and not callable(what):
         raise InputError(f"invalid what (a {type(what).__name__} cannot be called). Give a function, or a scenario.")
     count, root = _whole("trials", trials, 2, 2**40), _whole("seed", seed, 0, 2**64 - 1)
-    others = max(count, HELD_OUT) if held_out is None else _whole("held_out", held_out, 1, 2**40)
+    others = max(count, HELD_OUT) if held_out is None else _whole("held_out", held_out, 0, 2**40)
     size = 0 if batch is False else BATCH if batch is True else _whole("batch", batch, 1, 2**20)
     if not is_scenario and (arm is not None or program is not None):
         raise InputError("arm and program: say nothing of a function. Leave them out.")
@@ -449,13 +450,15 @@ def tune(
         source = (
             FunctionSource(Work(what, {}, root, size, None), objective, executor)
             if takes_generator
-            else LogSource(what, objective, first)
+            else LogSource(what, objective, first, None if held_out is None else others)
         )
     if objective == "nees":
         warnings.warn(CUSTOM, stacklevel=2)
     if isinstance(source, LogSource):
         count = source.segments
-        said = (f"{count} segments of the first half of the log", "its second half")
+        whole = source.rest.start == 0
+        part = "the log" if whole else f"the first {source.first:,} steps of the log"
+        said = (f"{count} segments of {part}", "the same log" if whole else "the rest of it")
     else:
         said = (f"{count:,} trials (seed {root})", f"{others:,} other trials (seed {held_out_seed(root)})")
     try:

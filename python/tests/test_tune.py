@@ -208,7 +208,7 @@ def test_many_at_once():
 # One log.
 
 
-def test_a_log_is_tuned_on_its_first_half():
+def test_a_log_is_tuned_on_its_first_steps():
     rng = np.random.default_rng(5)
     error = SIGMA * rng.standard_normal((3000, 1))
     found = credence.tune(lambda s: credence.Run(error, np.full((3000, 1, 1), s**2)), free={"s": (0.1, 10)})
@@ -216,7 +216,10 @@ def test_a_log_is_tuned_on_its_first_half():
     assert found.parameters["s"].se == pytest.approx(SIGMA / math.sqrt(2 * 1500), rel=0.2)
     second = stats.norm(0, found.parameters["s"].value).logpdf(error[1500:]).mean()
     assert found.score_after == pytest.approx(-second, rel=1e-6)
-    assert "segments of the first half of the log" in str(found)
+    assert "segments of the first 1,500 steps of the log" in str(found)
+    whole = credence.tune(lambda s: credence.Run(error, np.full((3000, 1, 1), s**2)), free={"s": (0.1, 10)}, held_out=0)
+    assert whole.parameters["s"].value == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-4)
+    assert whole.verdict["segments"]["count"] > 100
 
 
 def test_a_log_without_truth():
