@@ -36,6 +36,17 @@ python_venv() {
   touch "$1/complete"
 }
 
+# credence_python: sets CREDENCE_PYTHON to an interpreter that has credence and what python/requirements.txt names. Unless
+# it is one already, they are installed once in build/in-the-wild, credence from this tree; remove that folder to have a
+# newer credence. Trials have processes of their own, and sums of matrices must not depend on threads.
+credence_python() {
+  if [ -z "${CREDENCE_PYTHON:-}" ]; then
+    python_venv build/in-the-wild python/requirements.txt .
+    CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
+  fi
+  export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+}
+
 build_progress_seconds=10
 
 # show_progress LOG: says every ten seconds how much of a build is done, until it is killed or the script ends.

@@ -7,15 +7,10 @@
 #   bash experiments/in_the_wild/run.sh [--short] [--page] [NAME…]     NAME: a part of a library's or study's name
 #   bash experiments/in_the_wild/run.sh --causes                       what becomes of NEES where a cause is removed
 #
-# CREDENCE_PYTHON is an interpreter that has credence and what python/requirements.txt names. Without it they are
-# installed once in build/in-the-wild, credence from this tree; remove that folder to have a newer credence.
+# CREDENCE_PYTHON may name an interpreter (experiments/setup.sh).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-if [ -z "${CREDENCE_PYTHON:-}" ]; then
-  source experiments/setup.sh
-  python_venv build/in-the-wild python/requirements.txt .
-  CREDENCE_PYTHON=$PWD/build/in-the-wild/bin/python
-fi
-export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1  # trials have processes; sums of matrices do not depend on threads
+source experiments/setup.sh
+credence_python
 if [ "${1:-}" = --causes ]; then exec "$CREDENCE_PYTHON" experiments/in_the_wild/causes.py; fi
 exec "$CREDENCE_PYTHON" experiments/in_the_wild/run.py --reports results/in_the_wild "$@"

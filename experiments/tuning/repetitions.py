@@ -19,7 +19,7 @@ import numpy as np
 
 import credence
 
-ATTITUDE = ("[scenario]\nworld = attitude\nposes = 51\n[start]\nattitude = 0.1\n",
+ATTITUDE = ("[scenario]\nworld = attitude\nposes = 51\n[sensor]\ngyro = 0.05\nwalk = 0.005\n[start]\nattitude = 0.1\n",
             {"filter.gyro": 1, "filter.walk": 1, "filter.direction": 1}, "local")  # fmt: skip
 TURN = ("[scenario]\nworld = coordinated_turn\nposes = 41\n[sensor]\nbearing = 0.005\n[start]\nsigma_place = 20\n"
         "sigma_rate = 0.005\n",
