@@ -1,10 +1,15 @@
 """Prints the tables of docs/tuning.md.
 
     python run.py [NAME...]      tracker, radar, document, attitude, nile; all without a name
+
+`gallery` as a name is of worlds of one's own, whose program is that of experiments/worlds: GALLERY, or
+build/worlds/gallery.
 """
 
 from __future__ import annotations
 
+import os
+import pathlib
 import sys
 import warnings
 from collections.abc import Iterable
@@ -108,6 +113,20 @@ def nile() -> None:
     level, noise = (found.parameters[name].value for name in ("level", "noise"))
     rows = [["Durbin and Koopman 2012, 2.10", "1469.1", "15099"], ["credence.tune", f"{level:.1f}", f"{noise:.0f}"]]
     table(" | variance of the level's yearly step | variance of a measurement", rows)
+
+
+def gallery() -> None:
+    program, rows = os.environ.get("GALLERY", "build/worlds/gallery"), []
+    worlds = pathlib.Path(__file__).parents[1] / "worlds"
+    for world, arm, keys in (
+        ("attitude", "local", ("gyro", "walk", "direction")),
+        ("coordinated_turn", "ekf", ("acceleration", "rate", "range", "bearing")),
+    ):
+        found = credence.tune(worlds / f"{world}.ini", free=[f"filter.{key}" for key in keys], arm=arm, program=program)
+        values = ", ".join(f"{key} {one}" for key, one in zip(keys, found.parameters.values()))
+        for told, row in zip(("all 1", values), sides(found, "all")):
+            rows.append([f"{world}, {row[0]}", told, row[1], *row[3:]])
+    table("world | factors | log score | NEES/n | verdict", rows)
 
 
 if __name__ == "__main__":

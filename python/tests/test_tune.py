@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -18,7 +19,7 @@ import credence
 from credence import _scores
 from credence._tune_search import FAILED, Objective, Space
 
-SIGMA, K, N = 2.0, 100, 100
+SIGMA, K, N, FEW = 2.0, 100, 100, 25
 CLOSED_FORM_ERROR = SIGMA / math.sqrt(2 * N * K)
 MATCHED = """[scenario]
 name = matched
@@ -45,7 +46,7 @@ def normal(rng, s=1.0, t=1.0, bias=0.0, fails_above=1e9):
     return credence.Run(error + bias, P, innovation=innovation, innovation_covariance=P)
 
 
-def rms(seed=1, trials=N, which=0):
+def rms(seed=1, trials=FEW, which=0):
     """The best s: the root mean square over all trials, which has a closed form."""
     values = [SIGMA * credence.simulating.generator(seed, i).standard_normal((2, K, 1))[which] for i in range(trials)]
     return float(np.sqrt(np.mean(np.square(values))))
@@ -54,12 +55,12 @@ def rms(seed=1, trials=N, which=0):
 def tuned(free=("s",), **options):
     bounds = {"s": (0.05, 50), "t": (0.1, 10), "bias": (-3, 3)}
     box = {name: bounds[name] for name in free}
-    return credence.tune(normal, free=box, **{"trials": N, "held_out": 500, **options})
+    return credence.tune(normal, free=box, **{"trials": FEW, "held_out": 40, **options})
 
 
 @pytest.fixture(scope="module")
 def best():
-    return tuned()
+    return tuned(trials=N, held_out=400)
 
 
 # What is minimised.
@@ -97,15 +98,15 @@ def test_states_on_a_manifold_have_the_score_of_the_verdict():
 
 def test_the_best_and_its_error_are_those_of_the_closed_form(best):
     value, se = best.parameters["s"]
-    assert value == pytest.approx(rms(), rel=1e-4)
+    assert value == pytest.approx(rms(trials=N), rel=1e-4)
     assert se == pytest.approx(CLOSED_FORM_ERROR, rel=0.15)  # of 100 trials the spread of scores is known to 10 %
     assert best.start == {"s": 1.0}
     assert (best.verdict.verdict, best.verdict_before.verdict) == ("consistent", "optimistic")
     assert best.score_after == best.verdict.log_score["mean"] < best.score_before
-    assert best.verdict["trials"] == 500
+    assert best.verdict["trials"] == 400
     assert best.gains["s"] > 0
     assert str(best.parameters["s"]) == f"{value:.3f} ± {se:.3f}"
-    assert "On 500 other trials (seed 2):" in str(best)
+    assert "On 400 other trials (seed 2):" in str(best)
 
 
 def test_innovations_need_no_truth():
@@ -134,13 +135,13 @@ def test_directions_that_the_score_does_not_see_are_named():
 
 def test_a_parameter_that_is_not_used_is_named():
     found = credence.tune(lambda rng, s=1.0, nothing=1.0: normal(rng, s), free={"s": (0.1, 9), "nothing": (0.1, 9)},
-                          trials=50, held_out=100)  # fmt: skip
+                          trials=FEW, held_out=40)  # fmt: skip
     assert "The score does not see nothing." in str(found)
     assert math.isfinite(found.parameters["s"].se)
 
 
 def test_a_bound_that_is_active_is_said():
-    found = credence.tune(normal, free={"s": (0.1, 1.5)}, trials=50, held_out=100)
+    found = credence.tune(normal, free={"s": (0.1, 1.5)}, trials=FEW, held_out=40)
     assert found.at_bounds == {"s": "upper"}
     assert found.parameters["s"].value == pytest.approx(1.5, rel=1e-3)
     assert "s is at its upper bound" in str(found)
@@ -149,20 +150,20 @@ def test_a_bound_that_is_active_is_said():
 def test_parameters_without_logarithms():
     found = tuned(free=("s", "bias"), start={"bias": 1.0})
     assert abs(found.parameters["bias"].value) < 4 * found.parameters["bias"].se
-    assert found.parameters["bias"].se == pytest.approx(SIGMA / math.sqrt(N * K), rel=0.15)
+    assert found.parameters["bias"].se == pytest.approx(SIGMA / math.sqrt(FEW * K), rel=0.3)
 
 
 def test_a_region_that_fails_is_survived():
     def run(rng, s=20.0):
         return normal(rng, s, fails_above=5)
 
-    found = credence.tune(run, free={"s": (0.05, 50)}, trials=50, held_out=100)
-    assert found.parameters["s"].value == pytest.approx(rms(trials=50), rel=1e-3)
+    found = credence.tune(run, free={"s": (0.05, 50)}, trials=FEW, held_out=40)
+    assert found.parameters["s"].value == pytest.approx(rms(), rel=1e-3)
     assert "had no result, the first: trial 0: ValueError: s is too large" in str(found)
     assert found.verdict_before is None
     assert math.isnan(found.score_before)
     with pytest.raises(credence.Failure, match=r"no point has a result.*s is too large"):
-        credence.tune(run, free={"s": (6, 50)}, trials=50)
+        credence.tune(run, free={"s": (6, 50)}, trials=FEW)
 
 
 def test_trials_without_a_result_count_as_the_worst_of_the_others():
@@ -179,13 +180,14 @@ def test_trials_without_a_result_count_as_the_worst_of_the_others():
 
 
 def test_what_no_parameter_repairs_is_said():
-    found = credence.tune(lambda rng, s=1.0: normal(rng, s, bias=3.0), free={"s": (0.1, 10)}, trials=100)
+    found = credence.tune(lambda rng, s=1.0: normal(rng, s, bias=3.0), free={"s": (0.1, 10)}, trials=FEW, held_out=200)
     assert found.verdict.verdict not in ("consistent", "undecided")
     assert "do not make the filter right" in str(found)
     assert "left: biased" in str(found)
 
 
-def test_the_bits_are_the_same_for_any_executor(best):
+def test_the_bits_are_the_same_for_any_executor():
+    best = tuned()
     with concurrent.futures.ThreadPoolExecutor(3) as threads:
         for executor in (2, threads):
             found = tuned(executor=executor)
@@ -201,7 +203,7 @@ def test_many_at_once():
         each = [normal(rng, s).arrays for rng in rngs]
         return credence.Run(*(np.array([one[name] for one in each]) for name in ("error", "covariance")))
 
-    found = credence.tune(run, free={"s": (0.05, 50)}, trials=N, batch=128, held_out=500)
+    found = credence.tune(run, free={"s": (0.05, 50)}, trials=FEW, batch=16, held_out=40)
     assert found.parameters["s"].value == pytest.approx(rms(), rel=1e-4)
 
 
@@ -238,16 +240,31 @@ def test_a_log_without_truth():
 
 def test_keys_of_a_scenario():
     text = MATCHED + "[filter]\nmeasurement = 0.5\n"
-    found = credence.tune(text, free=["filter.measurement"], trials=500, held_out=20_000)
+    found = credence.tune(text, free=["filter.measurement"], trials=300, held_out=20_000)
     value, se = found.parameters["filter.measurement"]
-    assert abs(value - 1) < 4 * se < 0.2
+    assert abs(value - 1) < 4 * se < 0.25
     assert (found.verdict.verdict, found.verdict_before.verdict) == ("consistent", "optimistic")
+
+
+def test_the_program_of_a_world_of_ones_own(tmp_path):
+    own = os.environ.get("CREDENCE")
+    if own is None:  # the package's own program, which starts more slowly
+        own = tmp_path / "program"
+        own.write_text(f'#!/bin/sh\nexec {sys.executable} -m credence "$@"\n')
+        own.chmod(0o755)
+    options = {"free": {"filter.measurement": (0.3, 3)}, "trials": 20, "held_out": 20}
+    found = credence.tune(MATCHED, program=own, **options)
+    assert found.parameters == credence.tune(MATCHED, **options).parameters
+    assert found.score_after == found.verdict.log_score["mean"]
+    with pytest.raises(credence.InputError, match=r"filter\.measurement"):
+        credence.tune(MATCHED, program=own, free={"filter.measurement": (-1, 3)})
 
 
 # Pictures.
 
 
-def test_the_profile_has_its_least_at_the_best(best, tmp_path):
+def test_the_profile_has_its_least_at_the_best(tmp_path):
+    best = tuned()
     values, scores = best.profile("s", points=5)
     assert values[2] == pytest.approx(best.parameters["s"].value, rel=0.01)
     assert np.argmin(scores) == 2
@@ -259,7 +276,7 @@ def test_the_profile_has_its_least_at_the_best(best, tmp_path):
 
 
 def test_the_picture_of_two_has_contours():
-    found = tuned(free=("s", "bias"), start={"bias": 1.0}, trials=20)
+    found = tuned(free=("s", "bias"), start={"bias": 1.0}, trials=10)
     x, y, scores = found.grid(4)
     assert scores.shape == (len(x), len(y))
     assert np.nanmin(scores) == pytest.approx(found._objective.value(found._w), abs=1e-9)
@@ -314,10 +331,10 @@ def command(*words, folder):
     return done.returncode, done.stdout, done.stderr
 
 
-def test_the_command_says_what_the_function_says(tmp_path, best):
-    words = ["test_tune:normal", "--trials", f"{N}", "--held-out=500", "--quiet"]
+def test_the_command_says_what_the_function_says(tmp_path):
+    words = ["test_tune:normal", "--trials", f"{FEW}", "--held-out=40", "--quiet"]
     code, said, err = command(*words, "--free", "s=0.05:50", "--picture=s.png", "--require=no-finding", folder=tmp_path)
-    assert (code, said, err) == (0, str(best), "")
+    assert (code, said, err) == (0, str(tuned()), "")
     assert (tmp_path / "s.png").exists()
     assert command(*words, "--free", "s=a:b", folder=tmp_path)[::2] == (
         2,
@@ -325,7 +342,7 @@ def test_the_command_says_what_the_function_says(tmp_path, best):
     )
 
 
-def test_no_warning_but_of_the_custom(best):
+def test_no_warning_but_of_the_custom():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        tuned(trials=20, held_out=50)
+        tuned(trials=10, held_out=30)
