@@ -454,6 +454,8 @@ def tune(
         )
     if objective == "nees":
         warnings.warn(CUSTOM, stacklevel=2)
+    if others == 0 and not isinstance(source, LogSource):
+        raise InputError("invalid held_out=0 (only a log can be judged on what it was tuned on). Give some trials.")
     if isinstance(source, LogSource):
         count = source.segments
         whole = source.rest.start == 0

@@ -300,6 +300,7 @@ def test_the_picture_of_two_has_contours():
         ({"free": {"s": (0.1, 3)}, "start": {"t": 1}}, "invalid start (t is not free)"),
         ({"free": {"s": (0.1, 3)}, "objective": "rmse"}, "invalid objective=rmse"),
         ({"free": {"s": (0.1, 3)}, "trials": 1}, "invalid trials=1"),
+        ({"free": {"s": (0.1, 3)}, "held_out": 0}, "invalid held_out=0"),
         ({"free": {"s": (0.1, 3)}, "arm": "kf"}, "arm and program: say nothing of a function"),
     ],
 )
