@@ -12,7 +12,8 @@ fi
 credence=${CREDENCE:-$built}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$credence" run "$root"/experiments/seed/kf-*.ini --trials 10000 --seed 1 --quiet -o "$work/seed.h5"
+quiet=$([ -t 2 ] || echo --quiet)  # progress is for a terminal
+"$credence" run "$root"/experiments/seed/kf-*.ini --trials 10000 --seed 1 $quiet -o "$work/seed.h5" >/dev/null
 PYTHONPATH=$root/python${PYTHONPATH:+:$PYTHONPATH} "${PYTHON:-python3}" -m credence.pictures "$work/seed.h5" \
   --kind place --credence "$credence" -o "$work/pictures" >"$work/log"
 mkdir -p "$output"

@@ -31,6 +31,7 @@ test_packages="catch2 librandom123-dev hdf5-tools mandoc"
 # names, unless there is one that is newer than the file.
 python_venv() {
   if [ "$1/complete" -nt "$2" ]; then return 0; fi
+  echo "making the Python environment $1; if it compiles credence, that takes some minutes" >&2
   /usr/bin/python3 -m venv "$1"
   "$1/bin/pip" install --quiet --disable-pip-version-check "${@:3}" -r "$2" >&2
   touch "$1/complete"
@@ -58,22 +59,33 @@ show_progress() {
   done
 }
 
-# build DIRECTORY TARGET [cmake arguments]: configures and builds, saying its progress; shows the log where it fails.
-build() {
-  local directory=$1 target=$2 log progress status=0
-  shift 2
-  mkdir -p "$directory"
-  log=$directory/build.log
+# with_progress LOG COMMAND...: runs a build, its output in LOG, and says its progress; shows LOG's end where it fails.
+with_progress() {
+  local log=$1 progress status=0
+  shift
   : >"$log"
-  echo "building $target in $directory"
   show_progress "$log" &
   progress=$!
-  { cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" &&
-      cmake --build "$directory" --target "$target" -j "$(nproc)"; } >"$log" 2>&1 || status=1
+  "$@" >"$log" 2>&1 || status=1
   kill "$progress" 2>/dev/null || true
   wait "$progress" 2>/dev/null || true
   [ $status -eq 0 ] && return 0
   tail -n 60 "$log" >&2
   echo "the build failed; all of it is in $log" >&2
   return 1
+}
+
+# build DIRECTORY TARGET [cmake arguments]: configures and builds, saying its progress.
+build() {
+  local directory=$1 target=$2
+  shift 2
+  mkdir -p "$directory"
+  echo "building $target in $directory"
+  with_progress "$directory/build.log" configure_and_build "$directory" "$target" "$@"
+}
+
+configure_and_build() {
+  local directory=$1 target=$2
+  shift 2
+  cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"
 }

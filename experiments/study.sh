@@ -13,6 +13,9 @@ build_program() {
   build build credence "${tests[@]}"
 }
 
+# A run shows its progress on a terminal only; its report is made later.
+quiet=$([ -t 2 ] || echo --quiet)
+
 # study STEM TRIALS SCENARIO.ini [section.key=value | --sweep=section.key=VALUES ...]: runs the study, or resumes it,
 # and writes its report: STEM.h5 and STEM.csv.
 study() {
@@ -22,7 +25,7 @@ study() {
     case $setting in --*) settings+=("$setting") ;; *) settings+=(--set "$setting") ;; esac
   done
   mkdir -p "$(dirname "$stem")"
-  "$credence" run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume --quiet
+  "$credence" run "$scenario" -o "$stem.h5" --trials "$trials" "${settings[@]}" --resume $quiet >/dev/null
   "$credence" report "$stem.h5" --format csv >"$stem.csv"
 }
 

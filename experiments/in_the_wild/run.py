@@ -113,6 +113,8 @@ def judge_filter(study: Study, chosen: Filter, module: Any, record: Record, shor
 def judge_study(study: Study, short: bool, kept: pathlib.Path | None) -> Iterator[Row]:
     """The rows of a study. Filters of the same options share their trials, which a folder keeps if it is given."""
     module = importlib.import_module(study.module)
+    if sys.stderr.isatty():
+        print(f"{study.library}, {study.name}", file=sys.stderr)
     for options, alike in itertools.groupby(study.filters, key=lambda chosen: chosen.options):
         filters, begun = list(alike), time.perf_counter()
         name = re.sub(r"[^a-z0-9]+", "-", f"{study.name} {' '.join(map(str, options.values()))}".lower()).strip("-")

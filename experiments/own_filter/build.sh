@@ -16,6 +16,15 @@ build_project() {
     prefix=$(cd "$folder/../../../.." && pwd)
   fi
   mkdir -p "$project"
-  { cmake -S "$folder" -B "$project" -DCMAKE_PREFIX_PATH="$prefix" "$@" && cmake --build "$project"; } >"$project.log" 2>&1 ||
-    { tail -n 30 "$project.log"; exit 1; }
+  if declare -F with_progress >/dev/null; then
+    with_progress "$project.log" configure_project "$folder" "$project" "$@" >&2
+  else
+    configure_project "$folder" "$project" "$@" >"$project.log" 2>&1 || { tail -n 30 "$project.log"; exit 1; }
+  fi
+}
+
+configure_project() {
+  local folder=$1 project=$2
+  shift 2
+  cmake -S "$folder" -B "$project" -DCMAKE_PREFIX_PATH="$prefix" "$@" && cmake --build "$project"
 }

@@ -12,9 +12,10 @@ if [ -z "${GALLERY:-}" ]; then
   GALLERY=build/worlds/gallery
 fi
 mkdir -p results
+quiet=$([ -t 2 ] || echo --quiet)  # progress is for a terminal
 for scenario in "$here"/*.ini; do
   name=$(basename "$scenario" .ini)
-  "$GALLERY" run "$scenario" --trials "${1:-4000}" --quiet --overwrite -o "results/$name.h5"
+  "$GALLERY" run "$scenario" --trials "${1:-4000}" $quiet --overwrite -o "results/$name.h5" >/dev/null
   "$GALLERY" report "results/$name.h5" | awk -v RS= '/verdict +NEES/ { print $0 "\n" }'
   [ -n "${PICTURES:-}" ] || continue
   PYTHONPATH=$here/../../python "${PYTHON:-python3}" -m credence.pictures "results/$name.h5" --kind nees -o build/pictures
@@ -22,9 +23,10 @@ for scenario in "$here"/*.ini; do
   cp "build/pictures/$name-nees.png" "$PICTURES/$name.png"
 done
 if [ "${1:-4000}" -eq 4000 ] && [ -f "$here/../claims.py" ]; then
-  "$GALLERY" run "$here/coordinated_turn.ini" --set scenario.name=long --trials 200000 --quiet --overwrite -o results/long.h5
-  "$GALLERY" run "$here/attitude.ini" --set scenario.name=sure --set start.attitude=0.1 --trials 4000 --quiet --overwrite \
-    -o results/sure.h5
+  "$GALLERY" run "$here/coordinated_turn.ini" --set scenario.name=long --trials 200000 $quiet --overwrite \
+    -o results/long.h5 >/dev/null
+  "$GALLERY" run "$here/attitude.ini" --set scenario.name=sure --set start.attitude=0.1 --trials 4000 $quiet \
+    --overwrite -o results/sure.h5 >/dev/null
   reports=()
   for file in long sure $(basename -s .ini "$here"/*.ini); do
     "$GALLERY" report "results/$file.h5" --format csv >"results/$file.csv"
