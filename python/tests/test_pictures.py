@@ -201,7 +201,7 @@ def test_a_map_of_a_consistent_filter_is_pale_and_labelled(monkeypatch):
     monkeypatch.setattr(verdicts, "_report", report)
     for width in (style.PAGE, style.COLUMN):
         picture = drawn(studies.one_scenario(), "map", arm="fixed.ekf", width=width)
-        (cells,) = [one for one in picture.axes[0].collections if one.get_array() is not None]
+        cells, _ = [one for one in picture.axes[0].collections if one.get_array() is not None]
         red, green, blue, _ = cells.cmap(cells.norm(np.log2([0.94, 1.06]))).T
         assert min(red.min(), green.min(), blue.min()) > 0.65  # near white: of the darkest cells, 0.02 to 0.4
         labels = [float(label.get_text()) for label in picture.axes[1].get_yticklabels()]
@@ -292,10 +292,12 @@ def test_the_percentile_of_a_published_run_is_that_of_the_report():
 
 def test_a_map_has_the_colours_of_its_values():
     picture = drawn(studies.one_scenario(), "map", arm="fixed.ekf", credence=studies.CREDENCE)
-    (cells,) = [one for one in picture.axes[0].collections if one.get_array() is not None]
+    cells, hatched = [one for one in picture.axes[0].collections if one.get_array() is not None]
     parts = {part["arm"]: part for part in studies.printed("report", studies.one_scenario())}
     ratios = np.array([group["anees"]["ratio"] for group in parts["fixed.ekf"]["groups"]])
     np.testing.assert_allclose(np.asarray(cells.get_array()).reshape(ratios.shape), np.log2(ratios))
+    assert hatched.get_hatch()
+    assert np.ma.count(hatched.get_array()) == np.sum(ratios > 1.05)
     assert picture.axes[1].get_yticklabels()[0].get_text()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -137,6 +138,8 @@ def chi_square(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) 
 
 def accuracy(scenario: Scenario, arms: Arms, width: float, *, group: str = "all") -> Picture:
     """The root mean squared error of a component group at each step (line), and what P says of it (dots)."""
+    measured: dict[str, Any] = {"linestyle": "-"}
+    believed: dict[str, Any] = {"linestyle": ":", "linewidth": 1.4, "markerfacecolor": "white"}
     picture, axis = style.one_panel(width)
     errors, variances = _of(arms, "squared_error", group), _of(arms, "variance", group)
     found, unit = {}, ""
@@ -146,15 +149,16 @@ def accuracy(scenario: Scenario, arms: Arms, width: float, *, group: str = "all"
         shown, step = style.thinned(error, said), arm["step"]
         line = style.arm_line(place, len(arms), shown.size)
         style.interval(axis, step[shown], error[shown], low[shown], high[shown], line, len(arms))
-        axis.plot(step[shown], error[shown], **line | {"linestyle": "-"})
-        axis.plot(step[shown], said[shown], color=line["color"], linestyle=":", linewidth=1.4)
+        axis.plot(step[shown], error[shown], **line | measured)
+        axis.plot(step[shown], said[shown], **line | believed)
         found[name], unit = float(np.sqrt(np.mean(error**2) / np.mean(said**2))), arm.describe(errors[name]).units
     style.step_axis(axis, arm["step"])
     what = "the state" if group == "all" else group
     axis.set(ylabel=f"error of {what} [{style.root_of(unit)}]", ylim=(0, None))
-    lines = [(Line2D([], [], color=style.GREY, linestyle="-"), "root mean square"),
-             (Line2D([], [], color=style.GREY, linestyle=":"), "what P says")]
-    style.key(axis, [*style.arm_entries(places(arms)), *lines], width)
+    grey: dict[str, Any] = {"color": style.GREY, "marker": "o"}
+    lines = [(Line2D([], [], **grey | measured), "root mean square"),
+             (Line2D([], [], **grey | believed), "what P says")]
+    style.key(axis, [*style.arm_entries(places(arms), **measured), *lines], width)
     picture.title(f"Error of {what} over what P says: " + style.ranked(found, lambda ratio: f"{ratio:.2f}"),
-                  f"{source(scenario)}; shades or bars: 95 % intervals; dots: root of the mean variance")
+                  f"{source(scenario)}; shades or bars: 95 % intervals; dots, hollow marks: root of the mean variance")
     return picture

@@ -8,6 +8,7 @@ import io
 import itertools
 import os
 import pathlib
+import re
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
@@ -31,6 +32,7 @@ ARM_COLOURS = [BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY]  # [Okabe and Ito 20
 ARM_LINES: list[Any] = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
 ARM_MARKERS = ["o", "s", "^", "D", "v", "P"]
 POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+NO_BREAK = "\N{NO-BREAK SPACE}"
 COLOURS = 128  # of a .png
 MOST_POINTS = 2000  # of a curve; more are not seen in print, and make files large
 PRINT: dict[Any, Any] = {
@@ -52,7 +54,11 @@ class Picture(Figure):
     def title(self, message: str, source: str) -> None:
         """The message in bold, and below the picture what it is drawn from."""
         letters = self.get_figwidth() * 25.4
-        self.suptitle(textwrap.fill(message, int(letters / 1.85)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+        together = re.sub(r"\([^()]{,16}\)", lambda short: short[0].replace(" ", NO_BREAK), message)
+        # Neither between a number and its unit, nor before the last word.
+        together = re.sub(r"(?<=\d) (?=[^\s\d(]{1,4}(?:[\s,;)]|$))| (?=\S+$)", NO_BREAK, together)
+        lines = textwrap.fill(together, int(letters / 1.85)).replace(NO_BREAK, " ")
+        self.suptitle(lines, x=0.01, ha="left", fontsize=8.5, fontweight="bold")
         self.supxlabel(textwrap.fill(source, int(letters / 1.5)), x=0.01, ha="left", fontsize=7, color=GREY)
 
     def leave_title_out(self) -> None:
@@ -269,9 +275,10 @@ def beside(axis: Axes, entries: Sequence[tuple[Any, str]]) -> None:
     axis.legend(handles, labels, loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
 
 
-def arm_entries(places: Mapping[str, int]) -> list[tuple[Any, str]]:
-    """Line and mark of each arm, of that place in its scenario."""
-    return [(Line2D([], [], **arm_style(place, len(places)) | arm_mark(place)), arm) for arm, place in places.items()]
+def arm_entries(places: Mapping[str, int], **drawn: Any) -> list[tuple[Any, str]]:
+    """Line and mark of each arm, of that place in its scenario; `drawn` is what the picture draws otherwise."""
+    return [(Line2D([], [], **arm_style(place, len(places)) | arm_mark(place) | drawn), arm)
+            for arm, place in places.items()]
 
 
 def band_entry(label: str) -> tuple[Any, str]:

@@ -19,6 +19,7 @@ from .style import Picture
 NAMES = {"trace_P": "trace(P) at the last pose", "unseen": "features unseen, summed over the poses",
          "pose_error": "squared pose error, summed over the poses", "nees_ratio": "NEES / n, mean over the steps",
          "squared_error": "squared error, summed over the steps"}
+STAR_POINTS = (5, 4, 6, 3)  # of the star of an arm's published run
 
 
 def name_of(column: str, scenario: Scenario) -> str:
@@ -44,14 +45,15 @@ def draw_distribution(axis: Axes, scenario: Scenario, arms: Arms, column: str,
         line, marks = style.arm_style(place, len(arms)), style.arm_mark(place)
         hollow = {"color": line["color"], "markerfacecolor": "none", "markersize": 6, "markeredgewidth": 1.1}
         said, published = name, []
-        for given, mark in ((runs or {}, marks["marker"]), (scenario.published(column), "*")):
+        star = (STAR_POINTS[place % len(STAR_POINTS)], 1)
+        for given, mark in ((runs or {}, marks["marker"]), (scenario.published(column), star)):
             if name not in given or values.size == 0:
                 continue
             share = percentile(values, given[name])
             words = f"{given[name]:.4g} ({share:.1f} % below)"
             drawn = hollow | {"marker": mark, "linestyle": "none"}
             axis.plot(given[name], share, clip_on=False, zorder=3, **drawn)
-            if mark != "*":
+            if mark != star:
                 said, marks = f"{name}, this run {words}", hollow | {"marker": mark}
             else:
                 published.append((Line2D([], [], **drawn), f"{name}, published {words}"))

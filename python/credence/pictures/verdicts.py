@@ -66,7 +66,7 @@ def verdicts(scenario: Scenario, arms: Arms, width: float, *, credence: str | No
 
 def ratio_map(scenario: Scenario, arms: Arms, width: float, *, arm: str | None = None,
               credence: str | None = None) -> Picture:
-    """NEES / dimension of one arm by component group and step: blue is pessimistic, red is optimistic."""
+    """NEES / dimension of one arm by component group and step: blue is pessimistic, red and hatched optimistic."""
     name = arm or next(iter(arms))
     part = _report(scenario, {name: arms[name]}, credence)[name]
     groups = [group["group"] for group in part["groups"]]
@@ -112,9 +112,11 @@ def _cells(picture: Picture, axis: Any, logs: FloatArray, arm: Arm, reach: float
     if logs.shape[1] <= GAPS_UP_TO:
         gaps = {"edgecolors": "white", "linewidth": 0.3}
     image = axis.pcolormesh(edges, np.arange(rows + 1) - 0.5, logs, cmap="RdBu_r", vmin=-reach, vmax=reach, **gaps)
+    optimistic = np.ma.masked_where(~(logs > np.log2(1.05)), logs)  # hatched, because red and blue print alike in grey
+    axis.pcolor(edges, np.arange(rows + 1) - 0.5, optimistic, alpha=0, hatch="/////", rasterized=True)
     style.step_axis(axis, steps)
     ticks = _ticks(reach, 12 + 6.5 * rows)
     bar = picture.colorbar(image, ax=axis, ticks=np.log2(ticks), extend="both", aspect=18, pad=0.02)
     bar.ax.set_yticklabels([f"{tick:g}" for tick in ticks])
     bar.ax.minorticks_off()
-    bar.set_label("NEES / dimension\n(red: optimistic)")
+    bar.set_label("NEES / dimension\n(red, hatched: optimistic)")
