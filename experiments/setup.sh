@@ -55,7 +55,7 @@ show_progress() {
   local start=$SECONDS done_part
   while sleep "$build_progress_seconds" >/dev/null 2>&1 && kill -0 $$ 2>/dev/null; do
     done_part=$(grep -o '^\[[^]]*\]' "$1" | tail -n 1 | tr -d '[ ]' || true)
-    echo "  ${done_part:-configuring} after $((SECONDS - start)) s"
+    echo "  ${done_part:-at work} after $((SECONDS - start)) s"
   done
 }
 

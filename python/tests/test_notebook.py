@@ -1,4 +1,4 @@
-"""The notebook goes from nothing to a verdict in ten cells, as it is committed."""
+"""The notebook goes from nothing to its verdicts and pictures, as it is committed."""
 
 from __future__ import annotations
 
@@ -7,23 +7,21 @@ import re
 import pytest
 import studies
 
-nbformat = pytest.importorskip("nbformat")
+jupytext = pytest.importorskip("jupytext")
 nbclient = pytest.importorskip("nbclient")
 pytest.importorskip("credence._core")
 
 
 def test_the_notebook_comes_to_both_verdicts(tmp_path):
-    path = studies.ROOT / "analysis" / "first-verdict.ipynb"
-    notebook = nbformat.read(path, as_version=4)
-    assert len(notebook.cells) == 10
-    assert not any(cell.get("outputs") for cell in notebook.cells)
+    notebook = jupytext.read(studies.ROOT / "docs" / "notebooks" / "first_verdict.py")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
-    said = ["".join(output.get("text", "") for output in cell.get("outputs", [])) for cell in notebook.cells]
-    assert re.search(r"right/record +consistent ", said[3])
-    assert re.search(r"wrong/record +optimistic ", said[4])
-    assert said[5].startswith("AssertionError: the filter is not consistent")
-    shown = [output["data"] for cell in notebook.cells for output in cell.get("outputs", []) if "data" in output]
-    assert "circle" in shown[0]["text/html"]
-    assert "image/png" in shown[1]
-    assert "image/gif" in shown[2]
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    said = "".join(output.get("text", "") for output in outputs)
+    assert re.search(r"run_right/record +consistent ", said)
+    assert re.search(r"run_wrong/record +optimistic ", said)
+    assert "AssertionError: the filter is not consistent" in said
+    shown = [output["data"] for output in outputs if "data" in output]
+    kinds = [next(kind for kind in ("text/html", "image/png", "image/gif") if kind in data) for data in shown]
+    assert kinds == ["image/png", "text/html", "image/png", "image/gif"]
+    assert "circle" in shown[1]["text/html"]
     assert (tmp_path / "trial.gif").read_bytes().startswith(b"GIF89a")

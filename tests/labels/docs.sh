@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Label docs: every output and table of README.md and docs that takes minutes to reproduce; the core tests check the
-# others. So do the claims of docs/theory/planning.md, as a second program finds them; the filters of other libraries
-# get the verdicts that docs/in-the-wild.md explains, and the gallery's worlds those of docs/gallery.md.
+# others. The site is made without a warning; the claims of docs/theory/planning.md are as a second program finds them;
+# the filters of other libraries get the verdicts that docs/in-the-wild.md explains, and the gallery's worlds those of
+# docs/gallery.md.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, scipy, matplotlib, PIL' 2>/dev/null ||
   { echo "SKIPPED: python3-h5py, python3-scipy, python3-matplotlib or python3-pil is not installed"; exit 0; }
@@ -16,6 +17,7 @@ source tests/labels/package.sh
 package_venv "$work"
 export CREDENCE_PYTHON=$work/venv/bin/python
 PYTHON=/usr/bin/python3 FURTHER_PROGRAMS="$work/own_filter/tracker $work/worlds/gallery" bash tests/docs/check.sh --slow "$@"
+bash docs/build.sh >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 /usr/bin/python3 tests/planning_claims.py docs/theory/planning.md
 bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
 experiments=$PWD/experiments

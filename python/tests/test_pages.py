@@ -1,0 +1,94 @@
+"""The pages: their blocks of Python run, from the top of a page to its bottom; their links lead somewhere; and the site
+has all of them."""
+
+from __future__ import annotations
+
+import pathlib
+import re
+
+import matplotlib
+import numpy as np
+import pytest
+import studies
+from conftest import SCENARIO
+from test_adapters import tum_pair
+
+import credence
+
+PAGES = sorted(
+    page
+    for folder in ("", "docs", "docs/theory", "analysis")
+    for page in (studies.ROOT / folder).glob("*.md")
+    if "```python" in page.read_text()
+)
+
+
+def block_lines(page: pathlib.Path) -> list[str]:
+    """The blocks of a page, each at its line, so that what fails names it."""
+    text = page.read_text()
+    found = re.finditer(r"^```python\n(.+?)^```$", text, re.MULTILINE | re.DOTALL)
+    return ["\n" * text[: block.start(1)].count("\n") + block[1] for block in found]
+
+
+@pytest.fixture
+def names(page, tmp_path, monkeypatch):
+    """What the pages take as given: errors and covariances of a filter that is right, trajectories, and files."""
+    monkeypatch.chdir(tmp_path)
+    matplotlib.use("agg")
+    study = studies.swept() if page.name == "sweep.md" else studies.two_scenarios()
+    for name, made in (("study", study), ("credence", study), ("swept", studies.swept()),
+                       ("trial", studies.trajectory())):
+        (tmp_path / f"{name}.h5").symlink_to(made)
+    (tmp_path / "scenario.ini").write_text(SCENARIO)
+    covariances = np.broadcast_to(np.eye(3) + 0.5, (400, 5, 3, 3))
+    errors = np.random.default_rng(1).standard_normal((400, 5, 3)) @ np.linalg.cholesky(covariances[0, 0]).T
+    estimates, truths = tum_pair(tmp_path, np.eye(6).ravel())
+    return {"credence": credence, "np": np, "errors": errors, "covariances": covariances, "estimates": estimates,
+            "truths": truths, "__name__": "page"}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(studies.ROOT).as_posix())
+def test_the_blocks_of_a_page_run(page, names):
+    blocks = block_lines(page)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, str(page), "exec"), names)
+
+
+def test_the_pages_are_found():
+    assert {page.name for page in PAGES} >= {"README.md", "in-the-wild.md", "python.md", "results-format.md"}
+
+
+NAV = (studies.ROOT / "docs" / "mkdocs.yml").read_text().partition("\nnav:\n")[2].partition("\nvalidation:")[0]
+LISTED = set(re.findall(r"^ *- (?:[^:#\n]+: )?([\w./-]+\.md)$", NAV, re.MULTILINE))
+WRITTEN = {
+    path.relative_to(studies.ROOT).as_posix()
+    for pattern in ("docs/*.md", "docs/theory/*.md", "[RC]*.md", "analysis/README.md")
+    for path in studies.ROOT.glob(pattern)
+}
+HEADERS = {f"include/credence/{path.name}.md" for path in (studies.ROOT / "include" / "credence").glob("*.hpp")}
+MADE = {"python/credence.md", "include/credence/index.md", *HEADERS}  # by docs/site/hooks.py
+NOTEBOOKS = {f"docs/notebooks/{path.stem}.md" for path in (studies.ROOT / "docs" / "notebooks").glob("*.py")}
+
+
+def test_the_site_leads_to_every_page():
+    assert LISTED == WRITTEN | MADE | NOTEBOOKS
+
+
+def anchors(page: pathlib.Path) -> set[str]:
+    """Those of the headings of a page, as code hosts make them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    found = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
+
+
+@pytest.mark.parametrize("name", sorted(WRITTEN))
+def test_links_lead_somewhere(name):
+    page = studies.ROOT / name
+    text = re.sub(r"^```.*?^```|`[^`\n]*`", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    for target, anchor in re.findall(r"\]\(([^)\s#]*)(?:#([^)\s]+))?\)", text):
+        if re.match(r"https?:", target):
+            continue
+        path = (page.parent / target).resolve() if target else page
+        assert path.exists(), target
+        assert not anchor or anchor in anchors(path), f"{target}#{anchor}"
