@@ -53,6 +53,8 @@ def _target(place: str, link: str) -> str | None:
 def _page_of(target: str) -> str:
     """The page that shows a file or a folder of the project."""
     path = ROOT / target
+    if path.parent == ROOT / "docs" / "notebooks":
+        return target.removesuffix(".py") + ".md"
     if path.is_dir():
         return f"{target}/README.md" if (path / "README.md").is_file() else f"{target}/index.md"
     return target if path.suffix in (".md", ".png") else f"{target}.md"

@@ -8,7 +8,6 @@ import tempfile
 
 import jupytext
 import nbformat
-from jupyter_client.manager import AsyncKernelManager
 from nbclient import NotebookClient
 from nbconvert import MarkdownExporter
 
@@ -17,8 +16,8 @@ def main(folder: pathlib.Path) -> None:
     for path in sorted((pathlib.Path(__file__).parents[1] / "notebooks").glob("*.py")):
         notebook = jupytext.read(path)
         with tempfile.TemporaryDirectory() as work:
-            kernel = AsyncKernelManager(kernel_name="python3", transport="ipc", ip=f"{work}/kernel")
-            NotebookClient(notebook, kernel, timeout=300, resources={"metadata": {"path": work}}).execute()
+            options = {"extra_arguments": ["--log-level=ERROR"], "resources": {"metadata": {"path": work}}}
+            NotebookClient(notebook, timeout=300, **options).execute()
         for output in [output for cell in notebook.cells for output in cell.get("outputs", [])]:
             if moving := output.get("data", {}).get("image/gif"):  # which the exporter does not know
                 output.data["text/html"] = f'<img alt="moving picture" src="data:image/gif;base64,{moving.strip()}">'

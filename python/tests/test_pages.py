@@ -53,6 +53,8 @@ def test_the_blocks_of_a_page_run(page, names):
     assert blocks
     for block in blocks:
         exec(compile(block, str(page), "exec"), names)
+    for test in [value for name, value in names.items() if name.startswith("test_")]:
+        test()
 
 
 def test_the_pages_are_found():
