@@ -17,7 +17,7 @@ def main(folder: pathlib.Path) -> None:
         notebook = jupytext.read(path)
         with tempfile.TemporaryDirectory() as work:
             options = {"extra_arguments": ["--log-level=ERROR"], "resources": {"metadata": {"path": work}}}
-            NotebookClient(notebook, timeout=300, **options).execute()
+            NotebookClient(notebook, timeout=1800, **options).execute()
         for output in [output for cell in notebook.cells for output in cell.get("outputs", [])]:
             if moving := output.get("data", {}).get("image/gif"):  # which the exporter does not know
                 output.data["text/html"] = f'<img alt="moving picture" src="data:image/gif;base64,{moving.strip()}">'
