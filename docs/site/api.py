@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SECTIONS = {
     "Verdicts": ("judge", "assert_consistent", "Verdict"),
     "Trials of a filter": ("simulate", "Run", "Simulation"),
-    "What to change": ("tune", "Tuned", "Estimate"),
+    "What to change": ("tune", "Tuned"),
     "Studies of scenarios": ("run", "resume", "merge", "show", "report", "compare", "replay", "Report", "Comparison"),
     "Files": ("open", "Study", "Scenario", "Arm", "open_trajectories", "Trajectory"),
     "Pictures": ("plot", "animate"),
