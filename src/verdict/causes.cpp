@@ -66,15 +66,18 @@ std::vector<std::size_t> all_of(const Sizes& sizes) {
 /// P is a power of what it should be.
 std::string power_of(const Sizes& sizes) {
     const std::vector<std::size_t> all = all_of(sizes);
-    double sum = 0, count = 0;
-    for (const std::vector<double>& component : sizes.variance)
-        for (const double x : component)
-            if (std::isfinite(x)) sum += x, ++count;
-    const double spread = mean_size(sizes, all, [&](auto j, auto k) { return sizes.variance[j][k] - sum / count; });
+    const auto about_mean = [&](const auto& number) {
+        double sum = 0, count = 0;
+        for (const std::size_t j : all)
+            for (std::size_t k = 0; k < sizes.steps(); ++k)
+                if (const double x = number(j, k); std::isfinite(x)) sum += x, ++count;
+        return mean_size(sizes, all, [&](auto j, auto k) { return number(j, k) - sum / count; });
+    };
     constexpr double least_spread = 0.3;  // below it a power is a factor
-    if (!(spread > least_spread)) return {};
+    if (!(about_mean([&](auto j, auto k) { return sizes.variance[j][k]; }) > least_spread)) return {};
     const auto distance = [&](double power) {
-        return mean_size(sizes, all, [&](auto j, auto k) { return sizes.error[j][k] - power * sizes.variance[j][k]; });
+        const auto off = [&](auto j, auto k) { return sizes.error[j][k] - power * sizes.variance[j][k]; };
+        return power < 0 ? about_mean(off) : mean_size(sizes, all, off);  // correlations make an inverse larger
     };
     for (const auto& [power, what] : {std::pair(2.0, "standard deviations, where variances belong"),
                                       std::pair(0.5, "squared variances"),

@@ -106,16 +106,23 @@ std::int64_t trial_of(const ScenarioResults& results, std::size_t row) {
     return results.blocks.empty() ? place : trial_numbers(results, place, 1).front();
 }
 
+/// The largest error of the detailed trials, lost ones too, by component.
+void add_largest_errors(const ArmResults& arm, std::vector<BiasEvidence>& bias) {
+    for (std::size_t i = 0; i < arm.errors.size(); ++i)
+        if (double& largest = bias[i % bias.size()].largest_error; std::abs(arm.errors[i]) > largest)
+            largest = std::abs(arm.errors[i]);
+}
+
 /// The size of the detailed trials' errors, by component.
 void add_error_sizes(const ScenarioResults& results, const ArmResults& arm, std::vector<BiasEvidence>& bias) {
     const auto n = static_cast<std::size_t>(results.state_size()), steps = static_cast<std::size_t>(results.steps());
     if (bias.size() != n) return;
+    add_largest_errors(arm, bias);
     for (std::size_t j = 0; j < n; ++j) {
         std::vector<double> sum(steps), count(steps);
         for (std::size_t i = j; i < arm.errors.size(); i += n) {
             const double error = std::abs(arm.errors[i]);
             if (std::isnan(error)) continue;
-            bias[j].largest_error = std::max(bias[j].largest_error, error);
             sum[i / n % steps] += error * error;
             ++count[i / n % steps];
         }
@@ -327,6 +334,7 @@ Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const std::vector<WorstTrial> lost = set_lost_aside(results, others);
     Evidence evidence = evidence_of_counted(results, others);
     evidence.lost_trials = lost;
+    if (evidence.bias.size() == static_cast<std::size_t>(results.state_size())) add_largest_errors(arm, evidence.bias);
     return evidence;
 }
 
