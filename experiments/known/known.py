@@ -138,7 +138,7 @@ def unwrapped(record: Record, rng: np.random.Generator) -> Record:
 
 
 def by_run(run: Run, rng: np.random.Generator) -> Record:
-    factor = np.where(rng.random(RUNS) < 0.5, 2.0, 2 / 3)  # the mean of NEES stays n
+    factor = np.where(rng.random(RUNS) < 0.5, 3.0, 0.6)  # the mean of NEES stays n
     return run.record(covariance=run.record()["covariance"] * factor[:, None, None, None])
 
 
@@ -198,7 +198,7 @@ KNOWN: dict[str, tuple[bool, str, Callable[[np.random.Generator], Record]]] = {
     "drift": (False, "a bias of the sensor that drifts", drifting),
     "outliers": (False, "4 % of measurements off by 8 sigma", outliers),
     "lost": (False, "2 % of the runs lost", of_tracker(lost)),
-    "by_run": (False, "P twice too large in half of the runs", lambda rng: by_run(tracker(normal(rng)), rng)),
+    "by_run": (False, "P three times too large in half of the runs", lambda rng: by_run(tracker(normal(rng)), rng)),
     "repeated": (False, "every run is there twice", of_tracker(doubled)),
     "S": (False, "S of the innovations 0.6 of what it is", of_tracker(lambda run: with_innovations(run, 0.6))),
     "degrees": (False, "variance of the heading in degrees", lambda rng: poses(rng, "apart", "R2 x SO2", P=DEGREES)),

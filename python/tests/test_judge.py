@@ -338,7 +338,7 @@ def test_p_that_is_wrong_where_it_is_large_and_where_it_is_small_is_found():
     right = credence.judge(errors, covariance)
     assert right.verdict == "consistent"
     wrong = errors * np.where(scale < 1, 1.15, 0.816)  # NEES/n 1.32 where P is small, 0.67 where it is large
-    found = credence.judge(wrong, covariance, margin=0.1)
+    found = credence.judge(wrong, covariance)
     calibration = [one for one in found.findings if one["about"] == "calibration"]
     assert {one["when"] for one in calibration} >= {
         "the fifth of the trials with the smallest P",

@@ -59,7 +59,8 @@ void add_hints(const Evidence& evidence, Consistency& verdict) {
             "the correlation of innovations was not tested: no row was measured often enough");
     std::vector<std::string> causes;
     if (!verdict.findings.empty()) {
-        if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) verdict.hints.push_back(repeated);
+        if (const std::string repeated = repeated_trials(evidence); !repeated.empty())
+            verdict.hints.push_back(repeated);
         causes = causes_of(evidence, verdict.limits);
     }
     std::ranges::copy(causes, std::back_inserter(verdict.hints));

@@ -35,7 +35,8 @@ std::vector<CalibratedTrial> trials_by_size(const ScenarioResults& results, cons
     const double n = results.state_size();
     for (std::size_t i = 0; i < score->size(); ++i)
         if (counts(static_cast<Status>(static_cast<int>((*status)[i]))) && std::isfinite((*score)[i]))
-            trials.push_back({2 * (*score)[i] - n * (*nees)[i], (*nees)[i]});  // but for n log 2 pi
+            // But for n log 2 pi, and without the rounding of NEES, which would sort trials of the same P by it.
+            trials.push_back({std::round(1e6 * (2 * (*score)[i] - n * (*nees)[i])) / 1e6, (*nees)[i]});
     std::ranges::stable_sort(trials, {}, &CalibratedTrial::log_det);
     return trials;
 }
