@@ -195,7 +195,7 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
 std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits) {
     const Sizes sizes = evidence.segments.count ? Sizes{} : sizes_of(evidence);
     std::vector<std::string> causes{few_of(evidence, limits), placeholders_of(sizes)};
-    for (const auto& cause : {power_of, degrees_of, exchange_of, shift_of}) {  // one explains the size of the errors
+    for (const auto& cause : {exchange_of, power_of, degrees_of, shift_of}) {  // one explains the size of the errors
         causes.push_back(cause(sizes));
         if (!causes.back().empty()) break;
     }
