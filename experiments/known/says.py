@@ -14,11 +14,11 @@ import credence
 
 
 def said(verdict: credence.Verdict) -> list[str]:
-    """The verdict, the first finding or note, and the first hint."""
+    """The verdict, the first finding or note, or else the reason why there is none, and the first hint."""
     found = [*verdict.findings, *verdict["cautions"]]
     return [
         verdict.verdict,
-        found[0]["text"] if found else "-",
+        found[0]["text"] if found else verdict.json[0].get("reason", "-"),
         verdict["hints"][0] if verdict["hints"] else "-",
     ]
 
