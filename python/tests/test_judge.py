@@ -357,7 +357,7 @@ def test_innovations_alone_are_judged_for_their_covariance():
     same = credence.judge(nu, S)
     assert right["groups"][0]["nees_ratio"] == same["groups"][0]["nees_ratio"]
     assert right["nis"] != []
-    shifted = credence.judge(innovation=nu + [0.5, 0], innovation_covariance=S)
+    shifted = credence.judge(innovation=nu + np.array([0.5, 0]), innovation_covariance=S)
     assert [one["where"] for one in shifted.findings if one["about"] == "bias"] == ["row_0"]
     missed = nu.copy()
     missed[:, 5:8] = np.nan  # nothing is measured at three steps
