@@ -122,7 +122,7 @@ private:
         note_what_is_not_finite(step, P);
         evaluate_groups(step, P);
         if (view_.largest_innovation > 0) evaluate_innovation(step);
-        note_figures(step);
+        note_figures();
         ++steps;
         return any(counts());
     }
@@ -257,7 +257,7 @@ private:
     }
 
     /// Whether every series is a number whose square, over all steps, still adds up, as figures_add_up says.
-    void note_figures(const LaneStep& step) {
+    void note_figures() {
         constexpr double largest_figure = 1e140;
         Mask<Real> good = all_lanes<Real>();
         for (int f = 0; f < view_.series_count; ++f) good = both(good, absolute(*series(f)) <= Real(largest_figure));
