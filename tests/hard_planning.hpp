@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 
@@ -93,28 +94,32 @@ private:
     Settings settings_;
 };
 
-/// Steps planned, and those whose control costs more than the least by more than 1e-9 of it (which rounding may have
-/// made negative), or by more than 1e-9 where costs are logarithms. A control that is no candidate costs infinitely
-/// much.
+/// Steps planned; those whose control is not the plain form's; those whose control costs more than the least by more
+/// than 1e-9 of it (which rounding may have made negative), or by more than 1e-9 where costs are logarithms. A control
+/// that is no candidate costs infinitely much.
 struct Tally {
-    int scenarios = 0, steps = 0, dearer = 0;
+    int scenarios = 0, steps = 0, different = 0, dearer = 0;
 };
 
-/// Compares, at every step of a pack of planned trials, what the chosen control costs with the least cost.
+/// Compares, at every step of a pack of planned trials, what the chosen control costs with the least cost: over as many
+/// steps as the controller plans ahead, by brute force of controller.hpp's plain ones.
 template <class Real>
 class Comparison {
 public:
-    Comparison(const ProblemView& view, Tally& tally) : view_(view), tally_(tally) {}
+    Comparison(const ProblemView& view, Controller controller, Tally& tally)
+        : view_(view), controller_(controller), tally_(tally) {}
 
     void started(const auto&...) {}
     void updated(const auto&...) {}
 
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
-        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
         costs_.clear();
-        plan_plainly(belief, view_.control, view_.filter, view_.sensor, layout, k, *base, *next,
-                     [&](int, Real cost) { costs_.push_back(cost); });
+        choice_ = no_choice<Real>(view_.control);
+        each_sum(belief, layout, k, view_.steps_ahead(controller_, k), [&](const Command<Real>& command, Real sum) {
+            costs_.push_back(sum);
+            choice_.offer(command, sum);
+        });
     }
 
     void predicted(int, const auto&, const auto&, const Command<Real>& command, const auto&...) {
@@ -131,45 +136,71 @@ public:
                     taken = cost;
             }
             ++tally_.steps;
+            const auto differs = [&](const Real& a, const Real& b) { return lane_of(a, lane) != lane_of(b, lane); };
+            tally_.different +=
+                least < infinity && (differs(choice_.command.turn, command.turn) ||
+                                     differs(choice_.command.move.x, command.move.x) ||
+                                     differs(choice_.command.move.y, command.move.y));
             tally_.dearer += least < infinity && taken - least > 1e-9 * (logarithm ? 1 : std::abs(least));
         }
     }
 
 private:
+    template <class Layout, class Belief>
+    void each_sum(const Belief& belief, const Layout& layout, int k, int steps,
+                  const std::function<void(const Command<Real>&, Real)>& visit) {
+        const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
+        prepare_candidates(belief, view_.filter, layout, k, *base);
+        for (int i = 0; i < view_.control.candidate_count; ++i) {
+            const Command<Real> command = command_from<Real>(view_.control.candidates[i]);
+            Real sum = candidate_cost(*base, command, view_.control, view_.filter, view_.sensor, layout, *next);
+            if (steps > 1) {
+                Real least = without_limit<Real>();
+                each_sum(*next, layout, k + 1, steps - 1,
+                         [&](const Command<Real>&, Real rest) { least = smaller(rest, least); });
+                sum = sum + least;
+            }
+            visit(command, sum);
+        }
+    }
+
     const ProblemView& view_;
+    Controller controller_;
     Tally& tally_;
     std::vector<Real> costs_;
+    Choice<Real> choice_;
 };
 
 /// One pack of trials.
 template <class Layout, class Real>
-void run_pack(const Problem& problem, Tally& tally) {
+void run_pack(const Problem& problem, Controller controller, Tally& tally) {
     const ProblemView& view = problem.view();
     const auto work = std::make_unique<Workspace<Layout, Real>>();
     std::vector<Real> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
     Real columns[column_count];
-    Comparison<Real> comparison(view, tally);
+    Comparison<Real> comparison(view, controller, tally);
     const KeyedDraws<Real> draws(1, trials_from<Real>(0), view.world.truncate);
-    run_trial(view, Controller::greedy, draws, comparison, *work, columns, figures.data());
+    run_trial(view, controller, draws, comparison, *work, columns, figures.data());
 }
 
 template <Process process, class Real>
-void run_layout(const Problem& problem, Tally& tally) {
+void run_layout(const Problem& problem, Controller controller, Tally& tally) {
     switch (problem.view().features) {
-        case 1: return run_pack<Layout<process, 1>, Real>(problem, tally);
-        case 3: return run_pack<Layout<process, 3>, Real>(problem, tally);
-        default: return run_pack<Layout<process, any_count>, Real>(problem, tally);
+        case 1: return run_pack<Layout<process, 1>, Real>(problem, controller, tally);
+        case 3: return run_pack<Layout<process, 3>, Real>(problem, controller, tally);
+        default: return run_pack<Layout<process, any_count>, Real>(problem, controller, tally);
     }
 }
 
 template <class Real>
 void run_scenario(const Settings& settings, Tally& tally) {
     const Problem problem(scenario_with(settings));
+    const Controller controller = problem.scenario().arms.controllers.front();
     ++tally.scenarios;
     if (problem.view().process == Process::heading)
-        run_layout<Process::heading, Real>(problem, tally);
+        run_layout<Process::heading, Real>(problem, controller, tally);
     else
-        run_layout<Process::translation, Real>(problem, tally);
+        run_layout<Process::translation, Real>(problem, controller, tally);
 }
 
 /// Runs so many random scenarios with further settings. Scenarios that contradict themselves are passed over: about one

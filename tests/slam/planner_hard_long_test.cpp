@@ -3,10 +3,33 @@
 #include "catch.hpp"
 #include "hard_planning.hpp"
 
+#include <cstdlib>
+
 using namespace credence;
 using namespace credence::test;
 
 namespace {
+
+/// CREDENCE_HARD_SCENARIOS, for the full depth, or fewer: all of them by hand, as docs/theory/model.md says.
+unsigned hard_scenarios(unsigned fewer) {
+    const char* number = std::getenv("CREDENCE_HARD_SCENARIOS");
+    return number != nullptr ? static_cast<unsigned>(std::atoi(number)) : fewer;
+}
+
+/// Those that are decided by the plain form's own costs, or by ones that differ by rounding alone.
+const std::vector<Settings> without_trace{{{"planner.criterion", "log_det"}},
+                                          {{"planner.criterion", "pose_log_det"}},
+                                          {{"planner.criterion", "max_eigenvalue"}}};
+
+template <class Real>
+void check_same(unsigned count, Settings more) {
+    CAPTURE(described(more), lanes<Real>);
+    const Tally tally = run_random<Real>(count, more);
+    CHECK(tally.different == 0);
+    CHECK(tally.dearer == 0);
+    CHECK(tally.scenarios > static_cast<int>(count * 3 / 4));
+    CHECK(tally.steps > tally.scenarios);
+}
 
 template <class Real>
 void check_random(unsigned count, const Settings& more = {}) {
@@ -54,4 +77,24 @@ TEST_CASE("planner: by every criterion no control costs more than the least, on 
 
 TEST_CASE("planner: by every criterion no control costs more than the least, on 10 random hard scenarios in lanes") {
     for (const Settings& criterion : criteria()) check_random<Lane<8>>(10, criterion);
+}
+
+TEST_CASE("planner: by every criterion that is no trace the control is the plain form's, in every lane width") {
+    for (const Settings& criterion : without_trace) {
+        check_same<double>(hard_scenarios(200), criterion);
+        check_same<Lane<2>>(hard_scenarios(40), criterion);
+        check_same<Lane<4>>(hard_scenarios(40), criterion);
+        check_same<Lane<8>>(hard_scenarios(40), criterion);
+    }
+}
+
+TEST_CASE("planner: by every criterion that is no trace, two and three steps ahead, the control is brute force's") {
+    for (Settings criterion : without_trace)
+        for (const char* steps : {"2", "3"}) {
+            Settings ahead = criterion;
+            ahead.insert(ahead.end(), {{"arms.controllers", "horizon"}, {"planner.horizon", steps},
+                                       {"planner.speeds", "1"}, {"scenario.poses", "5"}});
+            check_same<double>(hard_scenarios(100) / 10, ahead);
+            check_same<Lane<8>>(hard_scenarios(100) / 10, ahead);
+        }
 }

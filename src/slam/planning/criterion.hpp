@@ -23,6 +23,7 @@ struct ControlParameters {
     const Control* fixed = nullptr;       ///< [K - 1] control from pose k to k + 1
     const Control* waypoints = nullptr;   ///< [K - 1] the same along control.waypoints
     const Control* candidates = nullptr;  ///< in the order that decides ties
+    const bool* repeated = nullptr;       ///< whether a later candidate has the same move
     int candidate_count = 0;
     double squared_reach = 0;             ///< of the candidate with the largest displacement
     int horizon = 1;                      ///< steps that the controller `horizon` plans ahead
@@ -70,44 +71,80 @@ Real weighted_trace(const Symmetric<Real, capacity>& P, const Layout& layout, co
 
 /// Calls visit(d_j) with the pivots of A = L D L', L unit lower triangular, for j = 0 ... n - 1. entry(i, j) gives A
 /// for i >= j. L D is written to the part of `room` below the diagonal, which is not part of a symmetric matrix.
-template <class Real, int capacity, class Entry, class Visit>
-void each_pivot(int n, const Entry& entry, Symmetric<Real, capacity>& room, const Visit& visit) {
+template <class Real, int capacity, class Size, class Entry, class Visit>
+CREDENCE_INLINE void each_pivot(Size n, const Entry& entry, Symmetric<Real, capacity>& room, const Visit& visit) {
     auto& LD = room.entry;
     Real inverse[capacity], row[capacity];
-    for (int j = 0; j < n; ++j) {
+    each(zero, n, [&](auto j) CREDENCE_INLINE_LAMBDA {
         Real pivot = entry(j, j);
-        for (int k = 0; k < j; ++k) {
+        each(zero, j, [&](auto k) CREDENCE_INLINE_LAMBDA {
             row[k] = LD[j][k] * inverse[k];
             pivot = fnma(LD[j][k], row[k], pivot);
-        }
+        });
         visit(pivot);
         inverse[j] = Real(1) / pivot;
-        for (int i = j + 1; i < n; ++i) {
+        each(j + one, n, [&](auto i) CREDENCE_INLINE_LAMBDA {
             Real sum = entry(i, j);
-            for (int k = 0; k < j; ++k) sum = fnma(LD[i][k], row[k], sum);
+            each(zero, j, [&](auto k) CREDENCE_INLINE_LAMBDA { sum = fnma(LD[i][k], row[k], sum); });
             LD[i][j] = sum;
-        }
-    }
+        });
+    });
 }
 
-/// log det of the first n components' part of P; NaN where that is not positive definite.
-template <class Real, int capacity>
-Real log_determinant(Symmetric<Real, capacity>& P, int n) {
-    Real sum = Real(0);
-    each_pivot(n, [&](int i, int j) { return P.entry[j][i]; }, P, [&](Real pivot) { sum = sum + log(pivot); });
-    return sum;
+/// Sweeps row i of a symmetric matrix [Goodnight 1979: A tutorial on the SWEEP operator] in the lanes `used`: once rows
+/// s are swept, A_ss is -A_ss^-1, A_sr is A_ss^-1 A_sr and A_rr is A_rr - A_rs A_ss^-1 A_sr. Returns the pivot, or 1. A
+/// pivot of 0 is that of a row of zeros.
+template <class Real, int capacity, class Size, class Index>
+CREDENCE_INLINE Real sweep(Symmetric<Real, capacity>& A, Size n, Index i, Mask<Real> used) {
+    const Real pivot = A.entry[i][i];
+    const Real inverse = select(both(used, pivot > Real(0)), Real(1) / pivot, Real(0));
+    Real row[capacity];
+    each(zero, n, [&](auto k) CREDENCE_INLINE_LAMBDA { row[k] = A.at(k, i); });
+    each(zero, n, [&](auto k) CREDENCE_INLINE_LAMBDA {
+        const Real scaled = inverse * row[k];
+        each(k, n, [&](auto l) CREDENCE_INLINE_LAMBDA { A.entry[k][l] = fnma(scaled, row[l], A.entry[k][l]); });
+    });
+    each(zero, n, [&](auto k) CREDENCE_INLINE_LAMBDA { A.at(k, i) = select(used, inverse * row[k], row[k]); });
+    A.entry[i][i] = select(used, -inverse, pivot);
+    return select(used, pivot, Real(1));
+}
+
+/// log det of the first n components' part of P; NaN where that is not positive definite. `by_axis`: P = P_1 (x) I_2.
+template <bool by_axis, class Real, int capacity, class Size>
+CREDENCE_INLINE Real log_determinant(Symmetric<Real, capacity>& P, Size n) {
+    ScaledProduct<Real> product;
+    Mask<Real> positive = all_lanes<Real>();
+    const auto visit = [&](const Real& pivot) {
+        positive = both(positive, pivot > Real(0));
+        product.multiply(pivot);
+    };
+    if constexpr (by_axis)
+        each_pivot(half(n), [&](auto i, auto j) { return P.entry[two * j][two * i]; }, P, visit);
+    else
+        each_pivot(n, [&](auto i, auto j) { return P.entry[j][i]; }, P, visit);
+    const Real log_det = Real(by_axis ? 2 : 1) * product.log();
+    return select(positive, log_det, Real(std::numeric_limits<double>::quiet_NaN()));
 }
 
 /// Where every eigenvalue of W^1/2 P W^1/2 lies below `bound`: bound I - W^1/2 P W^1/2 is positive definite.
 template <class Layout, class Real, int capacity>
-Mask<Real> all_below(Real bound, Symmetric<Real, capacity>& P, const Layout& layout, const Weights& weights) {
-    Real root[capacity];
-    for (int i = 0; i < layout.size(); ++i) root[i] = Real(__builtin_sqrt(weight_at<Layout>(weights, i)));
-    const auto entry = [&](int i, int j) {
-        return fnma(root[i] * root[j], P.entry[j][i], i == j ? bound : Real(0));
-    };
+CREDENCE_FLAT Mask<Real> all_below(Real bound, Symmetric<Real, capacity>& P, const Layout& layout,
+                                   const Weights& weights) {
     Mask<Real> below = all_lanes<Real>();
-    each_pivot(layout.size(), entry, P, [&](Real pivot) { below = both(below, pivot > Real(0)); });
+    const auto visit = [&](const Real& pivot) { below = both(below, pivot > Real(0)); };
+    if constexpr (Layout::by_axis) {
+        const auto entry = [&](auto i, auto j) {
+            return fnma(Real(weights.features), P.entry[two * j][two * i], i == j ? bound : Real(0));
+        };
+        each_pivot(half(layout.size()), entry, P, visit);
+    } else {
+        const double heading = __builtin_sqrt(weights.heading);  // the other components weigh 1
+        const auto root = [&](int i) { return i < Layout::position ? heading : 1.0; };
+        const auto entry = [&](auto i, auto j) {
+            return fnma(Real(root(i) * root(j)), P.entry[j][i], i == j ? bound : Real(0));
+        };
+        each_pivot(layout.size(), entry, P, visit);
+    }
     return below;
 }
 
@@ -132,10 +169,10 @@ Real largest_eigenvalue(Symmetric<Real, capacity>& P, const Layout& layout, cons
 
 /// The cost of a covariance. Its entries are not changed; those below the diagonal are workspace.
 template <class Layout, class Real, int capacity>
-Real cost_of(Symmetric<Real, capacity>& P, const ControlParameters& control, const Layout& layout) {
+CREDENCE_FLAT Real cost_of(Symmetric<Real, capacity>& P, const ControlParameters& control, const Layout& layout) {
     switch (control.criterion) {
-        case Criterion::log_det: return log_determinant(P, layout.size());
-        case Criterion::pose_log_det: return log_determinant(P, Layout::pose_size);
+        case Criterion::log_det: return log_determinant<Layout::by_axis>(P, layout.size());
+        case Criterion::pose_log_det: return log_determinant<Layout::by_axis>(P, Layout::pose_size);
         case Criterion::max_eigenvalue: return largest_eigenvalue(P, layout, control.weights);
         default: return weighted_trace(P, layout, control.weights);
     }

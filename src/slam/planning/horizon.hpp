@@ -43,8 +43,8 @@ void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacit
         const Command<Real> command = command_from<Real>(control.candidates[i]);
         const Real next = candidate_cost(ahead[0], command, control, filter, sensor, layout, ahead[1]);
         // The margin covers the rounding of sums and the tolerance of the tie rule.
-        const Real rest = positive ? limit() * Real(1 + 1e-9) - next : without_limit<Real>();
-        if (any(negated(rest <= Real(0))))
+        const Real rest = (positive ? limit() * Real(1 + 1e-9) : limit() + Real(1e-9)) - next;
+        if (!positive || any(negated(rest <= Real(0))))
             visit(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
     }
 }

@@ -2,7 +2,8 @@
 // The greedy planner's fast forms. All of them choose as controller.hpp's direct form does
 // (tests/slam/planner_long_test.cpp).
 
-#include "slam/planning/screening.hpp"
+#include "slam/planning/determinant.hpp"
+#include "slam/planning/eigenvalue.hpp"
 #include "slam/planning/visible_sets.hpp"
 
 namespace credence {
@@ -16,6 +17,8 @@ struct PlannerWorkspace {
     MeasurementSpace<Layout, Real> space;
     MeasurementElimination<Layout, Real> elimination;
     VisibleSets<Real> sets;
+    DeterminantSpace<Layout, Real> determinants;
+    DeterminantTangent<Layout, Real> tangent;
 };
 
 /// Computes the part of the step that is the same for all candidates: that of prepare_candidates, and the robot's fresh
@@ -76,6 +79,17 @@ FastChoice<Real> choose_by_screening(const ControlParameters& control, const Fil
     return fast;
 }
 
+/// The choice among the sets, given their costs.
+template <class Layout, class Real, int capacity>
+FastChoice<Real> choose_among_sets(const Belief<Real, capacity>& still, const ControlParameters& control,
+                                   const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
+    Choice<Real> choice = no_choice<Real>(control);
+    choice.best = least_cost(1 << layout.features(), sets);
+    choice.command =
+        fetch_each(control, last_of_best(choice.equal_cost(), still, control, sensor, layout, sets));
+    return {choice, choice.best};
+}
+
 /// For the translation model with constant noise and few features.
 template <class Layout, class Real>
 FastChoice<Real> choose_by_visible_sets(const ControlParameters& control, const FilterParameters& filter,
@@ -84,8 +98,7 @@ FastChoice<Real> choose_by_visible_sets(const ControlParameters& control, const 
     enter_measurement_space(work.still, filter, layout, control.weights, work.space);
     gather_sets(work.still, control, sensor, layout, work.sets);
     price_sets(work.space, filter, sensor, layout, work.elimination, work.sets);
-    const Real best = least_cost(1 << layout.features(), work.sets);
-    return {{fetch_each(control, last_of_best(best, work.still, control, sensor, layout, work.sets)), best}, best};
+    return choose_among_sets(work.still, control, sensor, layout, work.sets);
 }
 
 template <class Layout, class Real>
@@ -136,34 +149,171 @@ Mask<Real> doubtful(const FastChoice<Real>& fast, Real limit, Real lost, const P
     return both(matters, negated(both(accurate, found)));
 }
 
-/// The candidate whose largest eigenvalue is least. Most candidates are only shown to lie above the least one so far,
-/// by a factorisation each. `limit` is as above.
-template <class Layout, class Real, int capacity>
-Choice<Real> choose_by_eigenvalue(const Belief<Real, capacity>& belief, const ControlParameters& control,
-                                  const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
-                                  int k, Real limit, PlannerWorkspace<Layout, Real>& work) {
+/// Bounds on the costs of `count` candidates from `first` on, bound_of(i) that of the ith; returns the number of
+/// the least, lane by lane. With `again`, the greater of these and those that are there, for the candidates that are
+/// left in some lane.
+template <bool again, class Layout, class Real, class BoundOf>
+CREDENCE_FLAT Real bound_candidates(int first, int count, ScreeningWorkspace<Layout, Real>& screening,
+                                    const BoundOf& bound_of) {
+    Real least = without_limit<Real>(), number = Real(first);
+    for (int i = 0; i < count; ++i) {
+        if (again && screening.left[i] == 0) continue;
+        Real bound = bound_of(i);
+        if (again) bound = select(bound > screening.bound[i], bound, screening.bound[i]);
+        screening.bound[i] = bound;
+        number = select(bound <= least, Real(first + i), number);  // the last of equals
+        least = select(bound <= least, bound, least);
+    }
+    return number;
+}
+
+/// Screening by a determinant; the direct form decides.
+template <bool full, bool ranged, class Layout, class Real>
+struct DeterminantScreen {
+    const ControlParameters& control;
+    const FilterParameters& filter;
+    const SensorParameters& sensor;
+    const Layout& layout;
+    PlannerWorkspace<Layout, Real>& work;
+    Rotation<Real> heading{};
+    ValueParameters parameters = value_parameters(sensor, filter);
+    Mask<Real> reliable{};
+
+    void start() {
+        if constexpr (Layout::has_heading) heading = rotation(work.still.mean[Layout::heading]);
+        const double value = largest_sighting_value(parameters, sensor);
+        const Real lost = Real(value) * enter_determinant_space<full>(work.still, heading, filter,
+                                                                      control.squared_reach, layout, work.determinants);
+        // kappa v nearer to 1 loses the digits of 1 - kappa v, the noise's share.
+        reliable = lost <= Real(parameters.kappa * value > 1 - 1e-6 ? 0 : 1e8);
+    }
+    Real direct(const Command<Real>& command) {
+        return candidate_cost(work.still, command, control, filter, sensor, layout, work.next);
+    }
+    void touch(const Command<Real>& command) {
+        touch_at<full>(world_move<Layout>(heading, command.move), filter, sensor, layout, parameters.kappa,
+                       work.determinants, work.tangent);
+    }
+    Real bound(int first, int i) const {
+        return determinant_bound<full>(work.tangent, work.determinants, layout, parameters.kappa,
+                                       control.candidates[first + i].move, [&](auto j) CREDENCE_INLINE_LAMBDA {
+                                           return value_of<ranged>(work.screening, parameters, i, j);
+                                       });
+    }
+    Real threshold(const Real& cost) const {
+        return select(reliable, bounded_cost<full, Layout>(cost + Real(1e-6)), without_limit<Real>());
+    }
+};
+
+/// The candidate whose log det P+, of the state (`full`) or the pose, is least: those that bounds do not show to cost
+/// more than one whose cost is known are decided by the direct form. `limit` is as above.
+template <bool full, bool ranged, class Layout, class Real, int capacity>
+Choice<Real> choose_by_determinant(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                                   const FilterParameters& filter, const SensorParameters& sensor,
+                                   const Layout& layout, int k, Real limit, PlannerWorkspace<Layout, Real>& work) {
+    auto& screening = work.screening;
     prepare_candidates(belief, filter, layout, k, work.still);
+    DeterminantScreen<full, ranged, Layout, Real> screen{control, filter, sensor, layout, work};
+    screen.start();
     Choice<Real> choice = no_choice<Real>(control);
-    for (int i = 0; i < control.candidate_count; ++i) {
-        const Command<Real> candidate = command_from<Real>(control.candidates[i]);
-        expect(work.still, candidate, filter, sensor, layout, work.next);
-        const Real threshold = smaller(choice.best, limit) * Real(1 + 1e-9);
-        if (any(all_below(threshold, work.next.covariance, layout, control.weights)))
-            choice.offer(candidate, cost_of(work.next.covariance, control, layout));
+    for (int first = 0; first < control.candidate_count; first += screening_chunk) {
+        const int rest = control.candidate_count - first, count = rest < screening_chunk ? rest : screening_chunk;
+        const auto bound_of = [&](int i) CREDENCE_INLINE_LAMBDA { return screen.bound(first, i); };
+        screen.touch(fetch_each(control, value_candidates<ranged>(work.still, screen.heading, control, filter, sensor,
+                                                                  layout, screen.parameters, first, count, screening)));
+        const Real least = bound_candidates<false>(first, count, screening, bound_of);
+        Command<Real> command = fetch_each(control, least);
+        const Real met = screen.direct(command);
+        const Real threshold = screen.threshold(smaller(smaller(met, choice.best), limit));
+        if (mark_left(control.repeated + first, count, threshold, screening) > enough_left) {
+            screen.touch(command);
+            bound_candidates<true>(first, count, screening, bound_of);
+            mark_left(control.repeated + first, count, threshold, screening);
+        }
+        queue_left(count, screening);
+        if (alone(least - Real(first), screening)) {
+            choice.offer(command, met);
+            continue;
+        }
+        for (Mask<Real> offered; any(offered = take_queued(control, first, screening, command));)
+            choice.offer(command, screen.direct(command), offered);
     }
     return choice;
 }
 
-/// The best control from pose k - 1 to k, given the belief at pose k - 1: by a fast form, and by the direct one in
-/// lanes where the fast one is not reliable. Of the criteria that are no traces only the eigenvalue has one.
+/// The candidate whose largest eigenvalue is least. Most candidates are only shown to lie above the least one so far:
+/// along the eigenvector that was found last or, failing that, by a factorisation. `limit` is as above.
+template <bool ranged, class Layout, class Real, int capacity>
+Choice<Real> choose_by_eigenvalue(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                                  const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                                  int k, Real limit, PlannerWorkspace<Layout, Real>& work) {
+    prepare_candidates(belief, filter, layout, k, work.still);
+    auto& P = work.next.covariance;
+    auto& room = work.screening.covariance;
+    Rotation<Real> heading{};
+    if constexpr (Layout::has_heading) heading = rotation(belief.mean[Layout::heading]);
+    const int count = control.candidate_count < screening_chunk ? control.candidate_count : screening_chunk;
+    const Real reference = value_candidates<ranged>(work.still, heading, control, filter, sensor, layout,
+                                                    value_parameters(sensor, filter), 0, count, work.screening);
+    Real x[capacity];
+    each(zero, layout.size(), [&](auto i) { x[i] = Real(1); });
+    expect(work.still, fetch_each(control, reference), filter, sensor, layout, work.next);
+    const Real met = largest_eigenvalue_below(above_eigenvalues(P, layout, control.weights), all_lanes<Real>(), P,
+                                              control.weights, layout, room, x);
+    Choice<Real> choice = no_choice<Real>(control);
+    Real threshold = smaller(met, limit) * Real(1 + 1e-9);
+    for (int i = 0; i < control.candidate_count; ++i) {
+        if (control.repeated[i]) continue;  // a later one is its equal
+        const Command<Real> candidate = command_from<Real>(control.candidates[i]);
+        expect(work.still, candidate, filter, sensor, layout, work.next);
+        if (!any(negated(value_along(x, P, layout, control.weights) > threshold))) continue;
+        const Mask<Real> below = all_below(threshold, P, layout, control.weights);
+        if (!any(below)) continue;
+        choice.offer(candidate, largest_eigenvalue_below(threshold, below, P, control.weights, layout, room, x), below);
+        threshold = smaller(choice.best * Real(1 + 1e-9), threshold);
+    }
+    return choice;
+}
+
+/// For the translation model with constant noise and few features, by the direct form's costs.
+template <class Layout, class Real, int capacity>
+Choice<Real> choose_by_set_costs(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                                 const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                                 int k, PlannerWorkspace<Layout, Real>& work) {
+    prepare_still(belief, filter, layout, k, work.still);
+    gather_sets(work.still, control, sensor, layout, work.sets);
+    const auto none = layout.features() - layout.features();
+    price_sets_directly(none, 0, work.still.covariance, work.still, control, filter, sensor, layout, work.sets);
+    return choose_among_sets(work.still, control, sensor, layout, work.sets).choice;
+}
+
+template <bool ranged, class Layout, class Real, int capacity>
+Choice<Real> choose_without_trace(const Belief<Real, capacity>& belief, const ControlParameters& control,
+                                  const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                                  int k, Real limit, PlannerWorkspace<Layout, Real>& work) {
+    if constexpr (!Layout::has_heading && !ranged)
+        if (layout.features() <= largest_tabled_count)
+            return choose_by_set_costs(belief, control, filter, sensor, layout, k, work);
+    switch (control.criterion) {
+        case Criterion::log_det:
+            return choose_by_determinant<true, ranged>(belief, control, filter, sensor, layout, k, limit, work);
+        case Criterion::pose_log_det:
+            return choose_by_determinant<false, ranged>(belief, control, filter, sensor, layout, k, limit, work);
+        default: return choose_by_eigenvalue<ranged>(belief, control, filter, sensor, layout, k, limit, work);
+    }
+}
+
+/// The best control from pose k - 1 to k, given the belief at pose k - 1: by a fast form; of a trace, by the direct one
+/// in lanes where the fast one is not reliable.
 template <class Layout, class Real, int capacity>
 Choice<Real> choose(const Belief<Real, capacity>& belief, const ControlParameters& control,
                     const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
                     Real limit, PlannerWorkspace<Layout, Real>& work) {
-    if (control.criterion == Criterion::max_eigenvalue)
-        return choose_by_eigenvalue(belief, control, filter, sensor, layout, k, limit, work);
-    if (!is_trace(control.criterion))
-        return plan_plainly(belief, control, filter, sensor, layout, k, work.still, work.next, [](int, Real) {});
+    if (!is_trace(control.criterion)) {
+        if (sensor.noise == RangeNoise::ranged)
+            return choose_without_trace<true>(belief, control, filter, sensor, layout, k, limit, work);
+        return choose_without_trace<false>(belief, control, filter, sensor, layout, k, limit, work);
+    }
     prepare_still(belief, filter, layout, k, work.still);
     const FastChoice<Real> fast = choose_fast(control, filter, sensor, layout, limit, work);
     const Mask<Real> unsure = doubtful(fast, limit, lost_to_rounding(control, filter, sensor, layout, work), work);

@@ -23,6 +23,7 @@ struct ScreeningWorkspace {
     Real value[screening_chunk][Layout::feature_capacity];       ///< v_j of each candidate, where the noise is ranged
     Mask<Real> seen[screening_chunk][Layout::feature_capacity];  ///< where it is constant: whether v_j is not 0
     Symmetric<Real, Layout::capacity> covariance;                ///< of the reference
+    Real bound[screening_chunk];                                 ///< of each candidate, where bounds are compared twice
     std::uint8_t left[screening_chunk];                          ///< bits of the lanes in which each candidate is left
     std::uint64_t queue[lanes<Real>][screening_chunk / 64];      ///< bits of the candidates that are left in each lane
 };
@@ -223,6 +224,32 @@ void queue_left(int count, ScreeningWorkspace<Layout, Real>& work) {
         for (int lane = 0; lane < lanes<Real>; ++lane)
             work.queue[lane][i / 64] |= (of_lanes >> (8 * lane) & 0xff) << (i % 64);
     }
+}
+
+/// If more candidates than this are left in some lane, bounds at a second reference are worth their time.
+inline constexpr int enough_left = 8;
+
+/// Marks the `count` candidates whose bound does not lie above `threshold`, but those whose move a later one repeats:
+/// equals, of which the later wins. Returns how many are left in some lane.
+template <class Layout, class Real>
+int mark_left(const bool* repeated, int count, Real threshold, ScreeningWorkspace<Layout, Real>& work) {
+    int left = 0;
+    for (int i = 0; i < count; ++i) {
+        work.left[i] = static_cast<std::uint8_t>(repeated[i] ? 0 : lane_bits(negated(work.bound[i] > threshold)));
+        left += work.left[i] != 0;
+    }
+    return left;
+}
+
+/// Whether each lane's queue is empty or holds that candidate alone, counted as the queue counts.
+template <class Layout, class Real>
+bool alone(const Real& candidate, const ScreeningWorkspace<Layout, Real>& work) {
+    for (int lane = 0; lane < lanes<Real>; ++lane) {
+        const int number = static_cast<int>(lane_of(candidate, lane));
+        const std::uint64_t bit = std::uint64_t{1} << number % 64;
+        if ((work.queue[lane][number / 64] & ~bit) != 0 || work.queue[lane][1 - number / 64] != 0) return false;
+    }
+    return true;
 }
 
 /// Queues, in each lane, the candidates first ... first + count - 1 whose bound does not lie above `threshold`.

@@ -2,6 +2,7 @@
 // The planner of the translation model where the noise is constant. A candidate's cost depends only on which features
 // it sees: of the candidates that see the same set the last one wins, and the cost of each set is computed once.
 
+#include "slam/planning/eigenvalue.hpp"
 #include "slam/planning/measurement_space.hpp"
 
 namespace credence {
@@ -123,6 +124,33 @@ CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const
     });
 }
 
+/// The cost of every set that some candidate sees and that has, of the features before j, those of `set`: by the direct
+/// form, whose P is conditioned on one feature after the other, once for all sets that begin alike.
+template <class Index, class Layout, class Real, int capacity>
+void price_sets_directly(Index j, int set, Symmetric<Real, capacity>& P, const Belief<Real, capacity>& still,
+                        const ControlParameters& control, const FilterParameters& filter,
+                        const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
+    constexpr bool at_end = Layout::written_out && std::is_same_v<Index, decltype(layout.features())>;
+    unsigned wanted = 0;
+    for (int other = set; other < 1 << layout.features(); other += 1 << j) wanted |= sets.offered[other];
+    if (wanted == 0) return;
+    if (at_end || j == layout.features()) {
+        Symmetric<Real, capacity> room;
+        Real x[capacity];
+        sets.cost[set] = control.criterion == Criterion::max_eigenvalue
+                             ? largest_eigenvalue_below(above_eigenvalues(P, layout, control.weights),
+                                                        all_lanes<Real>(), P, control.weights, layout, room, x)
+                             : cost_of(P, control, layout);
+    } else if constexpr (!at_end) {
+        price_sets_directly(j + one, set, P, still, control, filter, sensor, layout, sets);
+        Symmetric<Real, capacity> seen;
+        copy(P, layout.size(), seen);
+        condition(seen, layout, sighting_rows<Layout>(still.mean, j), believed_variance(filter, Real(sensor.sigma)),
+                  all_lanes<Real>());
+        price_sets_directly(j + one, set + (1 << j), seen, still, control, filter, sensor, layout, sets);
+    }
+}
+
 /// The lanes in which some candidate sees the set.
 template <class Real>
 Mask<Real> offered(int set, const VisibleSets<Real>& sets) { return mask_of_bits<Real>(sets.offered[set]); }
@@ -158,15 +186,15 @@ CREDENCE_FLAT unsigned take_last(const CandidateChunk& chunk, const std::uint64_
 }
 
 /// The number of the candidate that wins in each lane, -1 where there is none: among the sets that some candidate sees,
-/// those within 1e-12 of the least cost are good, and the last candidate that sees a good set wins. `sets` holds the
+/// those that cost at most `equal` are good, and the last candidate that sees a good set wins. `sets` holds the
 /// visibilities of the last chunk.
 template <class Layout, class Real, int capacity>
-Real last_of_best(Real best, const Belief<Real, capacity>& still, const ControlParameters& control,
+Real last_of_best(Real equal, const Belief<Real, capacity>& still, const ControlParameters& control,
                   const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
     std::uint64_t good[VisibleSets<Real>::capacity];
     unsigned undecided = 0;
     for (int set = 0; set < 1 << layout.features(); ++set) {
-        const unsigned here = lane_bits(both(offered(set, sets), sets.cost[set] <= best * Real(1 + 1e-12)));
+        const unsigned here = lane_bits(both(offered(set, sets), sets.cost[set] <= equal));
         good[set] = all_of_word(here);
         undecided |= here;
     }

@@ -241,6 +241,11 @@ void Problem::fill_control() {
     view_.control.waypoints = waypoints_.data();
     view_.control.candidates = candidates_.data();
     view_.control.candidate_count = static_cast<int>(candidates_.size());
+    repeated_ = std::make_unique<bool[]>(candidates_.size());
+    for (std::size_t i = 0; i < candidates_.size(); ++i)
+        repeated_[i] = std::any_of(candidates_.begin() + static_cast<std::ptrdiff_t>(i) + 1, candidates_.end(),
+                                   [&](const Control& later) { return later.move == candidates_[i].move; });
+    view_.control.repeated = repeated_.get();
     for (const Control& candidate : candidates_)
         view_.control.squared_reach =
             std::max(view_.control.squared_reach, squared(candidate.move.x) + squared(candidate.move.y));

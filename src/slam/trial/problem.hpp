@@ -4,6 +4,8 @@
 #include "slam/planning/horizon.hpp"
 #include <credence/slam_columns.hpp>
 
+#include <memory>
+
 namespace credence {
 
 /// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
@@ -61,6 +63,7 @@ private:
     std::vector<Point> translation_, sway_, sway_increment_;
     std::vector<Edge> edges_;
     std::vector<Control> fixed_, waypoints_, candidates_;
+    std::unique_ptr<bool[]> repeated_;
     std::vector<double> contrast_coefficients_;
     std::vector<Contrast> contrasts_;
     std::vector<double> coverage_bounds_;
