@@ -39,3 +39,4 @@ install(DIRECTORY analysis DESTINATION ${CREDENCE_DATA} COMPONENT examples
   PATTERN "__pycache__" EXCLUDE PATTERN "*.h5" EXCLUDE)
 install(DIRECTORY python/credence DESTINATION ${CREDENCE_DATA}/python COMPONENT examples
   FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+include(cmake/packages.cmake)

@@ -16,7 +16,7 @@ pip=("$python" -m pip --disable-pip-version-check install -c python/requirements
 install_tools() {
   /usr/bin/python3 -m venv $site/venv &&
     "${pip[@]}" $(sed -n 's/ ; extra == "site"$//p' python/requirements.txt) \
-      jupytext nbclient ipykernel h5py scipy xarray matplotlib ruff nanobind scikit-build-core ninja
+      jupytext nbclient ipykernel h5py scipy xarray matplotlib ruff nanobind nanobind-backend scikit-build-core ninja
 }
 
 install_credence() {

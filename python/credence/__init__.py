@@ -10,6 +10,7 @@ Nothing is imported before it is used: neither the compiled module nor NumPy.
 from __future__ import annotations
 
 import importlib
+import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -85,6 +86,22 @@ __all__ = [
     "simulate",
     "tune",
 ]
+
+
+def _warn_of_another() -> None:
+    """Warns if the registry's distribution ``credence``, another project's, has its files in this folder, too."""
+    beside = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    for name in os.listdir(beside):
+        if name.startswith("credence-") and name[9:10].isdigit() and name.endswith(".dist-info"):
+            import warnings
+
+            warnings.warn(
+                f"The distribution {name[:-10]}, another project's, is installed in the folder of credence-filters, "
+                "and each replaces files of the other. Run pip uninstall credence credence-filters, then install "
+                "credence-filters again.", stacklevel=3)
+
+
+_warn_of_another()
 
 
 def __getattr__(name: str) -> object:
