@@ -19,6 +19,17 @@ MatrixXd wide_covariance(int n, std::mt19937& random) {
     return Q * values.asDiagonal() * Q.transpose();
 }
 
+/// As a filter of that layout may have it: the same for both axes, and independent of each other, if it is by axis.
+template <class Layout>
+MatrixXd covariance_for(const Layout& layout, std::mt19937& random) {
+    if constexpr (!Layout::by_axis) return wide_covariance(layout.size(), random);
+    const MatrixXd one = wide_covariance(layout.size() / 2, random);
+    MatrixXd P = MatrixXd::Zero(layout.size(), layout.size());
+    for (int i = 0; i < one.rows(); ++i)
+        for (int j = 0; j < one.cols(); ++j) P(2 * i, 2 * j) = P(2 * i + 1, 2 * j + 1) = one(i, j);
+    return P;
+}
+
 /// The cost by Eigen's decompositions.
 double dense_cost(const MatrixXd& P, Criterion criterion, double heading_weight, int pose) {
     const auto n = P.rows();
@@ -47,7 +58,7 @@ void check_costs(const char* process) {
                                                  {"planner.heading_weight", weight}}));
             const ControlParameters& control = problem.view().control;
             for (int sample = 0; sample < 200; ++sample) {
-                const MatrixXd P = wide_covariance(Layout(3).size(), random);
+                const MatrixXd P = covariance_for(Layout(3), random);
                 auto belief = belief_of<Layout>(VectorXd::Zero(P.rows()), P);
                 const double cost = cost_of(belief.covariance, control, Layout(3)),
                              dense_one = dense_cost(P, control.criterion, std::stod(weight), Layout::pose_size);
