@@ -94,11 +94,11 @@ private:
     Settings settings_;
 };
 
-/// Steps planned; those whose control is not the plain form's; those whose control costs more than the least by more
+/// Steps, and those that were planned; those whose control is not the plain form's; those whose control costs more than the least by more
 /// than 1e-9 of it (which rounding may have made negative), or by more than 1e-9 where costs are logarithms. A control
 /// that is no candidate costs infinitely much.
 struct Tally {
-    int scenarios = 0, steps = 0, different = 0, dearer = 0;
+    int scenarios = 0, steps = 0, planned = 0, different = 0, dearer = 0;
 };
 
 /// Compares, at every step of a pack of planned trials, what the chosen control costs with the least cost: over as many
@@ -136,6 +136,7 @@ public:
                     taken = cost;
             }
             ++tally_.steps;
+            tally_.planned += !costs_.empty();
             const auto differs = [&](const Real& a, const Real& b) { return lane_of(a, lane) != lane_of(b, lane); };
             tally_.different +=
                 least < infinity && (differs(choice_.command.turn, command.turn) ||
@@ -195,7 +196,8 @@ void run_layout(const Problem& problem, Controller controller, Tally& tally) {
 template <class Real>
 void run_scenario(const Settings& settings, Tally& tally) {
     const Problem problem(scenario_with(settings));
-    const Controller controller = problem.scenario().arms.controllers.front();
+    const auto& arms = problem.scenario().arms.controllers;
+    const Controller controller = arms == std::vector{Controller::horizon} ? Controller::horizon : Controller::greedy;
     ++tally.scenarios;
     if (problem.view().process == Process::heading)
         run_layout<Process::heading, Real>(problem, controller, tally);

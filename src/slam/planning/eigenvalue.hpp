@@ -51,7 +51,7 @@ CREDENCE_FLAT Real above_eigenvalues(const Symmetric<Real, capacity>& P, const L
 }
 
 /// The largest eigenvalue, to some 10^-15 of it, and its eigenvector x [rows of A], in the lanes `wanted` from a `high`
-/// above it. `R` is workspace.
+/// above it, which above_eigenvalues() is not below: farther up R's traces tell nothing but `high`. `R` is workspace.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT Real largest_eigenvalue_below(Real high, Mask<Real> wanted, const Symmetric<Real, capacity>& P,
                                             const Weights& weights, const Layout& layout,

@@ -269,7 +269,9 @@ Choice<Real> choose_by_eigenvalue(const Belief<Real, capacity>& belief, const Co
         if (!any(negated(value_along(x, P, layout, control.weights) > threshold))) continue;
         const Mask<Real> below = all_below(threshold, P, layout, control.weights);
         if (!any(below)) continue;
-        choice.offer(candidate, largest_eigenvalue_below(threshold, below, P, control.weights, layout, room, x), below);
+        // From far above all of them the iteration loses its digits.
+        const Real high = smaller(threshold, above_eigenvalues(P, layout, control.weights));
+        choice.offer(candidate, largest_eigenvalue_below(high, below, P, control.weights, layout, room, x), below);
         threshold = smaller(choice.best * Real(1 + 1e-9), threshold);
     }
     return choice;
