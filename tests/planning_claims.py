@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent / "oracle"))
 from criteria_oracle import means  # noqa: E402
 
 WIDE = 4.5  # standard errors: 27 comparisons fail by chance once in 5,000 runs
-COLUMNS = {"trace_P": 2, "unseen": 3, "pose_error": 4, "log_det_P": 6, "distance": 7}
+COLUMNS = {"trace_P": 2, "unseen": 3, "pose_error": 4, "log_score": 6, "path_length": 7}
 CELLS = {"0.01:trace": 200, "0.01:pose_trace": 200, "0.01:log_det": 200, "0.1:trace": 800, "0.1:follow": 800}
 
 

@@ -112,6 +112,7 @@ struct Difference {
     double cost = 0;                                ///< relative, over all candidates
     double pose_error = 0, nees_ratio = 0, nis_ratio = 0;
     double log_score = 0;                           ///< in nats a component
+    double path_length = 0;
     bool same_unseen = true, same_rows = true;
     double condition = 0;                           ///< greatest condition of S, which the tolerances rest on
 };

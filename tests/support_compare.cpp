@@ -66,6 +66,7 @@ Difference difference(const Run& ours, const oracle::Trial& oracle) {
     greatest.nis_ratio = relative(ours.columns[column_nis_ratio], oracle.nis_ratio);
     greatest.log_score = std::abs(ours.columns[column_log_score] - oracle.log_score) /
                          static_cast<double>(ours.steps.front().mean.size());
+    greatest.path_length = relative(ours.columns[column_path_length], oracle.path_length);
     greatest.same_unseen = ours.columns[column_unseen] == oracle.unseen;
     return greatest;
 }

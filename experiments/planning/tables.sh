@@ -28,3 +28,25 @@ credibility() {
 check_claims() {
   if [ "$trials" -eq "$1" ]; then "${PYTHON:-python3}" experiments/claims.py experiments/planning/claims.py -; else cat; fi
 }
+
+# means FILE.csv ARM COLUMN...: a cell of each column's mean.
+means() {
+  local file=$1 arm=$2 column
+  shift 2
+  for column in "$@"; do printf '| %s ' "$(interval "$file" "$arm" "$column")"; done
+}
+
+# difference COMPARED.csv COLUMN: a cell of the mean difference that `credence compare` found, with its 95 % interval.
+# It is bold if it is certain: beyond 3.7 standard errors, Bonferroni's bound for the 216 or 228 numbers of a table
+# together (two-sided, 5 %).
+difference() {
+  awk -F, -v column="$2" '
+    $4 == column {
+      half = 1.96 * $10
+      digits = half > 0 ? 1 - int(log(half) / log(10) - (half < 1)) : 4
+      if (digits < 0) digits = 0
+      mark = $9 * $9 > 3.7 * 3.7 * $10 * $10 ? "**" : ""
+      printf "| %s%.*f ± %.*f%s ", mark, digits, $9, digits, half, mark
+      exit
+    }' "$1"
+}

@@ -40,7 +40,8 @@ Charts charts_of(const SlamState& state);
 
 /// Positions in the list of `trial_columns`.
 enum ColumnIndex { column_trace_P, column_unseen, column_pose_error, column_nees_ratio, column_nis_ratio,
-                   column_mean_trace_P, column_log_score, column_status, column_status_pose, column_count };
+                   column_mean_trace_P, column_log_score, column_path_length, column_status, column_status_pose,
+                   column_count };
 
 /// The per-trial columns, in the order of ColumnIndex.
 std::vector<Column> trial_columns(const SlamState& state);

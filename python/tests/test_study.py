@@ -14,7 +14,7 @@ import credence
 from credence.grid import Grid
 from credence.pictures.steps import band
 
-COLUMNS = ["trace_P", "unseen", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P", "log_score"]
+COLUMNS = ["trace_P", "unseen", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P", "log_score", "path_length"]
 
 
 def near(found, expected):

@@ -112,11 +112,12 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
     Trajectory trajectory = replay_trial(results.scenario, a, study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
-        const double stored = column_values(results.arms[a], c, row, 1).front();
-        if (!same(stored, trajectory.column_values[c]))
-            throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " +
-                          results.columns[c].name + " is " + to_text(trajectory.column_values[c]) + ", stored is " +
-                          to_text(stored) + "." + other_release(study));
+        const auto column = std::ranges::find(trajectory.columns, results.columns[c].name, &Column::name);
+        const double stored = column_values(results.arms[a], c, row, 1).front(),
+                     replayed = trajectory.column_values[static_cast<std::size_t>(column - trajectory.columns.begin())];
+        if (!same(stored, replayed))
+            throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " + column->name + " is " +
+                          to_text(replayed) + ", stored is " + to_text(stored) + "." + other_release(study));
     }
     return {std::move(trajectory)};
 }

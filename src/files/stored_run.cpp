@@ -5,6 +5,7 @@
 #include "files/results/links.hpp"
 #include "files/journal/journal.hpp"
 #include "files/system/system_file.hpp"
+#include "study/block_results.hpp"
 
 #include <algorithm>
 
@@ -137,6 +138,7 @@ Study StoredRun::stored(const StudyDefinition& asked) const {
     check_same_study(
         definition_of(study), asked, output_.path,
         journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
+    require_all_columns(study, "cannot resume " + output_.path);
     return study;
 }
 

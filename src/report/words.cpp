@@ -253,6 +253,7 @@ std::string column_title(const std::string& column, const std::string& unit) {
                              : column == "mean_trace_P" ? "trace(P), mean over the steps"
                              : column == "log_score"    ? "log score, mean over the steps"
                              : column == "pose_error"   ? "pose error, sum over the poses"
+                             : column == "path_length"  ? "length of the true path"
                                                         : column;
     return unit == "1" ? name : name + " [" + unit + "]";
 }

@@ -70,7 +70,8 @@ std::vector<Column> trial_columns(const SlamState& state) {
             {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
             {"mean_trace_P", "mean over the steps of the trace of the covariance", trace_unit(state),
              ColumnType::real, nan},
-            log_score_column()};
+            log_score_column(),
+            {"path_length", "length of the robot's true path", state.length_unit, ColumnType::real, nan}};
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }

@@ -3,6 +3,7 @@
 #include "numeric/chi_square.hpp"
 
 #include <credence/detail/worlds.hpp>
+#include <credence/error.hpp>
 
 #include <algorithm>
 
@@ -77,6 +78,14 @@ ScenarioResults results_without_totals(const Scenario& scenario, Keep keep) {
     for (ArmResults& arm : results.arms)
         if (keep == Keep::trials) arm.columns.resize(results.columns.size());
     return results;
+}
+
+void require_all_columns(const Study& study, const std::string& cannot) {
+    for (const ScenarioResults& results : study.scenarios)
+        for (const Column& column : world_of(results.scenario).columns(results.scenario))
+            if (std::ranges::find(results.columns, column.name, &Column::name) == results.columns.end())
+                throw InputError(cannot + " (it has no column " + column.name +
+                                 ", which trials have since then). Report it as it is, or run the study again.");
 }
 
 ScenarioResults empty_results(const Scenario& scenario, Keep keep) {

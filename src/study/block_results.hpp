@@ -3,6 +3,7 @@
 
 #include <credence/detail/block.hpp>
 #include <credence/detail/results.hpp>
+#include <credence/study.hpp>
 
 #include <vector>
 
@@ -13,6 +14,10 @@ ScenarioResults empty_results(const Scenario& scenario, Keep keep = Keep::trials
 
 /// The same, its totals not in memory.
 ScenarioResults results_without_totals(const Scenario& scenario, Keep keep = Keep::trials);
+
+/// Throws InputError, which begins with `cannot`, where a study that was read back lacks a column of its world: the
+/// trials of this program do not go with those that it has.
+void require_all_columns(const Study& study, const std::string& cannot);
 
 /// The totals of a block's columns, by arm. Can be called from several threads at once.
 std::vector<TrialTotals> trial_totals_of(const ScenarioResults& results, const Block& block);

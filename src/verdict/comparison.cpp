@@ -31,13 +31,14 @@ std::vector<double> CommonTrials::selected(const std::vector<double>& values, st
 
 namespace {
 
-PairedComparison compare_column(const ComparedArm& a, const ComparedArm& b, std::size_t c, const CommonTrials& common,
-                                std::uint64_t root_seed, const std::string& key) {
+/// `c`, `other`: where each has the column.
+PairedComparison compare_column(const ComparedArm& a, const ComparedArm& b, std::size_t c, std::size_t other,
+                                const CommonTrials& common, std::uint64_t root_seed, const std::string& key) {
     if (a.results.keep == Keep::aggregates)
         return compare_totals(column_differences(a.results, a.arm, b.arm, c), a.arm.totals.trials.columns[c],
                               b.arm.totals.trials.columns[c]);
     return compare_paired(common.of_a(figure_values(a.results, a.arm, c)),
-                          common.of_b(figure_values(b.results, b.arm, c)), root_seed, key);
+                          common.of_b(figure_values(b.results, b.arm, other)), root_seed, key);
 }
 
 }  // namespace
@@ -49,9 +50,12 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
     const CommonTrials common(a.results, b.results);
     for (std::size_t c = 0; c < a.results.columns.size(); ++c)
         if (const Column& column = a.results.columns[c]; is_reported(column)) {
+            const auto same = std::ranges::find(b.results.columns, column.name, &Column::name);
+            if (same == b.results.columns.end()) continue;  // a file of before the column
+            const auto other = static_cast<std::size_t>(same - b.results.columns.begin());
             const std::string key = comparison.scenario + "/" + comparison.name() + "/" + column.name;
             comparison.columns.push_back(
-                {column.name, column.unit, compare_column(a, b, c, common, root_seed, key), 0});
+                {column.name, column.unit, compare_column(a, b, c, other, common, root_seed, key), 0});
         }
     return comparison;
 }

@@ -77,6 +77,7 @@ def check_figures(tables, arm):
         "nees_ratio": "NEES/n",
         "nis_ratio": "NIS/m",
         "log_score": "log score",
+        "path_length": "length of the true path",
     }
     for name, words in groups.items():
         of_arm = [row for row in found["rows"] if row["group"].startswith(words) and row["head"] == arm["arm"]]

@@ -82,9 +82,9 @@ TEST_CASE("cli: report as CSV has a row per arm and column, and -o writes a file
         return std::stoi(here.shell("grep -c '" + pattern + "' t.csv").out);
     };
     const int rows = count("^ekf-straight-constant,"), of_directions = count(",direction_");
-    // 2 arms and their pair, 7 columns each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9
+    // 2 arms and their pair, 8 columns each; and each arm's evidence: 8 blocks, 3 groups of rows, 10 lags, 9
     // components.
-    CHECK(rows - of_directions == 21 + 2 * (8 * (3 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2));
+    CHECK(rows - of_directions == 24 + 2 * (8 * (3 + 19 * 6) + 3 * 20 + 10 + 9 * 19 + 19 + 2));
     // Directions of the 7 groups of two components or more, and those of all 9 components; shares are as many as
     // matter.
     for (const char* name : {"direction_largest:[^:,]*,", "direction_smallest:[^:,]*,", "direction_level:"})

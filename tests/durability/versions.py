@@ -15,7 +15,7 @@ from harness import HERE, Bench, Failed, arguments, finish
 
 WORLD = HERE.parent / "fuzz" / "journal.ini"
 KEEPS = "trials", "aggregates"
-OWN = 8  # version of this program's journals
+OWN = 9  # version of this program's journals
 SCHEMA = 4
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (-2, 0), (0, 1), (0, -1), (2, 1))  # a journal's version and its schema's, over this program's
@@ -24,6 +24,7 @@ BEFORE = "0.2"  # those of it are refused
 FINISH = "Finish the run with the release that began it."
 AGAIN = (f"/@schema_version: is 3, this program's is {SCHEMA}; the file was made by release 0.2.0. Report it with that "
          "release, or run the study again.")
+EARLY = "(it has no column path_length, which trials have since then). Report it as it is, or run the study again."
 
 
 def stored(name):
@@ -80,6 +81,7 @@ def results_files():
     yield File(f"results of {BEFORE}", stored(f"results-3-{BEFORE}.h5"), refused=AGAIN)
     for keep in KEEPS:
         yield File(f"results of {keep}", stored(f"results-{keep}-{RELEASE}.h5"), keep)
+        yield File(f"results of {keep} without a column", stored(f"results-early-{keep}-{RELEASE}.h5"), keep, EARLY)
 
 
 def growing(keep, output):
@@ -97,11 +99,14 @@ class Versions:
         if file.refused:
             self.check_refused(file, done)
             self.counts["refused"] += 1
+            if file.refused is EARLY:
+                self.check_early(file)
         else:
             self.check_grown(file, done)
             self.counts["resumed"] += 1
             if file.name == "x.h5":
-                self.check_readers(file)
+                list(self.check_readers(file, ("merge", "x.h5", "-o", "y.h5", "--quiet"),
+                                        ("merge", "x.h5", "x.h5", "-o", "y.h5", "--quiet")))
 
     def run(self, file, *command):
         self.bench.empty()
@@ -119,20 +124,32 @@ class Versions:
     def check_grown(self, file, done):
         if done.returncode != 0:
             raise Failed(f"{file.what}: it was not resumed: {done.stderr.strip()}")
-        whole = self.bench.root / f"{file.keep}.h5"
-        if not whole.exists():
-            self.bench.expect(0, *growing(file.keep, whole))
-        self.bench.check_same(whole, what=file.what)
+        self.bench.check_same(self.whole(file.keep), what=file.what)
         self.check_releases(file)
 
-    def check_readers(self, file):
-        """A file is reported, and merged, with itself as well; a trial is replayed."""
-        for command in (("report", "x.h5"), ("merge", "x.h5", "-o", "y.h5", "--quiet"),
-                        ("merge", "x.h5", "x.h5", "-o", "y.h5", "--quiet"),
-                        ("replay", "x.h5", "--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3")):
+    def whole(self, keep):
+        """The study as this program runs it at once."""
+        path = self.bench.root / f"{keep}.h5"
+        if not path.exists():
+            self.bench.expect(0, *growing(keep, path))
+        return path
+
+    def check_readers(self, file, *more):
+        """A file is reported; a trial is replayed; and what more there is."""
+        for command in (("report", "x.h5", "--format", "csv"),
+                        ("replay", "x.h5", "--scenario", "tiny", "--arm", "fixed.ekf", "--trial", "3"), *more):
             done = self.run(file, *command)
             if done.returncode != 0:
                 raise Failed(f"{file.what}: {command[0]} ended with {done.returncode}: {done.stderr.strip()}")
+            yield done
+
+    def check_early(self, file):
+        """A file without a column is reported and compared for the columns that it has, and not merged."""
+        compare = [("compare", "x.h5", str(self.whole("trials")))] if file.keep == "trials" else []
+        said = "".join(done.stdout for done in self.check_readers(file, *compare))
+        if "log_score" not in said or "path_length" in said:
+            raise Failed(f"{file.what}: it is not read for what it has: {said}")
+        self.check_refused(file, self.run(file, "merge", "x.h5", "-o", "y.h5"))
 
     def check_releases(self, file):
         """Both the program that began and the one that resumed are named."""

@@ -90,16 +90,16 @@ const std::vector<Damage> damages{
      [](auto& r) { set_number<std::int64_t>(r, arm, "counted_trials", 299); }},
     {arm + "/column: does not count on",
      [](auto& r) {
-         replace<std::int32_t>(r, arm + "/column", {7}, {0, 1, 1});
+         replace<std::int32_t>(r, arm + "/column", {8}, {0, 1, 1});
      }},
-    {arm + "/column: has extents [8], not [7]", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {8}, {}); }},
+    {arm + "/column: has extents [9], not [8]", [](auto& r) { replace<std::int32_t>(r, arm + "/column", {9}, {}); }},
     {arm + "/status_count: a column has more values than trials",
      [](auto& r) {
-         set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300, 300});
+         set_numbers(r, arm + "/column_count", {300, 300, 301, 300, 300, 300, 300, 300});
      }},
     {arm + "/status_count: a column has more values than trials",
      [](auto& r) {
-         set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300, 300});
+         set_numbers(r, arm + "/column_count", {300, 300, -1, 300, 300, 300, 300, 300});
      }},
     {arm + "/column_total: its parts do not follow",
      [](auto& r) {
@@ -113,15 +113,15 @@ const std::vector<Damage> damages{
      }},
     {arm + "/status_count: there are more pairs than values",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_count", {1, 7}, {301});
+         replace<std::int64_t>(r, arm + "/difference_count", {1, 8}, {301});
      }},
     {arm + "/status_count: more pairs differ than there are",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_above", {1, 7}, {301});
+         replace<std::int64_t>(r, arm + "/difference_above", {1, 8}, {301});
      }},
     {arm + "/status_count: more pairs differ than there are",
      [](auto& r) {
-         replace<std::int64_t>(r, arm + "/difference_below", {1, 7}, {-1});
+         replace<std::int64_t>(r, arm + "/difference_below", {1, 8}, {-1});
      }},
     {fixed + "/first_block: [1099511627776] does not fit",
      [](auto& r) { promise_terabytes(r, fixed + "/first_block"); }},

@@ -4,8 +4,8 @@ controllers in numpy, written from docs/model.md alone, with draws of its own.
     python3 criteria_oracle.py TRIALS [SIGMA_HEAD:CONTROLLER...]
 
 CONTROLLER is fixed, follow or a criterion of the greedy planner. The world is that of
-experiments/seed/ekf-circle-ranged.ini. Prints a line for each: the means and standard errors of trace_P, unseen and
-pose_error [docs/results-format.md], of log det P after the last update, and of the length of the robot's true path.
+experiments/seed/ekf-circle-ranged.ini. Prints a line for each: the means and standard errors of trace_P, unseen,
+pose_error, log_score and path_length [docs/results-format.md].
 """
 
 import sys
@@ -126,7 +126,7 @@ def simulate(controller, sigma_head, trials, rng):
     mean, P = np.zeros((trials, N)), np.zeros((trials, N, N))
     mean[:, 3:] = (features + sigma[..., None] * normal((trials, M, 2))).reshape(trials, -1)
     P[:, np.arange(3, N), np.arange(3, N)] = np.repeat(sigma**2, 2, -1)
-    unseen, error, distance = np.zeros(trials), np.zeros(trials), np.zeros(trials)
+    unseen, pose_error, score, distance = np.zeros((4, trials))
     for k in range(1, K):
         turn, move = control(controller, mean, P, k, sigma_head)
         before = robot
@@ -147,9 +147,12 @@ def simulate(controller, sigma_head, trials, rng):
         expected, H = measurement(mean)
         P, gain = updated(P, H, seen, sigma)
         mean = mean + (gain @ (z - expected)[..., None])[..., 0]
-        error += (mean[:, 0] - theta) ** 2 + ((mean[:, 1:3] - robot) ** 2).sum(-1)
-    return {"trace_P": COSTS["trace"](P), "unseen": unseen, "pose_error": error, "log_det_P": COSTS["log_det"](P),
-            "distance": distance}
+        error = mean - np.concatenate([theta[:, None], robot, features.reshape(trials, -1)], 1)
+        pose_error += (error[:, :3] ** 2).sum(-1)
+        nees = (error * np.linalg.solve(P, error[..., None])[..., 0]).sum(-1)
+        score += (N * np.log(2 * np.pi) + COSTS["log_det"](P) + nees) / 2 / (K - 1)
+    return {"trace_P": COSTS["trace"](P), "unseen": unseen, "pose_error": pose_error, "log_score": score,
+            "path_length": distance}
 
 
 def means(cell, trials, seed=1):

@@ -110,6 +110,8 @@ void sum_up(const DeformableSettings& scenario, Trial& trial) {
         trial.pose_error += (step.mean - step.truth).head(pose_dimension(scenario)).squaredNorm();
         if (k == 0) continue;
         for (const bool feature_seen : step.seen) trial.unseen += feature_seen ? 0 : 1;
+        trial.path_length +=
+            (step.truth - trial.steps[k - 1].truth).segment(row_of_position(scenario), 2).norm();
         nees += step.nees;
         const Eigen::MatrixXd L = (scenario.filter.covariance * step.covariance).llt().matrixL();
         log_determinants += 2 * L.diagonal().array().log().sum();

@@ -58,6 +58,7 @@ struct Trial {
     double nees_ratio = 0;     ///< mean over k >= 1 of NEES/n; NaN for K = 1
     double nis_ratio = 0;      ///< sum of NIS / sum of m; NaN if there never was a row
     double log_score = 0;      ///< mean over k >= 1 of (n log 2 pi + log det P + NEES)/2, reported covariance
+    double path_length = 0;    ///< of the true robot
 };
 
 /// Runs one trial from pose 0 to K-1. Makes no check of the scenario and knows no status: a trial that breaks down

@@ -24,7 +24,8 @@ STATUS = "completed lost covariance_not_positive_definite non_finite"
 
 def of_study(arm):
     path = f"/{arm['scenario']}/{arm['arm']}"
-    for name in ("trace_P", "unseen", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P", "log_score"):
+    for name in ("trace_P", "unseen", "pose_error", "nees_ratio", "nis_ratio", "mean_trace_P", "log_score",
+                 "path_length"):
         yield f"{path}/{name}", "mean", arm[name]["mean"]
         yield f"{path}/{name}", "median", arm[name]["median"]
         yield f"{path}/{name}", "missing", arm["failed"]

@@ -218,7 +218,7 @@ TEST_CASE("compare: the program compares, in every format") {
                                "holm_p", "effect_size", "variance_reduction", "mean_a", "mean_b"})
         CHECK(pairs[0]["trace_P"].contains(figure));
     CHECK(here.credence("compare two.h5 one.h5 --arms one:greedy,two:fixed --format csv -o t.csv").exit_code == 0);
-    CHECK(here.shell("grep -c '^ekf-circle-constant,one:greedy.ekf,two:fixed.ekf,' t.csv").out == "7\n");
+    CHECK(here.shell("grep -c '^ekf-circle-constant,one:greedy.ekf,two:fixed.ekf,' t.csv").out == "8\n");
     CHECK(here.shell("awk -F, '{print NF}' t.csv | sort -u").out == "24\n");
     CHECK_THAT(here.credence("compare --help").out, Contains("usage: credence compare FILE.h5"));
     CHECK_THAT(here.credence("--help").out, Contains("compare  "));

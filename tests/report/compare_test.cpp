@@ -37,8 +37,8 @@ TEST_CASE("compare: every number is computed from the columns") {
         const std::vector<ArmResults>& arms = study.scenarios[s].arms;
         CHECK(pair.comparison.name() == arms[1].name + " - " + arms[0].name);
         CHECK(pair.pairs() == 300);
-        REQUIRE(pair.comparison.columns.size() == 7);
-        for (std::size_t c = 0; c < 7; ++c) {
+        REQUIRE(pair.comparison.columns.size() == 8);
+        for (std::size_t c = 0; c < 8; ++c) {
             const std::vector<double>&a = arms[1].columns[c], &b = arms[0].columns[c];
             std::vector<double> difference(300);
             double below = 0, above = 0;
@@ -59,7 +59,7 @@ TEST_CASE("compare: every number is computed from the columns") {
     // The same to the last bit as in a report beside the arms.
     const std::vector<Comparison> reported = planned_against_baselines(study.scenarios, study.root_seed);
     for (std::size_t s = 0; s < 2; ++s)
-        for (std::size_t c = 0; c < 7; ++c) {
+        for (std::size_t c = 0; c < 8; ++c) {
             CHECK(reported[s].columns[c].paired.bootstrap95.low ==
                   report.pairs[s].comparison.columns[c].paired.bootstrap95.low);
             CHECK(reported[s].columns[c].holm_p == report.pairs[s].comparison.columns[c].holm_p);
@@ -72,7 +72,7 @@ TEST_CASE("compare: arms the other way round turn every sign") {
                         other = compared({{"s.h5", study}}, "fixed, greedy");
     REQUIRE(other.pairs.size() == 2);
     for (std::size_t s = 0; s < 2; ++s)
-        for (int c = 0; c < 7; ++c) {
+        for (int c = 0; c < 8; ++c) {
             const PairedComparison &p = of(one.pairs[s], c), &q = of(other.pairs[s], c);
             CHECK(q.difference.mean == -p.difference.mean);
             CHECK(q.difference.ci95.low == -p.difference.ci95.high);
@@ -133,7 +133,7 @@ TEST_CASE("compare: a difference that is the same in every trial has no spread, 
     extend(study.scenarios[0], 41);
     const double d = 0.1;  // the sum of 41 of them, rounded, over 41 is another number
     for (std::size_t arm = 0; arm < 2; ++arm)
-        for (std::size_t c = 0; c < 7; ++c)
+        for (std::size_t c = 0; c < 8; ++c)
             std::fill(study.scenarios[0].arms[arm].columns[c].begin(), study.scenarios[0].arms[arm].columns[c].end(),
                       arm == 1 ? d : 0);
     const CompareReport report = compared({{"constant.h5", study}});
@@ -148,7 +148,7 @@ TEST_CASE("compare: in the matched translation world both arms see and are the s
     const CompareReport report = compared({{"matched.h5", run({matched()}, 1, 200)}});
     REQUIRE(report.pairs.size() == 1);
     CHECK(report.pairs[0].conclusion == Conclusion::equal);
-    for (int c = 0; c < 7; ++c) {
+    for (int c = 0; c < 8; ++c) {
         const PairedComparison& paired = of(report.pairs[0], c);
         CHECK(paired.ties == 1);
         CHECK(paired.difference.mean == 0);
@@ -178,7 +178,7 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     CHECK(pair.a.failed == 20);
     CHECK(pair.b.failed == 20);
     CHECK(pair.b.lost == 1);
-    for (std::size_t c = 0; c < 7; ++c)
+    for (std::size_t c = 0; c < 8; ++c)
         CHECK(pair.a.mean[c] - pair.b.mean[c] ==
               Approx(of(pair, static_cast<int>(c)).difference.mean).epsilon(1e-9).margin(1e-12));
     const std::string text = compare_text(report);

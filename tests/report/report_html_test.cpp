@@ -132,8 +132,8 @@ TEST_CASE("page: verdicts, findings and why come before tables, tables before ch
 TEST_CASE("page: every chart has marks with their values, and words for who does not see it") {
     const std::string page = page_of(small_report());
     // The verdict's picture and coverage; directions and 2 ellipses; NEES of 6 groups; NIS of 3 groups; whiteness of 2
-    // arms; 3 distributions; 7 differences.
-    CHECK(count_of(page, "<svg viewBox") == 2 + 3 + 6 + 3 + 2 + 3 + 7);
+    // arms; 3 distributions; 8 differences.
+    CHECK(count_of(page, "<svg viewBox") == 2 + 3 + 6 + 3 + 2 + 3 + 8);
     for (auto at = page.find("<svg viewBox"); at != std::string::npos; at = page.find("<svg viewBox", at + 1)) {
         const std::string svg = page.substr(at, page.find("</svg>", at) - at);
         CHECK(count_of(svg, "class=\"mark") + count_of(svg, "class=\"bar") >= 4);
@@ -195,7 +195,7 @@ TEST_CASE("page: report, compare and judge write it") {
     CHECK_THAT(work.credence("report --help").out, Contains("html"));
 
     const std::string compared = work.credence("compare s.h5 --format html").out;
-    CHECK(count_of(compared, "<svg ") == 7);
+    CHECK(count_of(compared, "<svg ") == 8);
     std::vector<std::string> missing;
     missing_numbers(Json::parse(work.credence("compare s.h5 --format json").out), 0, "", numbers_of(compared), missing);
     CAPTURE(joined(missing));

@@ -113,7 +113,7 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
         evidence_rows += count(e.groups) * (3 + steps * 6) + count(e.nis) * (1 + steps) + count(e.whiteness) +
                          count(e.bias) * steps + steps + 2 + direction_rows;
     }
-    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 7 * (4 + 2) + evidence_rows);
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 8 * (4 + 2) + evidence_rows);
     const DirectionOfGroup& largest = report.arms[1].consistency.directions.largest.front();
     CHECK_THAT(csv, Contains(",direction_largest:all,1," + to_text(largest.ratio) + ",," +
                              to_text(largest.interval.low) + "," + to_text(largest.interval.high) + ","));

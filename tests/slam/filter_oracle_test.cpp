@@ -34,6 +34,7 @@ void check_trial(const Settings& settings, Controller controller, std::uint64_t 
     CHECK(worst.nees_ratio < 1e-10);
     CHECK(worst.nis_ratio < 1e-10);
     CHECK(worst.log_score < 1e-10);
+    CHECK(worst.path_length < 1e-10);
 }
 
 }  // namespace

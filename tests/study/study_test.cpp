@@ -92,11 +92,11 @@ TEST_CASE("study: all arms of a trial share their noise") {
 TEST_CASE("study: the footprint grows by what a trial keeps") {
     const Study study = new_study(small_scenarios(), 1);
     const Footprint few = footprint(study, 5000, 1), many = footprint(study, 6000, 1);
-    // 2 scenarios of 2 arms; a trial keeps 8 (its number) + 6 * 8 + 2 * 4 + 1 bytes in the file.
-    CHECK(many.file - few.file == 1000 * 4 * (8 + 48 + 8 + 1));
+    // 2 scenarios of 2 arms; a trial keeps 8 (its number) + 7 * 8 + 2 * 4 + 1 bytes in the file.
+    CHECK(many.file - few.file == 1000 * 4 * (8 + 56 + 8 + 1));
     // A detailed one keeps 7 steps of NEES and n errors too, in single precision, and moments of 8 or 7 groups.
     const Footprint none = footprint(study, 1000, 1), more = footprint(study, 2000, 1);
     CHECK(more.file - none.file ==
-          1000 * (4 * 65 + 2 * 7 * 4 * (10 + 9) + 2 * 8 * (moment_count(9, 8) + moment_count(8, 6))));
+          1000 * (4 * 73 + 2 * 7 * 4 * (10 + 9) + 2 * 8 * (moment_count(9, 8) + moment_count(8, 6))));
     CHECK(many.memory > few.memory);
 }

@@ -118,6 +118,7 @@ TEST_CASE("landmark world: a block is its trials one by one, on every target") {
                       *work, own, figures.data());
             for (std::size_t c = 0; c < column_count; ++c)
                 CHECK(same_bits(own[c], ekf.columns[c * trials + static_cast<std::size_t>(trial)]));
+            CHECK(own[column_path_length] == Approx((scenario.poses - 1) * scenario.loop.step).epsilon(1e-12));
         }
     }
 }

@@ -39,12 +39,13 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
         const Trajectory t = replay_trial(problem, {Controller::greedy}, 5, 2);
         const std::vector<TrajectoryStep> steps = steps_of(t);
         const int n = state_size(scenario);
-        double nees = 0, nis = 0, rows = 0, unseen = 0, score = 0;
+        double nees = 0, nis = 0, rows = 0, unseen = 0, score = 0, length = 0;
         for (std::size_t k = 1; k < steps.size(); ++k) {
             const TrajectoryStep& step = steps[k];
             const double own = mahalanobis(step.mean - step.truth, step.covariance);
             CHECK(step.nees == Approx(own).epsilon(1e-10));
             nees += own / n;
+            length += (step.truth - steps[k - 1].truth).segment<2>(scenario.process == Process::heading).norm();
             score += (own + n * std::log(2 * pi) + std::log(step.covariance.determinant())) / 2;
             std::vector<Eigen::Index> seen;
             for (Eigen::Index i = 0; i < step.innovation.size(); ++i)
@@ -60,6 +61,7 @@ TEST_CASE("trajectory: NEES, NIS, trace and unseen of the columns follow from wh
         }
         CHECK(t.column_values[column_nees_ratio] == Approx(nees / (scenario.poses - 1)).epsilon(1e-10));
         CHECK(t.column_values[column_log_score] == Approx(score / (scenario.poses - 1)).epsilon(1e-10));
+        CHECK(t.column_values[column_path_length] == Approx(length).epsilon(1e-10));
         CHECK(t.column_values[column_nis_ratio] == Approx(nis / rows).epsilon(1e-10));
         CHECK(t.column_values[column_unseen] == unseen);
         CHECK(t.column_values[column_trace_P] == steps.back().trace_P);

@@ -4,6 +4,7 @@
 #include <credence/text.hpp>
 
 #include "files/merge/scenario.hpp"
+#include "study/block_results.hpp"
 #include "study/releases.hpp"
 
 #include <algorithm>
@@ -61,6 +62,7 @@ public:
         : paths_(paths), shared_paths_(std::make_shared<const std::vector<std::string>>(paths)) {}
 
     void add(std::size_t file, Study part) {
+        require_all_columns(part, "cannot merge " + paths_[file]);
         if (scenarios_.empty()) begin(part, file);
         check_same_study(study_, part, paths_, file, first_);
         check_releases(study_, part, paths_, first_, file);

@@ -82,7 +82,7 @@ Snapshot snapshot_of(const std::string& path, RunState state, const Study& study
 }
 
 /// Columns for which a line has no room.
-const std::set<std::string> not_watched{"mean_trace_P", "log_score"};
+const std::set<std::string> not_watched{"mean_trace_P", "log_score", "path_length"};
 
 }  // namespace
 

@@ -32,6 +32,8 @@ struct Sums {
     Real unseen = Real(0), pose_error = Real(0), nees = Real(0), nis = Real(0), rows = Real(0), trace = Real(0);
     Real traces = Real(0);  ///< over the steps
     ScaledProduct<Real> determinants;  ///< of P, the product over the steps
+    Real path_length = Real(0);
+    Vector2<Real> position;  ///< of the true robot at the last pose
 };
 
 /// x^ - x, heading wrapped. [n].
@@ -214,6 +216,8 @@ CREDENCE_FLAT void evaluate_step(const CommonView& problem, const Layout& layout
     sums.trace = trace_P;
     sums.traces = sums.traces + trace_P;
     sums.determinants.multiply(evaluation.determinant);
+    sums.path_length = sums.path_length + sqrt(squared_norm(truth.position - sums.position));
+    sums.position = truth.position;
     if (trouble(belief, layout, whole + update.nis, positive_definite))
         note_trouble(belief, n, whole + update.nis, positive_definite, k, outcome);
 }
@@ -232,6 +236,7 @@ void write_columns(const CommonView& problem, const Sums<Real>& sums, Outcome<Re
     columns[column_mean_trace_P] = sums.traces / Real(steps);
     columns[column_log_score] =
         Real(0.5) * (Real(log_scale) + (sums.determinants.log() + sums.nees) / Real(steps));
+    columns[column_path_length] = sums.path_length;
     columns[column_status] = outcome.status;
     columns[column_status_pose] = outcome.pose;
 }

@@ -46,6 +46,7 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
     Real error[Layout::capacity];
     estimation_error(belief, truth, layout, error);
     sums.pose_error = squared_pose_error<Layout>(error);
+    sums.position = truth.position;
     note_trouble(belief, layout.size(), sums.pose_error, all_lanes<Real>(), 0, outcome);
     estimator.start(layout, belief, truth);
     observer.started(layout, truth, belief);

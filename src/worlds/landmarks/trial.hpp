@@ -47,6 +47,7 @@ void run_trial(const LandmarkView& problem, const Noise& noise, Observer& observ
     Outcome<Real> outcome;
     LandmarkDraws<Layout, Real> draws(layout);
     start_trial(problem, layout, noise, draws, work);
+    sums.position = truth.position;
     observer.started(layout, truth, belief);
 
     for (int k = 1; k < problem.poses; ++k) {
