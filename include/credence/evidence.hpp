@@ -134,6 +134,9 @@ struct SegmentEvidence {
     int steps = 0;                             ///< of a segment; 0: there are none
     /// The longest of any run, in steps: infinite where its errors do not decorrelate, 0 where it was not computed.
     double autocorrelation_time = 0;
+    std::string slowest;                       ///< the series that has it: `NEES/dim of all`, `error/sigma of x`
+    std::size_t window = 0;                    ///< lags that are summed up in it; 0: no window is long enough
+    std::vector<double> correlation;           ///< of that series by lag from 0 on, to twice the window
     std::int64_t steps_of_runs = 0;            ///< of all runs that did not fail
     std::vector<std::int64_t> run;             ///< [segments] that each is of
 

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace credence {
@@ -36,6 +37,14 @@ struct RecordGaps {
     double beside = std::numeric_limits<double>::quiet_NaN(), elsewhere = beside, difference = beside;
 };
 
+/// The normalised innovations squared of some rows, of the runs that count.
+struct LargestNis {
+    std::string part;             ///< `all`, or a group of rows
+    int rows = 0;                 ///< at each step that has any; -1: they differ
+    double count = 0, sum = 0;
+    std::vector<double> largest;  ///< ten at most, rising
+};
+
 /// In place of the steps of a segment: chosen by the errors where there are fewer than `least_segments` runs
 /// [evidence.hpp]; no segments.
 inline constexpr int segments_auto = -1, segments_off = 0;
@@ -45,6 +54,24 @@ struct RecordSegments {
     int asked = segments_auto;  ///< as given to `read_record`
     SegmentEvidence found{};
     std::shared_ptr<const ScenarioResults> results{};  ///< of segments in place of trials, if they count; else null
+};
+
+/// The error of a component over a run.
+struct ErrorCurve {
+    struct Point {
+        std::size_t step = 0;             ///< counted from 0
+        double error = 0, sigma = 0;      ///< sigma: what P says
+    };
+    std::string component, unit;
+    std::vector<Point> points{};          ///< of each stretch of steps the lowest and highest, also in sigmas
+    std::int64_t steps = 0, outside = 0;  ///< all that have the component; those with an error beyond two sigma
+};
+
+/// What a page draws of a run.
+struct RunCurves {
+    std::vector<double> times;                               ///< by step, in seconds; empty without `time`
+    std::vector<std::pair<std::size_t, std::size_t>> gaps;   ///< long ones: the steps before and behind them
+    std::vector<ErrorCurve> errors;                          ///< of the first components where there are many
 };
 
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
@@ -64,7 +91,9 @@ struct Record {
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};
+    std::vector<LargestNis> largest_nis{};
     RecordSegments segments{};
+    std::vector<RunCurves> curves{};      ///< of runs fewer than `least_segments`
     std::string chart{};  ///< of errors that differ between charts: `local`, `global` or `plain`; else empty
     /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
     /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.

@@ -30,8 +30,14 @@ void SegmentPlanner::add(std::int64_t run, const std::vector<std::size_t>& prese
         double sum = 0;
         for (const std::size_t k : present)
             if (const double one = value(f, k); !std::isnan(one)) known.push_back(one), sum += one;
-        const double mean = role == SeriesRole::nees ? sum / static_cast<double>(known.size()) : 0;
-        found_.autocorrelation_time = std::max(found_.autocorrelation_time, autocorrelation_time(known, mean));
+        const bool of_nees = role == SeriesRole::nees;
+        Autocorrelation one = autocorrelation(known, of_nees ? sum / static_cast<double>(known.size()) : 0);
+        if (!(one.time > found_.autocorrelation_time)) continue;
+        found_.autocorrelation_time = one.time;
+        found_.slowest = (of_nees ? "NEES/dim of " : "error/sigma of ") + all_series[f].part;
+        found_.window = one.window;
+        if (one.window > 0) one.by_lag.resize(std::min(one.by_lag.size(), 2 * one.window + 1));
+        found_.correlation = std::move(one.by_lag);
     }
 }
 

@@ -36,6 +36,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Lo
       moments_(shape_.n, shape_.groups.size()) {
     record_.results = empty_record_results(shape_, all_series_.list, path);
     record_.has_innovations = shape.has_innovations();
+    for (std::size_t g = 0; shape.has_innovations() && g <= shape.row_groups.size(); ++g)
+        record_.largest_nis.push_back({g == 0 ? "all" : shape.row_groups[g - 1].name, 0, 0, 0, {}});
     keeps_nees_ = shape.trials <= most_values / shape.steps;
     keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && !keeps_nees_;
     if (keeps_nees_) nees_.resize(size(shape.steps));
@@ -159,6 +161,7 @@ void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const Checked
 
 void RecordTotals::end_trial(std::int64_t trial) {
     add_columns(trial);
+    keep_curves(size(trial));
     if (status_ != Status::completed) {
         ++record_.trouble_count;
         if (record_.troubles.size() < most_troubles) record_.troubles.push_back(trouble_);
@@ -235,6 +238,7 @@ void RecordTotals::note_lost(std::int64_t trial, double nees_ratio) {
 void RecordTotals::add_totals() {
     for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
     add_distribution();
+    keep_largest_nis();
     for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
         arm().totals.products.sum[lag].add(products_.sum[lag]);
         arm().totals.products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
@@ -291,6 +295,24 @@ void RecordTotals::add_distribution() {
         if (keeps_cells_)
             ++arm().totals.cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
         if (keeps_nees_) nees_[k].push_back(1 - chi_square_p(nees, dimension));
+    }
+}
+
+void RecordTotals::keep_largest_nis() {
+    constexpr std::size_t most = 10;
+    for (LargestNis& nis : record_.largest_nis) {
+        const std::size_t f = all_series_.nis + 2 * static_cast<std::size_t>(&nis - record_.largest_nis.data());
+        for (const std::size_t k : present_) {
+            const double value = series(f, k);
+            const int rows = static_cast<int>(series(f + 1, k));
+            if (rows == 0) continue;
+            nis.rows = nis.rows == 0 || nis.rows == rows ? rows : -1;
+            ++nis.count;
+            nis.sum += value;
+            if (nis.largest.size() == most && value <= nis.largest.front()) continue;
+            nis.largest.insert(std::ranges::upper_bound(nis.largest, value), value);
+            if (nis.largest.size() > most) nis.largest.erase(nis.largest.begin());
+        }
     }
 }
 

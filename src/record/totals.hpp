@@ -48,11 +48,13 @@ private:
     void check_end(std::int64_t trial);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
     void end_trial(std::int64_t trial);
+    void keep_curves(std::size_t trial);
     void add_columns(std::int64_t trial);
     void add_totals();
     void add_series(std::size_t f);
     void add_coverage(std::size_t f, std::size_t k, double value);
     void add_distribution();
+    void keep_largest_nis();
     void set_dimension(std::size_t k);
     void add_rounding(std::size_t k);
     void finish_rounding();

@@ -8,6 +8,7 @@
 
 #include "record/results.hpp"
 #include "report/format.hpp"
+#include "statistics/goodness.hpp"
 #include "verdict/judgement.hpp"
 
 namespace credence {
@@ -33,6 +34,28 @@ void hint_at_gaps(const RecordGaps& gaps, Consistency& verdict) {
         verdict.hints.push_back("steps are missing beside large errors: NEES/dim is " + number(gaps.beside, 2) +
                                 " at the steps beside a gap and " + number(gaps.elsewhere, 2) +
                                 " at the others; write the steps with large errors, too");
+}
+
+/// Innovations that a gate removed are missing beyond a quantile of chi-square, at which the others end abruptly. Noise
+/// that is bounded ends so too where S is right, but for another mean; correlated innovations may end anywhere.
+void hint_at_gate(const Record& record, const Evidence& evidence, Consistency& verdict) {
+    constexpr double surely = 30, abrupt = 25, near = 2.5, white = 0.2;
+    const auto correlated = [](const Whiteness& lag) { return std::abs(lag.scaled) > white; };
+    if (std::ranges::any_of(evidence.whiteness, correlated)) return;
+    for (const LargestNis& nis : record.largest_nis) {
+        if (nis.rows < 1 || nis.largest.size() < 10) continue;
+        const double end = nis.largest.back(), below = 1 - chi_square_p(end, nis.rows),
+                     missing = nis.count * (1 - below);
+        const auto moment = [&](int power) { return (1 - chi_square_p(end, nis.rows + 2 * power)) / below; };
+        const double mean = nis.rows * moment(1), square = nis.rows * (nis.rows + 2) * moment(2),
+                     error = std::sqrt((square - mean * mean) / nis.count),
+                     at_end = nis.count * (1 - (1 - chi_square_p(nis.largest.front(), nis.rows)) / below);
+        if (missing < surely || at_end > abrupt || std::abs(nis.sum / nis.count - mean) > near * error) continue;
+        verdict.hints.push_back("no innovation (" + nis.part + ") has a NIS beyond " + number(end, 2) + ", where " +
+                                number(missing, 0) + " of " + number(nis.count, 0) +
+                                " should be; the others are spread as they should: did a gate remove them?");
+        return;
+    }
 }
 
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
@@ -126,6 +149,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     results.arms.clear();  // large, and of no further use
     ArmReport& arm = report.arms.front();
     arm.gaps = record.gaps;
+    arm.curves = std::move(record.curves);
     if (arm.evidence.segments.count) {
         set_means(*record.segments.results, arm);
         report.not_judged.push_back(
@@ -134,6 +158,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     }
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
+    hint_at_gate(record, arm.evidence, arm.consistency);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_charts(record, arm);
     return report;

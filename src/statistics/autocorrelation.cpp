@@ -28,16 +28,20 @@ std::vector<double> lagged_products(const std::vector<double>& values, double me
 
 }  // namespace
 
-double autocorrelation_time(const std::vector<double>& values, double mean) {
-    constexpr double window = 5;
-    if (std::ranges::all_of(values, [&](double value) { return value == mean; })) return 0.5;
+Autocorrelation autocorrelation(const std::vector<double>& values, double mean) {
+    constexpr double of_time = 5;
+    Autocorrelation found;
+    if (std::ranges::all_of(values, [&](double value) { return value == mean; })) return found;
     const std::vector<double> products = lagged_products(values, mean);
     double time = 0.5;
-    for (std::size_t lag = 1; lag <= values.size() / 2; ++lag) {
-        time += products[lag] / products[0];
-        if (static_cast<double>(lag) >= window * time) return std::max(time, 0.5);
+    for (std::size_t lag = 0; lag <= values.size() / 2; ++lag) {
+        found.by_lag.push_back(products[lag] / products[0]);
+        if (lag == 0 || found.window > 0) continue;
+        time += found.by_lag.back();
+        if (static_cast<double>(lag) >= of_time * time) found.window = lag;
     }
-    return std::numeric_limits<double>::infinity();
+    found.time = found.window > 0 ? std::max(time, 0.5) : std::numeric_limits<double>::infinity();
+    return found;
 }
 
 double independent_steps(double autocorrelation_time) { return std::ceil(10 * autocorrelation_time); }

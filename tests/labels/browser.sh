@@ -7,11 +7,19 @@ command -v chromium >/dev/null || { echo "SKIPPED: chromium is not installed"; e
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# A title that would run if it were not escaped, in a study of two scenarios; and a record of another program's filter.
+# A title that would run if it were not escaped, in a study of two scenarios; a record of another program's filter, and a
+# hundred of its runs as one log.
 build/credence run experiments/seed/kf-circle-constant.ini experiments/seed/ekf-straight-ranged.ini --trials 600 --quiet -o "$work/study.h5" \
   --set 'scenario.title=</title></style><script>document.title="run"</script><img src=x onerror=alert(1)> & "quotes"'
 build/tests/write_record "$work/record.h5"
-for page in "report study" "judge record"; do
+/usr/bin/python3 - "$work/record.h5" "$work/log.h5" <<'END'
+import sys, h5py
+with h5py.File(sys.argv[1]) as record, h5py.File(sys.argv[2], "w") as log:
+    for name, values in record.items():
+        if name.startswith(("error", "covariance", "innovation")):
+            log[name] = values[:100].reshape(-1, *values.shape[2:])
+END
+for page in "report study" "judge record" "judge log"; do
   read -r command name <<<"$page"
   build/credence "$command" "$work/$name.h5" --format html -o "$work/$name.html" 2>"$work/progress"
   build/credence "$command" "$work/$name.h5" --format json -o "$work/$name.json" 2>"$work/progress"

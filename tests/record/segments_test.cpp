@@ -52,16 +52,48 @@ TEST_CASE("segments: the autocorrelation time of an autoregression is that of it
         // 1/2 + sum of the powers of the correlation
         const double expected = 0.5 + correlation / (1 - correlation);
         CAPTURE(correlation);
-        CHECK(autocorrelation_time(autoregressive(correlation, 400000, 1), 0) == Approx(expected).epsilon(0.06));
+        CHECK(autocorrelation(autoregressive(correlation, 400000, 1), 0).time == Approx(expected).epsilon(0.06));
     }
-    CHECK(autocorrelation_time({3, 3, 3, 3}, 3) == 0.5);
-    CHECK(autocorrelation_time({}, 0) == 0.5);
-    CHECK(autocorrelation_time({1, -1, 1, -1, 1, -1, 1, -1}, 0) == 0.5);
+    CHECK(autocorrelation({3, 3, 3, 3}, 3).time == 0.5);
+    CHECK(autocorrelation({}, 0).time == 0.5);
+    CHECK(autocorrelation({1, -1, 1, -1, 1, -1, 1, -1}, 0).time == 0.5);
     std::vector<double> offset = autoregressive(0, 1000, 1);
     for (double& value : offset) value += 1;
-    CHECK(std::isinf(autocorrelation_time(offset, 0)));
-    CHECK(autocorrelation_time(offset, 1) < 1);
+    CHECK(std::isinf(autocorrelation(offset, 0).time));
+    CHECK(autocorrelation(offset, 1).time < 1);
     CHECK(f_upper_quantile(0.01, 3, 20) == Approx(4.938193).epsilon(1e-6));  // scipy.stats.f.isf(0.01, 3, 20)
+}
+
+TEST_CASE("segments: the page draws the autocorrelation that their length follows from") {
+    const DrawnRecord log = logs(1, 1000, 0.6);
+    const SegmentEvidence found = judged(log).arms.front().evidence.segments;
+    double longest = 0;
+    std::size_t cut = 0;
+    std::string slowest;
+    std::vector<double> correlation;
+    for (int component = 0; component < 2; ++component) {
+        std::vector<double> sums{0};  // P is 1
+        for (std::size_t lag = 0; lag <= 500; ++lag) {
+            for (std::size_t k = 0; k + lag < 1000; ++k)
+                sums.back() += log.error[k](component) * log.error[k + lag](component);
+            sums.push_back(0);
+        }
+        double time = 0.5;
+        std::size_t window = 0;
+        while (window == 0 || static_cast<double>(window) < 5 * time) time += sums[++window] / sums[0];
+        if (time <= longest) continue;
+        longest = time;
+        cut = window;
+        slowest = "error/sigma of x" + std::to_string(component);
+        correlation = sums;
+    }
+    CHECK(found.autocorrelation_time == Approx(longest).epsilon(1e-12));
+    CHECK(found.window == cut);
+    CHECK(found.slowest == slowest);
+    REQUIRE(found.correlation.size() == 2 * cut + 1);
+    for (std::size_t lag = 0; lag <= 2 * cut; ++lag)
+        CHECK(found.correlation[lag] == Approx(correlation[lag] / correlation[0]).margin(1e-12));
+    CHECK(judged(log, 50).arms.front().evidence.segments.correlation.empty());
 }
 
 TEST_CASE("segments: a log is judged as a record whose trials are its segments") {

@@ -3,6 +3,7 @@
 #include "catch.hpp"
 
 #include "report/format.hpp"
+#include "base/thinned.hpp"
 #include "report/html/charts/chart.hpp"
 #include <credence/detail/histogram.hpp>
 #include "report/html/html.hpp"

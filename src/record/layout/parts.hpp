@@ -17,8 +17,8 @@ void set_state(const PlacedExtents& error, RecordLayout& layout);
 /// The dataset `steps` [trial], if it is there: the number of steps of each run.
 void add_steps(const RecordSource& source, RecordShape& shape);
 /// Checks the dataset `time` [step] or [trial, step], if it is there: it increases from step to step, and only a step
-/// that does not exist may be without one. The errors are read of trials with such steps.
-void check_time(const RecordSource& source, const RecordLayout& layout);
+/// that does not exist may be without one. The errors are read of trials with such steps. Keeps those of few runs.
+void check_time(const RecordSource& source, RecordLayout& layout);
 
 /// Gives every group the same source; none has a dataset of its own yet.
 void set_sources(GroupSource source, RecordLayout& layout);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <credence/evidence.hpp>
 #include <credence/text.hpp>
 #include <limits>
 
@@ -81,8 +82,8 @@ void require_increasing(const std::vector<double>& times, std::int64_t trial, co
 
 }  // namespace
 
-void check_time(const RecordSource& source, const RecordLayout& layout) {
-    const RecordShape& shape = layout.shape;
+void check_time(const RecordSource& source, RecordLayout& layout) {
+    RecordShape& shape = layout.shape;
     if (!source.has("time")) return;
     const DatasetPointer dataset = source.open("time", Numbers::any);
     const RecordExtents& extents = dataset->extents();
@@ -102,6 +103,7 @@ void check_time(const RecordSource& source, const RecordLayout& layout) {
                            common ? "" : "trial " + std::to_string(trial) + ", ");
         for (std::uint64_t of = trial; of < (common ? trials : trial + 1); ++of)
             require_times(times, static_cast<std::int64_t>(of), layout, dataset->place());
+        if (shape.trials < least_segments) shape.times.push_back(times);
     }
 }
 

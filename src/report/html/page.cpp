@@ -70,7 +70,8 @@ Html contents(const Report& report) {
 /// All sections on the trials of a scenario.
 Html evidence_of_trials(const Part& part) {
     if (std::ranges::all_of(part.arms, &ArmReport::not_run)) return {};
-    return column_tables(part) + evidence_tables(part) + charts(part);
+    const Html tables = column_tables(part) + evidence_tables(part);
+    return part.arms.front()->curves.empty() ? tables + charts(part) : charts(part) + tables;
 }
 
 /// A point of a sweep is folded: the page would be too long to find the curves.

@@ -72,6 +72,8 @@ Html direction_charts(const Part& part);
 /// The numbers of these charts, and the trials with the largest NEES.
 Html direction_tables(const Part& part);
 Html worst_trials_table(const Part& part);
+Html error_charts(const Part& part);
+Html autocorrelation_chart(const Part& part);
 Html nees_panels(const Part& part);
 Html nis_panels(const Part& part);
 Html whiteness_chart(const Part& part);

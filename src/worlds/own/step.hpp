@@ -46,6 +46,8 @@ struct RecordShape {
     /// [groups] of the types in the file, where a group has a covariance of its own.
     std::vector<double> group_epsilons;
     std::vector<RowGroup> row_groups;
+    /// Of a record of few runs, in seconds: [1] of all runs, or [trials]; empty without the dataset `time`.
+    std::vector<std::vector<double>> times;
     std::vector<std::string> known, known_groups;  ///< left out: components that are known exactly, and groups of these
     bool has_errors = true;              ///< false: NEES alone
     bool of_innovations = false;         ///< the errors are innovations

@@ -88,10 +88,12 @@ void Svg::path(const std::vector<ChartPoint>& points, const std::string& classes
 
 void Svg::area(const std::vector<ChartPoint>& upper, const std::vector<ChartPoint>& lower, const std::string& classes) {
     std::string d;
-    for (const ChartPoint& point : upper)
-        if (known(point)) d += (d.empty() ? "M" : "L") + pair(point);
-    for (auto point = lower.rbegin(); point != lower.rend(); ++point)
-        if (known(*point)) d += "L" + pair(*point);
+    const auto add_point = [&](const std::vector<ChartPoint>& line, std::size_t i) {
+        const bool level = i > 0 && i + 1 < line.size() && line[i - 1].y == line[i].y && line[i].y == line[i + 1].y;
+        if (known(line[i]) && !level) d += (d.empty() ? "M" : "L") + pair(line[i]);
+    };
+    for (std::size_t i = 0; i < upper.size(); ++i) add_point(upper, i);
+    for (std::size_t i = lower.size(); i-- > 0;) add_point(lower, i);
     if (!d.empty()) add("path", attribute("class", classes) + attribute("d", d + "Z"), {});
 }
 

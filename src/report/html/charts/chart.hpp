@@ -48,9 +48,6 @@ std::vector<std::size_t> thinned(std::size_t count, std::size_t most);
 /// The steps of a series at which it has a value.
 std::vector<std::size_t> observed(const std::vector<double>& values);
 
-/// The same for a line through values that are numbers: of each stretch its lowest and its highest are kept.
-std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most);
-
 struct ChartPoint {
     double x = 0, y = 0;
 };

@@ -180,20 +180,33 @@ Html charts(const Part& part) {
     const std::string over_all =
         "The verdict: a group whose interval lies wholly in the shaded region is within the margin. "
         "Coverage: a filter that is right has its marks on the lines.";
-    const std::string by_step =
+    const std::string bands =
         "Shaded: the 95 % band of a consistent filter, for a step by itself (dark) and for all steps "
         "together (light).";
+    const Html by_step =
+        chart_group("Errors by step",
+                    "Shaded: two sigma of P to either side, where 95 % of the errors of a filter that is right are. "
+                    "The mark is the error that is largest in sigmas. Of many components the first are drawn.",
+                    error_charts(part)) +
+        chart_group("NEES/dim by step", bands, nees_panels(part)) +
+        chart_group("NIS/m by step", bands, nis_panels(part)) +
+        chart_group("How long steps depend on each other",
+                    "The autocorrelation of the series in which it lasts longest. Its time is 1/2 and the sum of the "
+                    "correlations from lag 1 up to the first lag (dashed) of at least five times that; a segment has "
+                    "ten times as many steps.",
+                    autocorrelation_chart(part));
+    const bool few_runs = !part.arms.front()->curves.empty();
     Html differences;
     for (std::size_t i = 0; i < part.pairs.size(); ++i) differences += difference_charts(*part.pairs[i], i);
     const Html html =
+        (few_runs ? by_step : Html()) +
         chart_group("Over all steps", over_all, equivalence_chart(part) + coverage_chart(part)) +
         chart_group("Directions",
                     "Combinations of the state, each component in units of its own sigma: where the "
                     "squared error is largest and smallest against what P says. A filter that is right has "
                     "its marks in the shaded region, and its errors on the circle.",
                     direction_charts(part)) +
-        chart_group("NEES/dim by step", by_step, nees_panels(part)) +
-        chart_group("NIS/m by step", by_step, nis_panels(part)) +
+        (few_runs ? Html() : by_step) +
         chart_group("Innovations a lag apart",
                     "A consistent filter's innovations are not correlated: dark, the 95 % band of a "
                     "lag by itself; light, of all lags together.",

@@ -130,20 +130,4 @@ std::vector<std::size_t> observed(const std::vector<double>& values) {
     return steps;
 }
 
-std::vector<std::size_t> thinned_line(const std::vector<double>& values, std::size_t most) {
-    if (values.size() <= 2 * most) return thinned(values.size(), values.size());
-    const std::size_t stretch = (values.size() + most - 1) / most;
-    std::vector<std::size_t> chosen;
-    for (std::size_t first = 0; first < values.size(); first += stretch) {
-        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first),
-                   end = values.begin() + static_cast<std::ptrdiff_t>(std::min(first + stretch, values.size()));
-        const auto [low, high] = std::minmax_element(begin, end);
-        const auto a = static_cast<std::size_t>(low - values.begin()),
-                   b = static_cast<std::size_t>(high - values.begin());
-        chosen.push_back(std::min(a, b));
-        if (a != b) chosen.push_back(std::max(a, b));
-    }
-    return chosen;
-}
-
 }  // namespace credence

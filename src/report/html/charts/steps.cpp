@@ -1,12 +1,16 @@
 // The page's charts by step and by lag: a panel for each component group, each group of rows, each arm.
 
+#include "base/thinned.hpp"
 #include "report/format.hpp"
 #include "report/html/charts/chart.hpp"
 
 #include "report/html/page.hpp"
 #include "report/words.hpp"
 
+#include <credence/text.hpp>
+
 #include <cmath>
+#include <numeric>
 
 namespace credence::page {
 
@@ -28,10 +32,33 @@ struct Panel {
     std::vector<Series> series;
 };
 
-Scale across(std::size_t steps) { return {ScaleKind::linear, 0.5, static_cast<double>(steps) + 0.5, left, right}; }
+/// Where steps lie: at their times in seconds, from the first one on, or without these at their numbers.
+struct Across {
+    std::vector<double> at;  ///< by step
+    std::string label = "step";
+    double half = 0.5;       ///< of the way to the next
+    Scale scale;
+
+    Across(std::vector<double> times, std::size_t steps) : at(std::move(times)) {
+        const bool timed = !at.empty();
+        at.resize(steps);
+        if (!timed) std::iota(at.begin(), at.end(), 1);
+        const std::vector<std::size_t> known = observed(at);
+        const double first = at[known.front()];
+        if (timed) label = "time [s]" + (first == 0 ? "" : " from " + to_text(first) + " s on");
+        for (double& time : at) time -= timed ? first : 0;
+        const double start = at[known.front()], end = at[known.back()];
+        if (known.size() > 1) half = (end - start) / static_cast<double>(2 * (steps - 1));
+        scale = scale_between(ScaleKind::linear, start - half, end + half, left, right);
+    }
+    double operator()(std::size_t k, double halves = 0) const { return scale(at[k] + halves * half); }
+    std::string step(std::size_t k) const {
+        return "step " + std::to_string(k + 1) + (label == "step" ? "" : ", " + short_number(at[k]) + " s");
+    }
+};
 
 /// Ranges over all panels, so that these can be compared.
-Scale upward(const std::vector<Panel>& panels) {
+Scale upward(const std::vector<Panel>& panels, double logarithmic_from) {
     Range range;
     range.include(1);
     for (const Panel& panel : panels)
@@ -41,7 +68,7 @@ Scale upward(const std::vector<Panel>& panels) {
                 if (series.ratio->simultaneous_band[k].low > 0) range.include(series.ratio->simultaneous_band[k].low);
                 range.include(series.ratio->simultaneous_band[k].high);
             }
-    return range.scale(bottom, top, 5);
+    return range.scale(bottom, top, logarithmic_from);
 }
 
 /// The steps through which a line is drawn, of those with a value: a sensor may speak at every tenth step.
@@ -54,48 +81,61 @@ std::vector<std::size_t> line_steps(const std::vector<double>& values) {
     return chosen;
 }
 
-void draw_band(Svg& svg, const Axes& axes, const std::vector<Interval>& band, const std::string& classes) {
+void draw_band(Svg& svg, const Axes& axes, const Across& x, const std::vector<Interval>& band,
+               const std::string& classes) {
     std::vector<double> heights;
     for (const Interval& interval : band) heights.push_back(interval.high);
     std::vector<ChartPoint> upper, lower;
-    for (const std::size_t k : line_steps(heights)) {
-        const double step = static_cast<double>(k) + 1;
-        for (const double x : {step - 0.5, step + 0.5}) {
-            upper.push_back({axes.x(x), axes.y(band[k].high)});
-            lower.push_back({axes.x(x), axes.y(band[k].low)});
+    for (const std::size_t k : line_steps(heights))
+        for (const double side : {-1.0, 1.0}) {
+            upper.push_back({x(k, side), axes.y(band[k].high)});
+            lower.push_back({x(k, side), axes.y(band[k].low)});
         }
-    }
     svg.area(upper, lower, classes);
 }
 
 bool same_bands(const BandedRatio& a, const BandedRatio& b) { return a.degrees == b.degrees; }
 
-void draw_bands(Svg& svg, const Axes& axes, const Panel& panel) {
+void draw_bands(Svg& svg, const Axes& axes, const Across& x, const Panel& panel) {
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
         if (i > 0 && same_bands(*panel.series[i].ratio, *panel.series.front().ratio)) continue;
-        draw_band(svg, axes, panel.series[i].ratio->simultaneous_band, "band joint");
-        draw_band(svg, axes, panel.series[i].ratio->band, "band");
+        draw_band(svg, axes, x, panel.series[i].ratio->simultaneous_band, "band joint");
+        draw_band(svg, axes, x, panel.series[i].ratio->band, "band");
     }
 }
 
-std::string hover(const Series& series, std::size_t k) {
+std::string hover(const Series& series, const Across& x, std::size_t k) {
     const BandedRatio& ratio = *series.ratio;
-    return series.arm + ", step " + std::to_string(k + 1) + ": " + short_number(ratio.ratio[k]) + " (joint band " +
+    return series.arm + ", " + x.step(k) + ": " + short_number(ratio.ratio[k]) + " (joint band " +
            short_number(ratio.simultaneous_band[k].low) + " to " + short_number(ratio.simultaneous_band[k].high) + ")";
 }
 
+/// No line goes across the long gaps of a run.
+void draw_gaps(Svg& svg, const Across& x, const RunCurves& run) {
+    for (const auto& [before, behind] : run.gaps)
+        svg.box({x(before, 1), top}, {x(behind, -1), bottom - 1}, "gap",
+                "no steps between " + x.step(before) + " and " + x.step(behind));
+}
+
 /// A line and its marks: of the series at `place` among more than two, marks at different steps, so that none hides
-/// another, and at the last.
-void draw_series(Svg& svg, const Axes& axes, const Series& series, std::size_t place, std::size_t among) {
+/// another, and at the last; of a long one alone, of the steps outside the joint band.
+void draw_series(Svg& svg, const Axes& axes, const Across& x, const Series& series, std::size_t place,
+                 std::size_t among) {
     const std::vector<double>& values = series.ratio->ratio;
-    const auto at = [&](std::size_t k) { return ChartPoint{axes.x(static_cast<double>(k) + 1), axes.y(values[k])}; };
+    const auto at = [&](std::size_t k) { return ChartPoint{x(k), axes.y(values[k])}; };
     std::vector<ChartPoint> line;
     for (const std::size_t k : line_steps(values)) line.push_back(at(k));
     svg.path(line, "line " + series_class(series.number));
-    const std::vector<std::size_t> steps = observed(values), places = thinned(steps.size(), most_marks);
+    std::vector<std::size_t> steps = observed(values);
+    if (among == 1 && steps.size() > 2 * most_line_points)
+        std::erase_if(steps, [&, last = steps.back()](std::size_t k) {
+            const Interval& band = series.ratio->simultaneous_band[k];
+            return k != last && values[k] >= band.low && values[k] <= band.high;
+        });
+    const std::vector<std::size_t> places = thinned(steps.size(), most_marks);
     for (std::size_t i = 0; i < places.size(); ++i)
         if (among <= 2 || i % among == place || i + 1 == places.size())
-            svg.mark(at(steps[places[i]]), series.number, hover(series, steps[places[i]]));
+            svg.mark(at(steps[places[i]]), series.number, hover(series, x, steps[places[i]]));
 }
 
 std::string description(const Panel& panel, const std::string& measure) {
@@ -113,17 +153,21 @@ std::string description(const Panel& panel, const std::string& measure) {
 
 Html panels_html(const Part& part, const std::vector<Panel>& panels, const std::string& measure,
                  const std::string& what) {
-    const Scale y = upward(panels);
+    const std::vector<RunCurves>& runs = part.arms.front()->curves;
+    const RunCurves run = runs.size() == 1 ? runs.front() : RunCurves();
+    const Scale y = upward(panels, runs.empty() ? 5 : INFINITY);  // chi-square of few reaches 0
     Html html;
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const std::size_t steps = panels[i].series.front().ratio->ratio.size();
-        const Axes axes{across(steps), y, "step", measure, static_cast<int>(std::min<std::size_t>(8, steps)), 5};
+        const Across x(run.times, steps);
+        const Axes axes{x.scale, y, x.label, measure, static_cast<int>(std::min<std::size_t>(8, steps)), 5};
         Svg svg(width, height);
-        draw_bands(svg, axes, panels[i]);
+        draw_bands(svg, axes, x, panels[i]);
         axes.draw(svg);
         svg.line({left, y(1)}, {right, y(1)}, "ideal");
         const std::vector<Series>& series = panels[i].series;
-        for (std::size_t s = 0; s < series.size(); ++s) draw_series(svg, axes, series[s], s, series.size());
+        for (std::size_t s = 0; s < series.size(); ++s) draw_series(svg, axes, x, series[s], s, series.size());
+        draw_gaps(svg, x, run);
         html +=
             chart(panels[i].name, svg.html(part.id(what + std::to_string(i)),
                                            part.scenario.name + ": " + measure + " of " + panels[i].name + " by step",
@@ -157,7 +201,85 @@ void draw_whiteness_band(Svg& svg, const Axes& axes, const std::vector<Whiteness
     svg.area(upper, lower, classes);
 }
 
+/// Beside far smaller errors the band goes on outside.
+Scale upward(const ErrorCurve& curve) {
+    Range range;
+    for (const ErrorCurve::Point& point : curve.points) range.include(point.error);
+    const double most = 4 * std::max(-range.low, range.high);
+    for (const ErrorCurve::Point& point : curve.points)
+        for (const double side : {-1, 1}) range.include(side * std::min(2 * point.sigma, most));
+    return range.scale(bottom, top, INFINITY);
+}
+
+Html error_chart(const Part& part, const RunCurves& run, const ErrorCurve& curve, const std::string& id,
+                 const std::string& of) {
+    const std::string unit = with_powers(curve.unit);
+    const Across x(run.times, static_cast<std::size_t>(part.scenario.poses - 1));
+    const Axes axes{x.scale, upward(curve), x.label, unit.empty() ? "error" : "error [" + unit + "]"};
+    std::vector<ChartPoint> line, upper, lower;
+    const ErrorCurve::Point* worst = &curve.points.front();
+    for (const ErrorCurve::Point& point : curve.points) {
+        line.push_back({x(point.step), axes.y(point.error)});
+        upper.push_back({line.back().x, axes.y(2 * point.sigma)});
+        lower.push_back({line.back().x, axes.y(-2 * point.sigma)});
+        if (std::abs(point.error) / point.sigma > std::abs(worst->error) / worst->sigma) worst = &point;
+    }
+    const std::string says = "largest at " + x.step(worst->step) + ": " + short_number(worst->error) + " " + unit +
+                             ", P's sigma " + short_number(worst->sigma);
+    Svg svg(width, height);
+    svg.area(upper, lower, "band");
+    axes.draw(svg);
+    svg.line({left, axes.y(0)}, {right, axes.y(0)}, "ideal");
+    svg.path(line, "line " + series_class(0));
+    draw_gaps(svg, x, run);
+    svg.mark({x(worst->step), axes.y(worst->error)}, 0, says);
+    const double share = static_cast<double>(curve.outside) / static_cast<double>(curve.steps);
+    return chart(of + ": " + percent(share) + " beyond two sigma",
+                 svg.html(id, part.scenario.name + ": error of " + of + " by step",
+                          std::to_string(curve.outside) + " of " + std::to_string(curve.steps) +
+                              " steps are beyond two sigma; " + says + "."));
+}
+
 }  // namespace
+
+Html error_charts(const Part& part) {
+    const std::vector<RunCurves>& runs = part.arms.front()->curves;
+    Html html;
+    int number = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        for (const ErrorCurve& curve : runs[i].errors)
+            if (curve.steps > 0)
+                html += error_chart(part, runs[i], curve, part.id("error" + std::to_string(++number)),
+                                    (runs.size() > 1 ? "run " + std::to_string(i) + ", " : "") + curve.component);
+    return html;
+}
+
+Html autocorrelation_chart(const Part& part) {
+    const SegmentEvidence& segments = part.arms.front()->evidence.segments;
+    const std::vector<double>& values = segments.correlation;
+    if (values.empty()) return {};
+    Range range;
+    range.include(0);
+    for (const double value : values) range.include(value);
+    const Axes axes{scale_between(ScaleKind::linear, 0, static_cast<double>(values.size() - 1), left, right),
+                    range.scale(bottom, top, INFINITY), "lag", "correlation"};
+    const auto at = [&](std::size_t lag) { return ChartPoint{axes.x(static_cast<double>(lag)), axes.y(values[lag])}; };
+    std::vector<ChartPoint> line;
+    for (const std::size_t lag : line_steps(values)) line.push_back(at(lag));
+    const std::string says = segments.window == 0 ? "does not decorrelate within half of the run"
+                                                  : number(segments.autocorrelation_time, 1) + " steps, cut at lag " +
+                                                        std::to_string(segments.window);
+    Svg svg(width, height);
+    axes.draw(svg);
+    svg.line({left, axes.y(0)}, {right, axes.y(0)}, "ideal");
+    svg.path(line, "line " + series_class(0));
+    const std::size_t end = segments.window > 0 ? segments.window : values.size() - 1;
+    svg.line({at(end).x, bottom}, {at(end).x, top}, "published", says);
+    svg.mark(at(end), 0, says);
+    return chart(segments.slowest + ": " + says,
+                 svg.html(part.id("autocorrelation"), part.scenario.name + ": autocorrelation by lag",
+                          segments.slowest + ": " + says + "."));
+}
 
 Html nees_panels(const Part& part) {
     Panels panels;
