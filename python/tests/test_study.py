@@ -108,7 +108,7 @@ def test_only_what_is_asked_for_is_read(monkeypatch):
     monkeypatch.setattr(h5py.Dataset, "__getitem__", counted)
     with credence.open(studies.one_scenario()) as study:
         arm = study["greedy.ekf"]
-        assert len(arm.columns) == 7
+        assert len(arm.columns) == 8
         assert arm.trials == 600
         assert read == []
         assert arm.read("trace_P", slice(3, 5)).shape == (2,)
