@@ -6,11 +6,8 @@
 # docs/planning.md as well.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source experiments/study.sh
 source experiments/planning/tables.sh
-build_program >&2
 trials=${1:-20000}
-out=results/planning
 baselines="fixed random nearest follow"
 criteria="trace log_det max_eigenvalue pose_trace pose_log_det features_trace"
 columns="trace_P unseen pose_error nees_ratio"

@@ -5,12 +5,10 @@
 # docs/theory/planning.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source experiments/study.sh
 source experiments/planning/tables.sh
-build_program >&2
 trials=${1:-20000}
-out=results/planning
 estimators="ekf fej iekf riekf"
+others="log_det pose_log_det max_eigenvalue"  # criteria that are compared with the trace
 columns="log_score pose_error nees_ratio path_length"
 
 # row STEM CONTROLLER ESTIMATOR: means, each beside the difference from the EKF that plans by trace, and the verdict.
@@ -37,15 +35,15 @@ row() {
   echo "|---|---|---|---|---|---|---|---|---|---|---|---|"
   for sigma in 0.001 0.05 0.1; do
     stem=$out/estimators-$sigma
-    for criterion in trace log_det pose_log_det max_eigenvalue; do
-      study "$stem-$criterion" "$trials" experiments/seed/ekf-circle-ranged.ini "arms.estimators=${estimators// /, }" \
-        arms.controllers=greedy "planner.criterion=$criterion" "noise.heading=$sigma"
+    for controller in trace fixed $others; do
+      settings=(arms.controllers=fixed)
+      if [ "$controller" != fixed ]; then settings=(arms.controllers=greedy "planner.criterion=$controller"); fi
+      study "$stem-$controller" "$trials" experiments/seed/ekf-circle-ranged.ini "noise.heading=$sigma" \
+        "arms.estimators=${estimators// /, }" "${settings[@]}"
     done
-    study "$stem-fixed" "$trials" experiments/seed/ekf-circle-ranged.ini "arms.estimators=${estimators// /, }" \
-      arms.controllers=fixed "noise.heading=$sigma"
-    for controller in fixed trace log_det pose_log_det max_eigenvalue; do
+    for controller in fixed trace $others; do
       label=fixed
-      if [ $controller != fixed ]; then label="greedy, $controller"; fi
+      if [ "$controller" != fixed ]; then label="greedy, $controller"; fi
       for estimator in $estimators; do
         printf '| %s | %s | %s ' "$sigma" "$label" "$estimator"
         row "$stem" "$controller" "$estimator"

@@ -6,11 +6,8 @@
 #   experiments/planning/horizon.sh [TRIALS] [--no-costs]      --no-costs: leaves out what a step costs
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source experiments/study.sh
 source experiments/planning/tables.sh
-build_program >&2
 trials=${1:-20000}
-out=results/planning
 
 # cell LABEL NAME STEPS TRIALS SCENARIO.ini [section.key=value...]
 cell() {

@@ -4,11 +4,8 @@
 # or as many as the first argument says. Writes results/planning/*.h5 and prints the tables of docs/theory/planning.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-source experiments/study.sh
 source experiments/planning/tables.sh
-build_program >&2
 trials=${1:-100000}
-out=results/planning
 
 # cell LABEL NAME SCENARIO.ini [section.key=value...]
 cell() {

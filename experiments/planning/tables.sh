@@ -1,6 +1,9 @@
-# Sourced by the studies of planning, after experiments/study.sh: tables with a row for each cell of a study.
+# Sourced by the studies of planning: builds the program, and makes tables with a row for each cell of a study.
 
-labels=() stems=()
+source experiments/study.sh
+build_program >&2
+
+out=results/planning labels=() stems=()
 
 # table TITLE HEAD FUNCTION A B: for each of the cells its label, and what FUNCTION prints of STEM.csv, A.ESTIMATOR and
 # B.ESTIMATOR. HEAD and labels may have several columns.
