@@ -184,10 +184,11 @@ void run_pack(const Problem& problem, Controller controller, Tally& tally) {
     run_trial(view, controller, draws, comparison, *work, columns, figures.data());
 }
 
-/// (A layout of one feature is that of three with another number. In few widths it takes a fixed number, because each
-/// layout takes long to compile.)
+/// (Not each layout in each width, because each takes long to compile.)
 template <Process process, class Real>
 void run_layout(const Problem& problem, Controller controller, Tally& tally) {
+    if constexpr (lanes<Real> == 1)
+        if (problem.view().features == 1) return run_pack<Layout<process, 1>, Real>(problem, controller, tally);
     if constexpr (lanes<Real> == 1 || lanes<Real> == 8)
         if (problem.view().features == 3) return run_pack<Layout<process, 3>, Real>(problem, controller, tally);
     run_pack<Layout<process, any_count>, Real>(problem, controller, tally);

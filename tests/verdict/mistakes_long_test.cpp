@@ -43,6 +43,17 @@ std::int64_t counted_cells(const ArmResults& arm, std::size_t k) {
     return std::accumulate(first, first + distribution_cells, std::int64_t{0});
 }
 
+/// Odometry that is worth nothing against measurements that are near perfect: S and P lose their digits.
+DeformableSettings without_odometry(double odometry, double sigma) {
+    DeformableSettings s;
+    s.noise.odometry = odometry;
+    s.sensor.sigma = sigma;
+    s.sensor.range_max = std::numeric_limits<double>::infinity();
+    s.poses = 6;
+    s.arms.controllers = {Controller::fixed};
+    return s;
+}
+
 /// Values of sd 1, but for one.
 std::vector<double> values_with(std::size_t place, double outlier, std::size_t count) {
     Normals normals(71);
@@ -63,13 +74,8 @@ InterimAnalysis look_at_first(const std::vector<double>& values, const StoppingR
 }  // namespace
 
 TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and not one of 0") {
-    // Odometry that is worth nothing against measurements that are near perfect: S and P lose their digits.
-    DeformableSettings s;
-    s.noise.odometry = 5e4;
-    s.sensor.sigma = 1e-3;
-    s.sensor.range_max = std::numeric_limits<double>::infinity();
-    s.poses = 6;
-    s.arms.controllers = {Controller::fixed};
+    DeformableSettings s = without_odometry(1e6, 1e-2);
+    s.noise.heading = 1e-9;
     const ScenarioResults results = replication(s, trials, 9);
     const ArmResults& arm = results.arms.front();
     const int bad = ended(arm, Status::covariance_not_positive_definite);
@@ -81,21 +87,29 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
             for (std::size_t k = 0; k < 5; ++k) CHECK(std::isnan(arm.nees[i * 5 + k]));
         }
     const Evidence evidence = evidence_of(results, arm);
-    const int used = static_cast<int>(trials) - bad - ended(arm, Status::non_finite);
+    const int used = static_cast<int>(trials) - bad - ended(arm, Status::non_finite) - ended(arm, Status::lost);
     CHECK(evidence.trials == used);
-    // All the others are lost, and judged as they are, but by their details: no total counts a lost trial.
-    CHECK(ended(arm, Status::lost) == used);
     for (std::size_t k = 0; k < 5; ++k) {
-        CHECK(evidence.groups.front().anees.degrees[k] == 0);
-        CHECK(counted_cells(arm, k) == 0);
+        CHECK(evidence.groups.front().anees.degrees[k] == 9.0 * used);
+        CHECK(counted_cells(arm, k) == used);
         CHECK(evidence.credibility.step[k].count == used);
     }
-    const ArmReport report = report_arm(results, arm, evidence, 9, 0.05);
+    // Both add up the same NEES, rounded otherwise.
+    const double mean = mean_ratio(arm, [](Status status) { return !failed(status) && status != Status::lost; });
+    CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
+}
+
+TEST_CASE("mistakes: where the others are all lost and judged, those whose P is not positive definite alone failed") {
+    const ScenarioResults results = replication(without_odometry(5e4, 1e-3), trials, 9);
+    const ArmResults& arm = results.arms.front();
+    const int bad = ended(arm, Status::covariance_not_positive_definite), lost = ended(arm, Status::lost);
+    REQUIRE(bad > 0);
+    REQUIRE(lost == trials - bad);
+    const ArmReport report = report_arm(results, arm, evidence_of(results, arm), 9, 0.05);
+    CHECK(report.evidence.trials == lost);
+    CHECK(report.failed_trials() == bad);
     CHECK(report.cause->status == Status::covariance_not_positive_definite);
     CHECK(report.cause->trials == bad);
-    // Both add up the same NEES, rounded otherwise.
-    const double mean = mean_ratio(arm, [](Status status) { return !failed(status); });
-    CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
 TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a normal of its mean and deviation") {
