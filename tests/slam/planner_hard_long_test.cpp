@@ -21,6 +21,12 @@ const std::vector<Settings> without_trace{{{"planner.criterion", "log_det"}},
                                           {{"planner.criterion", "pose_log_det"}},
                                           {{"planner.criterion", "max_eigenvalue"}}};
 
+/// Scenarios matter here, not steps.
+Settings with_poses(Settings settings, const char* poses) {
+    settings.emplace_back("scenario.poses", poses);
+    return settings;
+}
+
 template <class Real>
 void check_same(unsigned count, Settings more) {
     CAPTURE(described(more), lanes<Real>);
@@ -71,10 +77,7 @@ TEST_CASE("planner: no control costs more than the least, on 100 random hard sce
 }
 
 TEST_CASE("planner: by every criterion no control costs more than the least, on 300 random hard scenarios") {
-    for (Settings criterion : criteria()) {
-        criterion.emplace_back("scenario.poses", "4");  // scenarios matter here, not steps
-        check_random<double>(300, criterion);
-    }
+    for (const Settings& criterion : criteria()) check_random<double>(300, with_poses(criterion, "4"));
 }
 
 TEST_CASE("planner: by every criterion no control costs more than the least, on 10 random hard scenarios in lanes") {
@@ -82,7 +85,8 @@ TEST_CASE("planner: by every criterion no control costs more than the least, on 
 }
 
 TEST_CASE("planner: by every criterion that is no trace the control is the plain form's, in every lane width") {
-    for (const Settings& criterion : without_trace) {
+    for (const Settings& all_steps : without_trace) {
+        const Settings criterion = with_poses(all_steps, "4");
         check_same<double>(hard_scenarios(40), criterion);
         check_same<Lane<2>>(hard_scenarios(10), criterion);
         check_same<Lane<4>>(hard_scenarios(10), criterion);
@@ -91,11 +95,11 @@ TEST_CASE("planner: by every criterion that is no trace the control is the plain
 }
 
 TEST_CASE("planner: by every criterion that is no trace, two and three steps ahead, the control is brute force's") {
-    for (Settings criterion : without_trace)
+    for (const Settings& criterion : without_trace)
         for (const char* steps : {"2", "3"}) {
-            Settings ahead = criterion;
+            Settings ahead = with_poses(criterion, "5");
             ahead.insert(ahead.end(), {{"arms.controllers", "horizon"}, {"planner.horizon", steps},
-                                       {"planner.speeds", "1"}, {"scenario.poses", "5"}});
+                                       {"planner.speeds", "1"}});
             check_same<double>(hard_scenarios(20) / 10, ahead);
             check_same<Lane<8>>(hard_scenarios(10) / 10, ahead);
         }
