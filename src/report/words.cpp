@@ -182,6 +182,13 @@ bool has_run(const Report& report, const std::string& scenario) {
                        [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
 }
 
+/// Whether its runs are counted by their segments, or would be if there were more of these.
+bool is_of_logs(const ArmReport& arm) {
+    const SegmentEvidence& segments = arm.evidence.segments;
+    return segments.count || (segments.steps_of_runs > 0 &&
+                              (arm.trials == 1 || std::ssize(segments.run) >= 2 * arm.trials));
+}
+
 /// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`
 std::string log_text(const ArmReport& arm) {
     const SegmentEvidence& segments = arm.evidence.segments;
@@ -193,9 +200,7 @@ std::string log_text(const ArmReport& arm) {
 
 std::string trials_text(const Report& report) {
     if (report.arms.size() == 1)
-        if (const ArmReport& arm = report.arms.front();
-            arm.evidence.segments.count || (arm.trials == 1 && arm.evidence.segments.steps_of_runs > 0))
-            return log_text(arm);
+        if (const ArmReport& arm = report.arms.front(); is_of_logs(arm)) return log_text(arm);
     std::int64_t least = 0, most = 0;
     std::size_t run = 0;
     for (const ArmReport& arm : report.arms) {
@@ -230,7 +235,8 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
                     [](const Whiteness& lag) { return !lag.known(); }))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
     for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
-    if (const WorstTrials& worst = arm.evidence.worst; worst.share > 0.2 && arm.evidence.trials > 20) {
+    const double share_of_ten = 10 / static_cast<double>(arm.evidence.trials);
+    if (const WorstTrials& worst = arm.evidence.worst; worst.share > std::max(0.2, 2 * share_of_ten)) {
         std::vector<std::string> parts;
         for (const WorstTrial& one : worst.trials)
             parts.push_back(std::to_string(one.trial) + " (step " + std::to_string(one.step) + ")");

@@ -85,6 +85,7 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     judge_tenths(evidence, judgement);
     judge_fifths(evidence, judgement);
     if (evidence.segments.count) judge_segments(evidence, judgement);
+    else judge_few_runs(evidence, judgement);
     if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) judgement.not_shown(repeated, false);
     if (!evidence.joint) judgement.not_shown("there is no joint covariance of the whole state", false);
     return judgement.consistency(evidence);

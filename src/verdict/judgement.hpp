@@ -18,6 +18,7 @@ class Judgement {
 public:
     explicit Judgement(const Limits& limits) : limits_(limits) {}
     const Limits& limits() const { return limits_; }
+    bool has_findings() const { return !findings_.empty(); }
 
     /// A finding that something is too large (above) or too small for P; its `what` is set here.
     void add(Side side, Finding finding);
@@ -74,6 +75,9 @@ void judge_fifths(const Evidence& evidence, Judgement& judgement);
 
 /// Withholds `consistent` where segments of runs depend on each other, or runs differ.
 void judge_segments(const Evidence& evidence, Judgement& judgement);
+
+/// Few runs whose segments are too few to count: finds what is wrong whatever the spread of their NEES.
+void judge_few_runs(const Evidence& evidence, Judgement& judgement);
 
 /// How many trials would do [docs/theory/statistics.md, Advice], to two digits; 0 below 30 trials.
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);

@@ -86,9 +86,10 @@ bool runs_differ(const SegmentSeries& series, double level) {
 }
 
 /// Bounds on the mean over the steps of NEES/dimension, for a filter that is right, whatever the correlation of the
-/// steps: P(mean >= c) <= exp(-d/2 (c - 1 - ln c)), likewise below [Chernoff 1952; Jensen's inequality for the mean].
-Interval bounds_at_any_correlation(int dimension, double level) {
-    const double exponent = -2 * std::log(level) / dimension;
+/// steps of each of so many independent runs: P(mean >= c) <= exp(-runs d/2 (c - 1 - ln c)), likewise below [Chernoff
+/// 1952; Jensen's inequality for the mean].
+Interval bounds_at_any_correlation(double runs, int dimension, double level) {
+    const double exponent = -2 * std::log(level) / (runs * dimension);
     const auto solve = [&](double inside, double outside) {
         for (int i = 0; i < 200; ++i) {
             const double c = (inside + outside) / 2;
@@ -99,12 +100,17 @@ Interval bounds_at_any_correlation(int dimension, double level) {
     return {solve(1, 0), solve(1, 2 * (2 + exponent))};
 }
 
+/// As which segments count that are too few to show their spread.
+double independent_runs(const Evidence& evidence) {
+    return static_cast<double>(std::max<std::size_t>(1, evidence.segments.run.size()));
+}
+
 void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judgement) {
     const GroupEvidence& group = evidence.groups[g];
     if (!(group.run.count > 0) || is_rounded(group, judgement.limits())) return;
     const double level =
         level_of_group(levels::run, static_cast<int>(g), static_cast<int>(evidence.groups.size())) / 2;
-    const Interval bounds = bounds_at_any_correlation(group.dimension, level);
+    const Interval bounds = bounds_at_any_correlation(independent_runs(evidence), group.dimension, level);
     const Interval interval{group.run.mean / bounds.high, group.run.mean / bounds.low};
     if (const Side side = side_of(interval, judgement.limits().margin); side != Side::inside)
         judgement.add(side, {Subject::size, Fault{}, group.name, "over all steps", group.run.mean, interval,
@@ -113,6 +119,13 @@ void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judge
 
 /// Of segments of that length.
 std::string steps_needed(double length) { return std::to_string(std::llround(least_segments * length)); }
+
+/// Why segments that do not count decide nothing.
+std::string too_few(const Evidence& evidence) {
+    const std::string logs = evidence.trials == 1 ? "this log is" : "these logs are";
+    return logs + " worth about " + evidence.segments.worth() + ": " + std::to_string(least_segments) +
+           " are needed, some " + steps_needed(evidence.segments.steps) + " steps";
+}
 
 }  // namespace
 
@@ -149,11 +162,19 @@ void judge_segments(const Evidence& evidence, Judgement& judgement) {
     }
 }
 
+void judge_few_runs(const Evidence& evidence, Judgement& judgement) {
+    const std::vector<std::int64_t>& segments = evidence.segments.run;
+    if (segments.empty() || std::ssize(segments) < 2 * evidence.trials) return;
+    if (!judgement.has_findings())
+        for (std::size_t g = 0; g < evidence.groups.size(); ++g) judge_size_of_run(evidence, g, judgement);
+    judgement.not_shown(too_few(evidence), false);
+}
+
 Consistency judge_single_run(const Evidence& evidence, const Limits& limits) {
     Judgement judgement(limits);
     // Whatever the correlation of the steps, the mean of numbers with variance 1 has a variance of at most 1.
     const double level = levels::bias / static_cast<double>(std::max<std::size_t>(1, evidence.bias.size())),
-                 most = normal_quantile(level);
+                 most = normal_quantile(level) / std::sqrt(independent_runs(evidence));
     for (const BiasEvidence& bias : evidence.bias)
         if (const double z = bias.run.mean; bias.largest_error > rounding_error && std::abs(z) - most > limits.bias)
             judgement.add_bias({Subject::bias, Fault::biased, bias.component, "over all steps", z,
@@ -162,8 +183,7 @@ Consistency judge_single_run(const Evidence& evidence, const Limits& limits) {
     const SegmentEvidence& segments = evidence.segments;
     std::string why = "one trial decides nothing: give more trials";
     if (segments.steps > 0)
-        why = "this log is worth about " + segments.worth() + ": " + std::to_string(least_segments) +
-              " are needed, some " + steps_needed(segments.steps) + " steps";
+        why = too_few(evidence);
     else if (std::isinf(segments.autocorrelation_time))
         why = "the errors of this log do not decorrelate, so it is worth one run: what was drawn once, such as the "
               "start or a map's offset, is seen once";

@@ -208,6 +208,20 @@ TEST_CASE("segments: runs that differ, and segments that are alike, withhold the
     CHECK_THAT(reasons(logs(1, 20000, 0.95), 10), Catch::Contains("segments of 10 steps are not independent"));
 }
 
+TEST_CASE("segments: too few to count, of one log or of two, find a covariance that is far off") {
+    for (const int runs : {1, 2}) {
+        DrawnRecord few = logs(runs, 240 / runs, 0.5);
+        const Consistency right = verdict_on(few);
+        CAPTURE(runs);
+        CHECK(right.verdict == Verdict::undecided);
+        CHECK_THAT(joined(right.reasons, "; "), Catch::Contains("independent runs: 20 are needed, some"));
+        for (Eigen::MatrixXd& P : few.covariance) P *= 0.25;
+        CHECK(verdict_on(few).verdict == Verdict::optimistic);
+        for (Eigen::MatrixXd& P : few.covariance) P *= 16;
+        CHECK(verdict_on(few).verdict == Verdict::pessimistic);
+    }
+}
+
 TEST_CASE("segments: a short log decides nothing but what no correlation explains, and says what it is worth") {
     const Report report = judged(logs(1, 100, 0.5));
     CHECK(report.arms.front().consistency.verdict == Verdict::undecided);
