@@ -117,7 +117,8 @@ def poses(rng: np.random.Generator, form: str, manifold: str, chart: str = "loca
 
 
 def late(run: Run) -> Record:
-    return run.record(error=run.estimate[:, 1:] - run.truth[:, :-1], covariance=run.record()["covariance"][:, 1:])
+    after = {name: values[:, 1:] for name, values in with_innovations(run, 1).items() if name != "component_names"}
+    return run.record(**after | {"error": run.estimate[:, 1:] - run.truth[:, :-1]})
 
 
 def doubled(run: Run) -> Record:
@@ -186,8 +187,8 @@ KNOWN: dict[str, tuple[bool, str, Callable[[np.random.Generator], Record]]] = {
     "information": (False, "the information matrix", of_covariance(np.linalg.inv)),
     "no_correlation": (False, "correlations dropped", of_covariance(without_correlations)),
     "swapped": (False, "components in another order than P", of_covariance(lambda P: P[..., ::-1, ::-1])),
-    "prediction": (False, "P before the update", of_tracker(lambda run: run.record(
-        covariance=np.broadcast_to(run.prior, (RUNS, STEPS, 2, 2))))),
+    "prediction": (False, "P before the update", of_tracker(lambda run: with_innovations(run, 1) | {
+        "covariance": np.broadcast_to(run.prior, (RUNS, STEPS, 2, 2))})),
     "late": (False, "the truth of one step before", of_tracker(late)),
     "twice": (False, "each measurement counted twice", of_tracker(updates=2)),
     "start": (False, "P0 a quarter of what it is", of_tracker(start=0.25)),

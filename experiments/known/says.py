@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 
 from known import KNOWN, made
@@ -15,10 +16,10 @@ import credence
 
 def said(verdict: credence.Verdict) -> list[str]:
     """The verdict, the first finding or note, or else the reason why there is none, and the first hint."""
-    found = [*verdict.findings, *verdict["cautions"]]
+    found = [re.sub(r" \([^()]* to [^()]*\)$", "", one["text"]) for one in [*verdict.findings, *verdict["cautions"]]]
     return [
         verdict.verdict,
-        found[0]["text"] if found else verdict.json[0].get("reason", "-"),
+        found[0] if found else verdict.json[0].get("reason", "-").split(";")[0],
         verdict["hints"][0] if verdict["hints"] else "-",
     ]
 

@@ -58,6 +58,17 @@ void hint_at_gate(const Record& record, const Evidence& evidence, Consistency& v
     }
 }
 
+/// The innovations are as large as S says, the errors are far from what P says, and no cause is named.
+void hint_at_innovations(const Evidence& evidence, Consistency& verdict) {
+    if (verdict.findings.empty() || !verdict.hints.empty() || evidence.nis.empty() || evidence.groups.empty()) return;
+    const double margin = verdict.limits.margin, nis = evidence.nis.front().ratio,
+                 nees = evidence.groups.front().run.mean;
+    if (!(std::abs(nis - 1) < margin) || !(std::abs(nees - 1) > 3 * margin)) return;
+    verdict.hints.push_back("the innovations are as large as S says (NIS/m " + number(nis, 2) +
+                            (nees < 1 ? "): is P that before the update, or is what is too large not measured?"
+                                      : "): is the truth of another step or frame, or is what is wrong not measured?"));
+}
+
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
 void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vector<std::string>& sentences) {
     if (!evidence.joint || evidence.trials == 0) return;
@@ -159,6 +170,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     hint_at_gate(record, arm.evidence, arm.consistency);
+    hint_at_innovations(arm.evidence, arm.consistency);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_charts(record, arm);
     return report;

@@ -155,18 +155,54 @@ std::string placeholders_of(const Sizes& sizes) {
            ": do large variances stand for what is not estimated? Leave these components out";
 }
 
-/// Only the first steps are wrong.
-std::string start_of(const Evidence& evidence, const Limits& limits) {
+/// NEES/dim is right at one end of a run, and not at the other.
+std::string trend_of(const Evidence& evidence, const Limits& limits) {
     const std::vector<Moments>& steps = evidence.groups.front().step;
+    constexpr std::size_t least_steps = 4;
+    if (steps.size() < least_steps) return {};
     const double trials = evidence.groups.front().dimension * static_cast<double>(evidence.trials),
-                 right = std::log1p(3 * limits.margin), wrong = std::log(1.5) + 3 * std::sqrt(2 / trials);
-    const auto off = [&](std::size_t k) { return std::abs(std::log(steps[k].mean)); };
-    if (steps.size() < 4 || !(off(0) > wrong)) return {};
-    std::size_t from = steps.size();
-    while (from > 0 && off(from - 1) < right) --from;
-    if (from == 0 || 2 * from > steps.size()) return {};
-    return "NEES/dim is near 1 from step " + std::to_string(from + 1) +
-           " on: is P at the start that of the first estimate's errors?";
+                 right = std::log1p(3 * limits.margin), noise = 3 * std::sqrt(2 / trials),
+                 wrong = std::log(1.5) + noise;
+    const std::size_t some = std::max<std::size_t>(2, steps.size() / 5);
+    const double last = std::accumulate(steps.end() - some, steps.end(), 0.0,
+                                        [](double sum, const Moments& step) { return sum + std::log(step.mean); }) /
+                        static_cast<double>(some);
+    const double first = std::log(steps.front().mean);
+    const auto smaller = [&](const Moments& step) { return std::abs(std::log(step.mean)) < std::abs(first) + noise; };
+    char text[200];
+    const auto said = [&](const char* format) {
+        std::snprintf(text, sizeof text, format, std::exp(first), std::exp(last));
+        return std::string(text);
+    };
+    if (std::abs(first) > wrong && std::abs(last) < right && std::ranges::all_of(steps, smaller))
+        return said("NEES/dim is %.2g at the first step and %.2g at the last: is P at the start that of the first "
+                    "errors, and are these small enough to linearise?");
+    if (last > wrong && std::abs(first) < std::max(right, last / 3))
+        return said("NEES/dim is %.2g at the first step and %.2g at the last: do errors build up that P does not "
+                    "know of (bias, drift, process noise)?");
+    return {};
+}
+
+/// Mean errors that are the same at all steps.
+std::string offset_of(const Evidence& evidence, const Sizes& sizes) {
+    for (const BiasEvidence& bias : evidence.bias) {
+        const auto at = std::ranges::find(sizes.component, bias.component);
+        if (at == sizes.component.end() || !(std::abs(bias.run.mean) > 5 * bias.run.standard_error)) continue;
+        const std::vector<double>& variance = sizes.variance[static_cast<std::size_t>(at - sizes.component.begin())];
+        std::vector<double> means;
+        for (std::size_t k = 0; k < variance.size(); ++k)
+            if (const double mean = bias.step[k].mean * std::exp(variance[k] / 2); std::isfinite(mean))
+                means.push_back(mean);
+        constexpr std::size_t least_steps = 5;
+        if (means.size() < least_steps) continue;
+        const auto [low, high] = std::ranges::minmax(means);
+        char text[60];
+        std::snprintf(text, sizeof text, "%.2g", quantile(means, 0.5));
+        if (high - low < std::min(std::abs(low), std::abs(high)))
+            return "errors of " + bias.component + " are " + text + (bias.unit.empty() ? "" : " " + bias.unit) +
+                   " on average at all steps: an offset of the truth, the map or the frame?";
+    }
+    return {};
 }
 
 /// Few trials are wrong, and the others are not.
@@ -199,7 +235,8 @@ std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limit
         causes.push_back(cause(sizes));
         if (!causes.back().empty()) break;
     }
-    if (causes.back().empty()) causes.push_back(start_of(evidence, limits));
+    causes.push_back(offset_of(evidence, sizes));
+    if (std::ranges::all_of(causes, &std::string::empty)) causes.push_back(trend_of(evidence, limits));
     std::erase(causes, "");
     return causes;
 }

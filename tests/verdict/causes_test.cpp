@@ -92,13 +92,28 @@ TEST_CASE("causes: P of the step before or after, a start alone, and few trials 
     CHECK_THAT(first_cause(planted), Contains("P of the step before says: is P a step early?"));
     planted.said = planted.variance;
     planted.said.topRows(2) /= 4;
-    CHECK_THAT(first_cause(planted), Contains("NEES/dim is near 1 from step 3 on"));
+    CHECK_THAT(first_cause(planted), Contains("at the last: is P at the start that of the first"));
+    planted.said = planted.variance;
+    for (int k = 0; k < planted.steps; ++k) planted.said.row(k) /= 1 + 0.02 * k * k;
+    CHECK_THAT(first_cause(planted), Contains("at the last: do errors build up"));
     planted.said = planted.variance;
     const auto spoil = [](DrawnRecord& record) {
         for (int i = 0; i < 20; ++i)
             for (int k = 0; k < record.steps; ++k) record.error[record.at(i, k)] *= 4;  // NEES/dim 16: not lost
     };
     CHECK_THAT(first_cause(planted, spoil), Contains("half of the trials have NEES/dim below"));
+}
+
+TEST_CASE("causes: an offset, and none where the mean error changes with the steps") {
+    const Planted planted;
+    const auto shifted = [](double by_step) {
+        return [by_step](DrawnRecord& record) {
+            for (int i = 0; i < record.trials; ++i)
+                for (int k = 0; k < record.steps; ++k) record.error[record.at(i, k)](1) += 0.3 - by_step * k;
+        };
+    };
+    CHECK_THAT(first_cause(planted, shifted(0)), Contains("on average at all steps: an offset"));
+    CHECK(first_cause(planted, shifted(0.05)).find("offset") == std::string::npos);
 }
 
 TEST_CASE("causes: none is named of exact records of odd kinds") {
