@@ -22,10 +22,9 @@ NOT_REFUTED = ("consistent", "undecided")
 REFUTED = ("optimistic", "pessimistic", "mixed")
 
 
-def tune_hint(run: str = "run", free: str = "{...}") -> str:
+def tune_hint(run: str = "run", free: str = "{...}", start: str = "") -> str:
     """The last line of what is said of a filter that is refuted: the call that says what to change."""
-    return f"hint: what to change in it: credence.tune({run}, free={free})"
-
+    return f"hint: what to change in it: credence.tune({run}, free={free}{', start={' + start + '}' if start else ''})"
 
 
 class _Printed(NamedTuple):

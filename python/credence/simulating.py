@@ -264,7 +264,7 @@ class Simulation:
     def __init__(self, files: _Files, trials: int, seed: int, failures: list[Failure], limit: float | str) -> None:
         self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, True
         self._limit = limit
-        self._tune_hint = tune_hint()
+        self._tune_hint: Callable[[str], str] = lambda refuted: tune_hint()
         self._arms = {
             name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
             for name, path in files.records.items()
@@ -319,8 +319,9 @@ class Simulation:
             where = f"the first: trial {first.trial} of {first.arm}"
             lines.append(f"\n{len(self.failures)} without a result, {where}: {first.reason}")
             lines += [first.traceback.rstrip("\n")] if first.traceback else []
-        if any(verdict.verdict in REFUTED for verdict in self.verdicts.values()):
-            lines.append(self._tune_hint)
+        refuted = [name for name, verdict in self.verdicts.items() if verdict.verdict in REFUTED]
+        if refuted:
+            lines.append(self._tune_hint(refuted[0]))
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
@@ -510,16 +511,23 @@ class _Engine:
         return True
 
 
-def _tune_hint(run: Callable[..., Any]) -> str:
-    """The call of `tune` with the options of a function that are numbers, each within a factor of ten."""
+def _tune_hint(run: Callable[..., Any], arms: Arms, refuted: str) -> str:
+    """The call of `tune` from an arm that is refuted, each number within a factor of ten: of the options that arms set,
+    else of those that the function has.
+    """
     with contextlib.suppress(TypeError, ValueError):
+        defaults = {name: one.default for name, one in inspect.signature(run).parameters.items()}
+        set_by_arms = {name for options in arms.values() for name in options}
         numbers = {
-            name: one.default
-            for name, one in inspect.signature(run).parameters.items()
-            if isinstance(one.default, float) and one.default > 0
+            name: value
+            for name, value in (defaults | arms[refuted]).items()
+            if name in (set_by_arms or defaults) and isinstance(value, (int, float)) and value is not True and value > 0
         }
         free = ", ".join(f'"{name}": ({value / 10:g}, {value * 10:g})' for name, value in numbers.items())
-        return tune_hint(getattr(run, "__name__", "run"), f"{{{free or '...'}}}")
+        start = ", ".join(f'"{name}": {numbers[name]:g}' for name in arms[refuted] if name in numbers)
+        known = getattr(run, "__name__", "run")
+        hint = tune_hint(known if known.isidentifier() else "run", f"{{{free or '...'}}}", start)
+        return hint if set_by_arms or len(numbers) < 2 else f"{hint}, leaving out what the truth depends on"
     return tune_hint()
 
 
@@ -645,7 +653,8 @@ def _simulated(
     def written(numbers: Array, lost: list[Failure]) -> Simulation:
         failures = write_records(file, files.records, numbers, work.seed, lost)
         study = Simulation(files, len(numbers), work.seed, failures, failed)
-        study.is_repeatable, study._tune_hint = engine.is_repeatable, _tune_hint(work.run)
+        study.is_repeatable = engine.is_repeatable
+        study._tune_hint = lambda refuted: _tune_hint(work.run, work.arms, refuted)
         return study
 
     with (

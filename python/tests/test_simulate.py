@@ -511,7 +511,7 @@ def test_a_simulation_says_its_verdicts_and_compares_its_arms(program):
     assert code == 0
     *lines, hint = str(study).splitlines()
     assert said.splitlines()[1:] == lines[1:]
-    assert hint == 'hint: what to change in it: credence.tune(drawn, free={"scale": (0.1, 10)})'
+    assert hint == 'hint: what to change in it: credence.tune(drawn, free={"scale": (0.05, 5)}, start={"scale": 0.5})'
     with h5py.File("mine.calm.h5") as file:
         assert file["trial"][:].tolist() == list(range(2000))
         assert int(file.attrs["seed"]) == 1
