@@ -295,7 +295,7 @@ def test_the_batch_scripts_give_the_same_bits(tmp_path, kind):
         "MPIRUN": "mpirun --allow-run-as-root --oversubscribe -n 3",
     }
     done = subprocess.run(
-        ["bash", str(script)], cwd=tmp_path, env={**os.environ, **given}, check=False, timeout=120, capture_output=True
+        ["bash", str(script)], cwd=tmp_path, env={**os.environ, **given}, check=False, timeout=300, capture_output=True
     )
     assert done.returncode == 0, done.stderr
     assert b"right" in done.stdout

@@ -136,7 +136,7 @@ def paired(scenario: Scenario, arms: Arms, width: float, *, column: str = "trace
         style.root_axis(axis, scale, reach)
     axis.set(xlabel=f"difference of {name_of(column, scenario)}", ylabel="trials at or below [%]", ylim=(0, 100))
     style.key(axis, entries, width)
-    picture.title(f"Less {NAMES.get(column, column)}: "
-                  + style.ranked(less, lambda share: f"in {share:.0f} %") + " of the trials",
+    picture.title(f"Trials with less {NAMES.get(column, column)}: "
+                  + style.ranked(less, lambda share: "in > 99 %" if 99.5 <= share < 100 else f"in {share:.0f} %"),
                   f"{source(scenario)}; marks with bars: means with 95 % intervals{style.in_brackets(unit)}")
     return picture

@@ -40,7 +40,7 @@ void add_column(Table& table, const Report& report, const std::string& scenario,
             const PairedComparison& paired = column.paired;
             if (pair.scenario != scenario || column.name != name || paired.pairs == 0) continue;
             table.row(column_cells("    " + controller_of(pair.a) + " - " + controller_of(pair.b), paired.difference,
-                                   paired.bootstrap95, number(100 * paired.wins_a, 0) + " % below"));
+                                   paired.bootstrap95, percent(paired.wins_a) + " below"));
         }
 }
 
@@ -107,9 +107,9 @@ std::string consistency_part(const ArmReport& arm) {
     if (arm.evidence.groups.empty() || arm.evidence.trials == 0) return "";
     const std::vector<const GroupEvidence*> groups = shown_groups(arm.evidence);
     std::string text = groups_part(arm, groups);
-    if (groups.size() < arm.evidence.groups.size())
-        text += "    (" + std::to_string(arm.evidence.groups.size() - groups.size()) +
-                " more groups are nearer to 1; JSON has all)\n";
+    if (const std::size_t more = arm.evidence.groups.size() - groups.size(); more > 0)
+        text += "    (" + std::to_string(more) + (more == 1 ? " more group is" : " more groups are") +
+                " nearer to 1; JSON has all)\n";
     return text + charts_part(arm.evidence) + innovations_part(arm.evidence) + distribution_part(arm.evidence);
 }
 
