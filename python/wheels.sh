@@ -47,8 +47,8 @@ if [ -n "$cross" ]; then
     apt-get "${apt[@]}" update
     apt-get "${apt[@]}" install -y --download-only --no-install-recommends libboost-program-options-dev libdeflate-dev \
       zlib1g-dev libgomp1 python3 libpython3-dev >/dev/null
-    mkdir "$root"
-    for package in "$work"/apt/archives/*.deb; do dpkg -x "$package" "$root"; done
+    for package in "$work"/apt/archives/*.deb; do dpkg -x "$package" "$root.part"; done
+    mv "$root.part" "$root"
   fi
   # The headers of the packages come after those of the cross compiler.
   cat >"$work/aarch64/toolchain.cmake" <<EOF

@@ -94,11 +94,12 @@ private:
     Settings settings_;
 };
 
-/// Steps, and those that were planned; those whose control is not the plain form's, and costs more than rounding makes
-/// (1e-12 of it); those whose control costs more than the least by more than 1e-9 of it (which rounding may have made
-/// negative), or by more than 1e-9 where costs are logarithms. A control that is no candidate costs infinitely much.
+/// Steps, and those that were planned; those whose control is not the plain form's, and of these those that cost the
+/// least but for rounding, 1e-12 of it; those whose control costs more than the least by more than 1e-9 of it (which
+/// rounding may have made negative), or by more than 1e-9 where costs are logarithms. A control that is no candidate
+/// costs infinitely much.
 struct Tally {
-    int scenarios = 0, steps = 0, planned = 0, different = 0, dearer = 0;
+    int scenarios = 0, steps = 0, planned = 0, different = 0, tied = 0, dearer = 0;
 };
 
 /// Compares, at every step of a pack of planned trials, what the chosen control costs with the least cost: over as many
@@ -138,12 +139,13 @@ public:
             ++tally_.steps;
             tally_.planned += !costs_.empty();
             const auto differs = [&](const Real& a, const Real& b) { return lane_of(a, lane) != lane_of(b, lane); };
-            const double more = (taken - least) / (logarithm ? 1 : std::abs(least));
-            tally_.different += least < infinity && more > 1e-12 &&
-                                (differs(choice_.command.turn, command.turn) ||
-                                 differs(choice_.command.move.x, command.move.x) ||
-                                 differs(choice_.command.move.y, command.move.y));
-            tally_.dearer += least < infinity && more > 1e-9;
+            const bool different = least < infinity && (differs(choice_.command.turn, command.turn) ||
+                                                        differs(choice_.command.move.x, command.move.x) ||
+                                                        differs(choice_.command.move.y, command.move.y));
+            const auto beyond = [&](double share) { return taken - least > share * (logarithm ? 1 : std::abs(least)); };
+            tally_.different += different;
+            tally_.tied += different && !beyond(1e-12);
+            tally_.dearer += least < infinity && beyond(1e-9);
         }
     }
 

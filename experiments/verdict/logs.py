@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What the verdict says of one log: how often it finds something in a filter that is right, and how often in one whose
-covariance is 0.8 or 0.25 times what it should be. Prints a table of docs/theory/statistics.md; some ten minutes of processor
-time, shared by all cores.
+covariance is 0.8 or 0.25 times what it should be. Prints a table of docs/theory/statistics.md; three quarters of an hour
+of processor time, shared by all cores.
 
     /usr/bin/python3 experiments/verdict/logs.py [LOGS]      LOGS of each kind, 100 by default
 

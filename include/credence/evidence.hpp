@@ -140,6 +140,9 @@ struct SegmentEvidence {
     std::int64_t steps_of_runs = 0;            ///< of all runs that did not fail
     std::vector<std::int64_t> run;             ///< [segments] that each is of
 
+    /// Whether there are two for each run or more, so that they say more than the runs do.
+    bool outnumber(std::int64_t runs) const { return !run.empty() && std::ssize(run) >= 2 * runs; }
+
     /// `55 independent runs`
     std::string worth() const {
         return std::to_string(run.size()) + (run.size() == 1 ? " independent run" : " independent runs");

@@ -261,10 +261,11 @@ class Simulation:
         Whether trial 0 gave the same numbers twice.
     """
 
-    def __init__(self, files: _Files, trials: int, seed: int, failures: list[Failure], limit: float | str) -> None:
-        self.trials, self.seed, self.failures, self.is_repeatable = trials, seed, failures, True
-        self._limit = limit
-        self._tune_hint: Callable[[str], str] = lambda refuted: tune_hint()
+    def __init__(
+        self, files: _Files, work: Work, trials: int, failures: list[Failure], limit: float | str, is_repeatable: bool
+    ) -> None:
+        self.trials, self.seed, self.failures, self.is_repeatable = trials, work.seed, failures, is_repeatable
+        self._work, self._limit = work, limit
         self._arms = {
             name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
             for name, path in files.records.items()
@@ -321,7 +322,7 @@ class Simulation:
             lines += [first.traceback.rstrip("\n")] if first.traceback else []
         refuted = [name for name, verdict in self.verdicts.items() if verdict.verdict in REFUTED]
         if refuted:
-            lines.append(self._tune_hint(refuted[0]))
+            lines.append(_tune_hint(self._work.run, self._work.arms, refuted[0]))
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
@@ -652,10 +653,7 @@ def _simulated(
 
     def written(numbers: Array, lost: list[Failure]) -> Simulation:
         failures = write_records(file, files.records, numbers, work.seed, lost)
-        study = Simulation(files, len(numbers), work.seed, failures, failed)
-        study.is_repeatable = engine.is_repeatable
-        study._tune_hint = lambda refuted: _tune_hint(work.run, work.arms, refuted)
-        return study
+        return Simulation(files, work, len(numbers), failures, failed, engine.is_repeatable)
 
     with (
         contextlib.closing(Trials(files.trials, work.seed, work.arms, work.batch)) as file,

@@ -185,8 +185,7 @@ bool has_run(const Report& report, const std::string& scenario) {
 /// Whether its runs are counted by their segments, or would be if there were more of these.
 bool is_of_logs(const ArmReport& arm) {
     const SegmentEvidence& segments = arm.evidence.segments;
-    return segments.count || (segments.steps_of_runs > 0 &&
-                              (arm.trials == 1 || std::ssize(segments.run) >= 2 * arm.trials));
+    return segments.count || (segments.steps_of_runs > 0 && (arm.trials == 1 || segments.outnumber(arm.trials)));
 }
 
 /// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`

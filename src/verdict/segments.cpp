@@ -163,8 +163,7 @@ void judge_segments(const Evidence& evidence, Judgement& judgement) {
 }
 
 void judge_few_runs(const Evidence& evidence, Judgement& judgement) {
-    const std::vector<std::int64_t>& segments = evidence.segments.run;
-    if (segments.empty() || std::ssize(segments) < 2 * evidence.trials) return;
+    if (!evidence.segments.outnumber(evidence.trials)) return;
     if (!judgement.has_findings())
         for (std::size_t g = 0; g < evidence.groups.size(); ++g) judge_size_of_run(evidence, g, judgement);
     judgement.not_shown(too_few(evidence), false);

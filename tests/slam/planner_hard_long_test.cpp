@@ -10,11 +10,10 @@ using namespace credence::test;
 
 namespace {
 
-/// CREDENCE_HARD_SCENARIOS, for the full depth, or fewer: all of them by hand, as docs/theory/model.md says.
-unsigned hard_scenarios(unsigned fewer) {
-    const char* number = std::getenv("CREDENCE_HARD_SCENARIOS");
-    return number != nullptr ? static_cast<unsigned>(std::atoi(number)) : fewer;
-}
+/// CREDENCE_HARD_SCENARIOS is how many are tried by hand; else null.
+const char* const many = std::getenv("CREDENCE_HARD_SCENARIOS");
+
+unsigned hard_scenarios(unsigned fewer) { return many != nullptr ? static_cast<unsigned>(std::atoi(many)) : fewer; }
 
 /// Those that are decided by the plain form's own costs, or by ones that differ by rounding alone.
 const std::vector<Settings> without_trace{{{"planner.criterion", "log_det"}},
@@ -27,11 +26,16 @@ Settings with_poses(Settings settings, const char* poses) {
     return settings;
 }
 
+/// Of many, some have eigenvalues that differ by rounding alone, which the plain form's bisection rounds otherwise.
+bool may_tie(const Settings& settings) {
+    return many != nullptr && settings.front() == Settings::value_type{"planner.criterion", "max_eigenvalue"};
+}
+
 template <class Real>
 void check_same(unsigned count, Settings more) {
     CAPTURE(described(more), lanes<Real>);
     const Tally tally = run_random<Real>(count, more);
-    CHECK(tally.different == 0);
+    CHECK(tally.different == (may_tie(more) ? tally.tied : 0));
     CHECK(tally.dearer == 0);
     CHECK(tally.scenarios > static_cast<int>(count * 3 / 4));
     CHECK(tally.steps > tally.scenarios);
@@ -86,7 +90,7 @@ TEST_CASE("planner: by every criterion no control costs more than the least, on 
 
 TEST_CASE("planner: by every criterion that is no trace the control is the plain form's, in every lane width") {
     for (const Settings& all_steps : without_trace) {
-        const Settings criterion = with_poses(all_steps, "4");
+        const Settings criterion = many != nullptr ? with_poses(all_steps, "4") : all_steps;
         check_same<double>(hard_scenarios(40), criterion);
         check_same<Lane<2>>(hard_scenarios(10), criterion);
         check_same<Lane<4>>(hard_scenarios(10), criterion);
