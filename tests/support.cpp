@@ -103,9 +103,9 @@ public:
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
         const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
-        const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
-        price_candidates(belief, view_.control, view_.filter, view_.sensor, layout, k,
-                         view_.steps_ahead(controller_, k), *ahead, *last_step,
+        const auto planner = std::make_unique<PlannerWorkspace<Layout, double>>();
+        const Planning<Layout, double> given{view_.control, view_.filter, view_.sensor, layout, *planner};
+        price_candidates(belief, given, k, view_.steps_ahead(controller_, k), *ahead,
                          [&](int, double cost) { at(k).candidate_cost.push_back(cost); });
     }
 

@@ -203,9 +203,9 @@ TEST_CASE("horizon: a limit leaves exact what lies below it") {
                 belief.mean[i] = run.steps[3].mean[i];
                 for (int j = i; j < layout.size(); ++j) belief.covariance.entry[i][j] = run.steps[3].covariance(i, j);
             }
-            const Outlook<Layout, double> outlook{view.control, view.filter, view.sensor, layout, work->planner};
+            const Planning<Layout, double> given{view.control, view.filter, view.sensor, layout, work->planner};
             const auto least = [&](double limit) {
-                return least_sum(outlook, belief, 4, 2, work->horizon.ahead, limit);
+                return least_sum(given, belief, 4, 2, work->horizon.ahead, limit);
             };
             const double exact = least(infinity);
             CAPTURE(described(kind), exact);

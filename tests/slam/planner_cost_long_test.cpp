@@ -39,6 +39,27 @@ struct Planner {
         return candidate_cost(base, command_from<double>(view.control.candidates[i]), view.control, view.filter,
                               view.sensor, layout, next);
     }
+    /// The criterion has weights of its own.
+    Weights eigenvalue_weights() const {
+        return weights_of(Criterion::max_eigenvalue, view.control.weights.heading);
+    }
+    /// The largest eigenvalue of a candidate's P+, plainly.
+    double plain_eigenvalue(int i) {
+        plain(i);
+        return largest_eigenvalue(next.covariance, layout, eigenvalue_weights());
+    }
+    /// The tangent of the bound on it along the eigenvector of the reference.
+    EigenvalueTangent<Layout, double> eigenvalue_tangent(int reference) {
+        const Weights weights = eigenvalue_weights();
+        EigenvalueTangent<Layout, double> tangent;
+        double x[Layout::capacity];
+        plain(reference);
+        largest_eigenvalue_below(above_eigenvalues(next.covariance, layout, weights), true, next.covariance, weights,
+                                 layout, work->screening.covariance, x);
+        touch_along(x, move(reference), base, heading, view.filter, view.sensor, layout, weights,
+                    least_feature_variance(view.filter), work->screening.covariance, tangent);
+        return tangent;
+    }
     double cost(int i) {
         return cost_in_measurement_space(work->space, move(i), view.filter, view.sensor, layout, *room);
     }
@@ -116,10 +137,12 @@ TEST_CASE("planner: no candidate costs less than its bound") {
                     const auto tangent =
                         tangent_at(planner.work->space.position + planner.move(reference), still, planner.heading,
                                    view.filter, view.sensor, layout, view.control.weights, parameters.kappa, screening);
+                    const auto eigenvalue = planner.eigenvalue_tangent(reference);
                     for (int i = 0; i < count; i += 3) {
                         const auto value = [&](int j) { return value_of<ranged()>(screening, parameters, i, j); };
-                        CHECK(tangent.bound(view.control.candidates[i].move, layout, value) <=
-                              planner.plain(i) * (1 + 1e-9));
+                        const Point& move = view.control.candidates[i].move;
+                        CHECK(tangent.bound(move, layout, value) <= planner.plain(i) * (1 + 1e-9));
+                        CHECK(eigenvalue.bound(move, layout, value) <= planner.plain_eigenvalue(i) * (1 + 1e-9));
                     }
                 }
             };
@@ -149,10 +172,13 @@ TEST_CASE("planner: the bound touches the cost at its reference, and its slope i
                 tangent_at(planner.work->space.position + planner.move(i), planner.work->still, planner.heading,
                            planner.view.filter, planner.view.sensor, layout, planner.view.control.weights, kappa,
                            screening);
-            const auto bound = [&](auto& of) {
+            const auto bound_of = [&](auto& of, const auto& touching) {
                 const auto v = values(of, i);
-                return tangent.bound(planner.view.control.candidates[i].move, layout, [&](int j) { return v[j]; });
+                return touching.bound(planner.view.control.candidates[i].move, layout, [&](int j) { return v[j]; });
             };
+            const auto bound = [&](auto& of) { return bound_of(of, tangent); };
+            // The eigenvector is off by up to 1e-4, and the bound by the square of that.
+            CHECK(relative(bound_of(planner, planner.eigenvalue_tangent(i)), planner.plain_eigenvalue(i)) < 1e-7);
             const double here = bound(planner), there = bound(beside);
             CHECK(relative(here, planner.cost(i)) < 1e-9);
             // A tangent is off by the square of the distance: 1e-4 of the change.

@@ -31,6 +31,13 @@ CREDENCE_FLAT void prepare_candidates(const Belief<Real, capacity>& belief, cons
     });
 }
 
+/// The fresh position noise, which F does not affect.
+template <class Layout, class Real, int capacity>
+void add_odometry_noise(Symmetric<Real, capacity>& P, const FilterParameters& filter) {
+    constexpr auto x = Layout::position;
+    each(x, x + two, [&](auto i) { P.entry[i][i] = P.entry[i][i] + Real(filter.variance_odometry); });
+}
+
 /// The belief after one step under a candidate: predict, gate and compute sigma at the predicted mean, update P.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT void expect(const Belief<Real, capacity>& base, const Command<Real>& command,
@@ -94,6 +101,12 @@ struct Choice {
 template <class Real>
 Choice<Real> no_choice(const ControlParameters& control) {
     return {{}, without_limit<Real>(), scale_of(control.criterion)};
+}
+
+/// Where two candidates are equals.
+template <class Real>
+Mask<Real> same_move(const Command<Real>& a, const Command<Real>& b) {
+    return both(a.move.x == b.move.x, a.move.y == b.move.y);
 }
 
 /// The first choice in some lanes, the second in the others.

@@ -182,7 +182,7 @@ CREDENCE_FLAT Real enter_determinant_space(const Belief<Real, capacity>& still, 
     const auto rows = Pose::rows(layout);
     auto& P = space.room;
     copy(still.covariance, n, P);
-    each(x, x + two, [&](auto i) { P.entry[i][i] = P.entry[i][i] + Real(filter.variance_odometry); });
+    add_odometry_noise<Layout>(P, filter);
     space.position = point_at(still.mean, x);
     Real terms = Real(0);
     each(zero, layout.features(), [&](auto j) {

@@ -16,27 +16,17 @@ struct HorizonWorkspace {
     Belief<Real, Layout::capacity> ahead[largest_horizon];
 };
 
-/// What is the same for all sequences.
-template <class Layout, class Real>
-struct Outlook {
-    const ControlParameters& control;
-    const FilterParameters& filter;
-    const SensorParameters& sensor;
-    const Layout& layout;
-    PlannerWorkspace<Layout, Real>& last_step;
-};
-
 template <class Layout, class Real, int capacity>
-Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
+Real least_sum(const Planning<Layout, Real>& given, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit);
 
 /// Computes, for each candidate as the first of `steps` > 1 steps, the least sum of costs over these, and calls
 /// visit(i, command, sum). `belief` is that of pose k - 1, and may be ahead[0]; `limit()` is as for least_sum. Where
 /// costs are positive, and the first step's reaches the limit in all lanes, so does the sum, and visit is not called.
 template <class Layout, class Real, int capacity, class Limit, class Visit>
-void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
+void look_ahead(const Planning<Layout, Real>& given, const Belief<Real, capacity>& belief, int k, int steps,
                 Belief<Real, capacity>* ahead, const Limit& limit, Visit&& visit) {
-    const auto& [control, filter, sensor, layout, last_step] = outlook;
+    const auto& [control, filter, sensor, layout, work] = given;
     const bool positive = scale_of(control.criterion) == CostScale::linear;
     prepare_candidates(belief, filter, layout, k, ahead[0]);
     for (int i = 0; i < control.candidate_count; ++i) {
@@ -45,21 +35,18 @@ void look_ahead(const Outlook<Layout, Real>& outlook, const Belief<Real, capacit
         // The margin covers the rounding of sums and the tolerance of the tie rule.
         const Real rest = (positive ? limit() * Real(1 + 1e-9) : limit() + Real(1e-9)) - next;
         if (!positive || any(negated(rest <= Real(0))))
-            visit(i, command, next + least_sum(outlook, ahead[1], k + 1, steps - 1, ahead + 1, rest));
+            visit(i, command, next + least_sum(given, ahead[1], k + 1, steps - 1, ahead + 1, rest));
     }
 }
 
 /// The least sum of costs over `steps` steps from the belief at pose k - 1. Sums up to `limit` are exact; above it,
 /// only that they are above it is certain.
 template <class Layout, class Real, int capacity>
-Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity>& belief, int k, int steps,
+Real least_sum(const Planning<Layout, Real>& given, const Belief<Real, capacity>& belief, int k, int steps,
                Belief<Real, capacity>* ahead, Real limit) {
-    if (steps == 1) {
-        const auto& [control, filter, sensor, layout, last_step] = outlook;
-        return choose(belief, control, filter, sensor, layout, k, limit, last_step).best;
-    }
+    if (steps == 1) return choose(belief, given, k, limit).best;
     Real least = without_limit<Real>();
-    look_ahead(outlook, belief, k, steps, ahead, [&] { return smaller(least, limit); },
+    look_ahead(given, belief, k, steps, ahead, [&] { return smaller(least, limit); },
                [&](int, const Command<Real>&, Real sum) { least = smaller(sum, least); });
     return least;
 }
@@ -67,13 +54,11 @@ Real least_sum(const Outlook<Layout, Real>& outlook, const Belief<Real, capacity
 /// Control from pose k - 1 to k by a horizon of `steps` steps, given the belief at pose k - 1. A horizon of one step is
 /// the greedy planner's.
 template <class Layout, class Real, int capacity>
-Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const ControlParameters& control,
-                         const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
-                         int steps, HorizonWorkspace<Layout, Real>& work, PlannerWorkspace<Layout, Real>& last_step) {
-    if (steps == 1) return plan(belief, control, filter, sensor, layout, k, last_step);
-    const Outlook<Layout, Real> outlook{control, filter, sensor, layout, last_step};
-    Choice<Real> choice = no_choice<Real>(control);
-    look_ahead(outlook, belief, k, steps, work.ahead, [&] { return choice.best; },
+Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const Planning<Layout, Real>& given, int k, int steps,
+                         HorizonWorkspace<Layout, Real>& work) {
+    if (steps == 1) return plan(belief, given, k);
+    Choice<Real> choice = no_choice<Real>(given.control);
+    look_ahead(given, belief, k, steps, work.ahead, [&] { return choice.best; },
                [&](int, const Command<Real>& command, Real sum) { choice.offer(command, sum); });
     return choice.command;
 }
@@ -81,16 +66,14 @@ Command<Real> plan_ahead(const Belief<Real, capacity>& belief, const ControlPara
 /// Calls visit(i, cost) with the cost of every candidate, where all costs are wanted: that of its step or,
 /// for several steps, the least sum over them. The planners themselves evaluate few candidates.
 template <class Layout, class Real, int capacity, class Visit>
-void price_candidates(const Belief<Real, capacity>& belief, const ControlParameters& control,
-                      const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout, int k,
-                      int steps, HorizonWorkspace<Layout, Real>& work, PlannerWorkspace<Layout, Real>& last_step,
-                      Visit&& visit) {
-    if (steps == 1) {
-        plan_plainly(belief, control, filter, sensor, layout, k, work.ahead[0], work.ahead[1], visit);
-        return;
-    }
-    look_ahead(Outlook<Layout, Real>{control, filter, sensor, layout, last_step}, belief, k, steps, work.ahead,
-               without_limit<Real>, [&](int i, const Command<Real>&, Real sum) { visit(i, sum); });
+void price_candidates(const Belief<Real, capacity>& belief, const Planning<Layout, Real>& given, int k, int steps,
+                      HorizonWorkspace<Layout, Real>& work, Visit&& visit) {
+    if (steps == 1)
+        plan_plainly(belief, given.control, given.filter, given.sensor, given.layout, k, work.ahead[0], work.ahead[1],
+                     visit);
+    else
+        look_ahead(given, belief, k, steps, work.ahead, without_limit<Real>,
+                   [&](int i, const Command<Real>&, Real sum) { visit(i, sum); });
 }
 
 }  // namespace CREDENCE_TARGET

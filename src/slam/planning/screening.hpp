@@ -166,6 +166,22 @@ struct Tangent {
     }
 };
 
+/// Conditions P on what is seen from `there`; gives the sightings' v_j and (1 + kappa/r_j)^2, 1 where it is not seen.
+template <class Layout, class Real, int capacity>
+CREDENCE_INLINE void condition_from(const Vector2<Real>& there, const Real* mean, const FilterParameters& filter,
+                                    const SensorParameters& sensor, const Layout& layout, double kappa,
+                                    Symmetric<Real, capacity>& P, Real* value, Real* weight) {
+    each(zero, layout.features(), [&](auto j) {
+        const Real squared = squared_range(there, point_at(mean, Layout::feature(j)));
+        const Mask<Real> seen = in_range(sensor, squared);
+        const Real N = believed_variance(filter, sigma_at(sensor, squared));
+        value[j] = select(seen, Real(1) / (Real(kappa) + N), Real(0));
+        const Real ratio = select(seen, Real(1) + Real(kappa) / N, Real(1));
+        weight[j] = ratio * ratio;
+        if (any(seen)) condition(P, layout, sighting_rows<Layout>(mean, j), N, seen);
+    });
+}
+
 /// The tangent at the reference, whose move is `there`.
 template <class Layout, class Real, int capacity>
 CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const Belief<Real, capacity>& still,
@@ -175,15 +191,7 @@ CREDENCE_FLAT Tangent<Layout, Real> tangent_at(const Vector2<Real>& there, const
                                                ScreeningWorkspace<Layout, Real>& work) {
     copy(still.covariance, layout.size(), work.covariance);
     Real value[Layout::feature_capacity], weight[Layout::feature_capacity];
-    each(zero, layout.features(), [&](auto j) {
-        const Real squared = squared_range(there, point_at(still.mean, Layout::feature(j)));
-        const Mask<Real> seen = in_range(sensor, squared);
-        const Real N = believed_variance(filter, sigma_at(sensor, squared));
-        value[j] = select(seen, Real(1) / (Real(kappa) + N), Real(0));
-        const Real ratio = select(seen, Real(1) + Real(kappa) / N, Real(1));
-        weight[j] = ratio * ratio;
-        if (any(seen)) condition(work.covariance, layout, sighting_rows<Layout>(still.mean, j), N, seen);
-    });
+    condition_from(there, still.mean, filter, sensor, layout, kappa, work.covariance, value, weight);
     Tangent<Layout, Real> tangent;
     TurnedTrace<Real> rest = turned_trace(work.covariance, layout, weights);
     each(zero, layout.features(), [&](auto j) {
@@ -239,17 +247,6 @@ int mark_left(const bool* repeated, int count, Real threshold, ScreeningWorkspac
         left += work.left[i] != 0;
     }
     return left;
-}
-
-/// Whether each lane's queue is empty or holds that candidate alone, counted as the queue counts.
-template <class Layout, class Real>
-bool alone(const Real& candidate, const ScreeningWorkspace<Layout, Real>& work) {
-    for (int lane = 0; lane < lanes<Real>; ++lane) {
-        const int number = static_cast<int>(lane_of(candidate, lane));
-        const std::uint64_t bit = std::uint64_t{1} << number % 64;
-        if ((work.queue[lane][number / 64] & ~bit) != 0 || work.queue[lane][1 - number / 64] != 0) return false;
-    }
-    return true;
 }
 
 /// Queues, in each lane, the candidates first ... first + count - 1 whose bound does not lie above `threshold`.

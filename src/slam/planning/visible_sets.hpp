@@ -209,5 +209,15 @@ Real last_of_best(Real equal, const Belief<Real, capacity>& still, const Control
     return winner;
 }
 
+/// The choice among the sets, given their costs.
+template <class Layout, class Real, int capacity>
+Choice<Real> choose_among_sets(const Belief<Real, capacity>& still, const ControlParameters& control,
+                               const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
+    Choice<Real> choice = no_choice<Real>(control);
+    choice.best = least_cost(1 << layout.features(), sets);
+    choice.command = fetch_each(control, last_of_best(choice.equal_cost(), still, control, sensor, layout, sets));
+    return choice;
+}
+
 }  // namespace CREDENCE_TARGET
 }  // namespace credence

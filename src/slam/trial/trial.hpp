@@ -57,8 +57,8 @@ void run_trial(const ProblemView& problem, Controller controller, const Noise& n
         if (!plans(controller)) {
             command = steered(controller, belief, problem.control, problem.filter, layout, k, noise);
         } else {
-            command = plan_ahead(belief, problem.control, problem.filter, problem.sensor, layout, k,
-                                 problem.steps_ahead(controller, k), work.horizon, work.planner);
+            const Planning<Layout, Real> given{problem.control, problem.filter, problem.sensor, layout, work.planner};
+            command = plan_ahead(belief, given, k, problem.steps_ahead(controller, k), work.horizon);
             observer.planned(k, layout, belief);
         }
 

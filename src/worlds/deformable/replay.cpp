@@ -54,9 +54,9 @@ public:
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
         const auto ahead = std::make_unique<HorizonWorkspace<Layout, double>>();
-        const auto last_step = std::make_unique<PlannerWorkspace<Layout, double>>();
-        price_candidates(belief, problem_.control, problem_.filter, problem_.sensor, layout, k,
-                         problem_.steps_ahead(controller_, k), *ahead, *last_step,
+        const auto planner = std::make_unique<PlannerWorkspace<Layout, double>>();
+        const Planning<Layout, double> given{problem_.control, problem_.filter, problem_.sensor, layout, *planner};
+        price_candidates(belief, given, k, problem_.steps_ahead(controller_, k), *ahead,
                          [&](int candidate, double cost) { to(cost_, k)[candidate] = cost; });
     }
 
