@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Does looking further ahead pay? The document's eight cells, and three with more heading noise: fixed path, greedy
 # planner and a horizon of two steps on 20,000 trials each, or as many as the first argument says. Then the eight with
-# three steps: as many trials on the straight path, a fortieth on the circle, where there are two million sequences.
-# Some minutes on 2 cores. Writes results/planning/horizon-*.h5 and prints the tables of docs/theory/planning.md.
+# three steps: as many trials on the straight path, a fortieth on the circle, where there are two million sequences. And
+# two steps by the determinant, on five times as many trials.
+# Half an hour on 2 cores. Writes results/planning/horizon-*.h5 and prints the tables of docs/theory/planning.md.
 #   experiments/planning/horizon.sh [TRIALS] [--no-costs]      --no-costs: leaves out what a step costs
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -36,6 +37,10 @@ for sigma in 0.01 0.05 0.1; do
     "noise.heading=$sigma"
 done
 cells 3
+for sigma in 0.001 0.05 0.1; do
+  cell "log_det: ekf, circle, ranged, σ_head $sigma" "log-det-$sigma" 2 $((5 * trials)) \
+    experiments/seed/ekf-circle-ranged.ini planner.criterion=log_det "noise.heading=$sigma"
+done
 
 gains() {
   local figure
