@@ -97,7 +97,11 @@ struct EigenvalueScreen : ScreenedStep<ranged, Layout, Real> {
 
     explicit EigenvalueScreen(const Planning<Layout, Real>& planning) : Step{planning} {
         each(zero, given.layout.size(), [&](auto i) { x[i] = Real(1); });
-        lost = lost_to_rounding(given, given.filter.variance_odometry);
+        const Weights& weights = given.control.weights;
+        const double odometry = given.filter.variance_odometry;
+        const double fresh = 2 * weights.position * odometry + weights.heading * given.filter.variance_heading;
+        lost = lost_to_rounding(given, weighted_trace(given.work.still.covariance, given.layout, weights) + Real(fresh),
+                                odometry);
     }
 
     Real enter(const Command<Real>& command) {
@@ -127,10 +131,10 @@ struct EigenvalueScreen : ScreenedStep<ranged, Layout, Real> {
         return select(accurate, cost * Real(1 + 1e-9), without_limit<Real>());
     }
     /// Most candidates are only shown to lie above the least one so far: along x or, failing that, by a factorisation.
-    void decide(const Command<Real>& command, Mask<Real> offered, Real threshold, Choice<Real>& choice) {
+    void decide(const Command<Real>& command, Mask<Real> offered, Real limit, Choice<Real>& choice) {
         const auto& [control, filter, sensor, layout, work] = given;
         auto& P = expected(command);
-        threshold = smaller(choice.best, threshold) * Real(1 + 1e-9);
+        const Real threshold = smaller(choice.best, limit) * Real(1 + 1e-9);
         offered = both(offered, negated(value_along(x, P, layout, control.weights) > threshold));
         if (!any(offered)) return;
         offered = both(offered, all_below(threshold, P, layout, control.weights));
@@ -161,7 +165,8 @@ Choice<Real> choose_by_bounds(const Belief<Real, capacity>& belief, const Planni
         Choice<Real> known = no_choice<Real>(control);
         known.offer(command, screen.enter(command));
         command = fetch_each(control, bound_candidates<false>(first, count, screening, bound_of));
-        known.offer(command, screen.direct(command));
+        const Mask<Real> met = both(known.best < without_limit<Real>(), same_move(command, known.command));
+        if (any(negated(met))) known.offer(command, screen.direct(command));
         const Real least = smaller(smaller(known.best, choice.best), limit), threshold = screen.threshold(least);
         if (mark_left(control.repeated + first, count, threshold, screening) > enough_left) {
             screen.touch(command);

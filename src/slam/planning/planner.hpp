@@ -92,7 +92,7 @@ Choice<Real> choose(const Belief<Real, capacity>& belief, const Planning<Layout,
                                                   : choose_without_trace<false>(belief, given, k, limit);
     prepare_still(belief, filter, layout, k, work.still);
     const FastChoice<Real> fast = choose_fast(given, limit);
-    const Mask<Real> unsure = doubtful(fast, limit, lost_to_rounding(given, 0), work);
+    const Mask<Real> unsure = doubtful(fast, limit, lost_to_rounding(given, work.space.prior.constant, 0), work);
     if (!any(unsure)) return fast.choice;
     return chosen(unsure,
                   plan_plainly(belief, control, filter, sensor, layout, k, work.still, work.next, [](int, Real) {}),

@@ -102,9 +102,9 @@ CREDENCE_FLAT void gather_sets(const Belief<Real, capacity>& still, const Contro
 
 /// trace(W P+) of every set.
 template <class Layout, class Real>
-CREDENCE_FLAT void price_sets(const MeasurementSpace<Layout, Real>& space, const FilterParameters& filter,
-                              const SensorParameters& sensor, const Layout& layout,
-                              MeasurementElimination<Layout, Real>& work, VisibleSets<Real>& sets) {
+CREDENCE_INLINE void price_sets(const MeasurementSpace<Layout, Real>& space, const FilterParameters& filter,
+                                const SensorParameters& sensor, const Layout& layout,
+                                MeasurementElimination<Layout, Real>& work, VisibleSets<Real>& sets) {
     const Real N = believed_variance(filter, Real(sensor.sigma));
     near_at_hand(layout, work, [&](auto& near) CREDENCE_INLINE_LAMBDA {
         for (int set = 0; set < 1 << layout.features(); ++set) {
@@ -211,8 +211,9 @@ Real last_of_best(Real equal, const Belief<Real, capacity>& still, const Control
 
 /// The choice among the sets, given their costs.
 template <class Layout, class Real, int capacity>
-Choice<Real> choose_among_sets(const Belief<Real, capacity>& still, const ControlParameters& control,
-                               const SensorParameters& sensor, const Layout& layout, VisibleSets<Real>& sets) {
+CREDENCE_FLAT Choice<Real> choose_among_sets(const Belief<Real, capacity>& still, const ControlParameters& control,
+                                             const SensorParameters& sensor, const Layout& layout,
+                                             VisibleSets<Real>& sets) {
     Choice<Real> choice = no_choice<Real>(control);
     choice.best = least_cost(1 << layout.features(), sets);
     choice.command = fetch_each(control, last_of_best(choice.equal_cost(), still, control, sensor, layout, sets));

@@ -46,20 +46,18 @@ void prepare_still(const Belief<Real, capacity>& belief, const FilterParameters&
 
 /// T (1 + s v): the error of a fast form's costs is at most about 50 * 2^-53 times this [docs/theory/model.md,
 /// Rounding]. T is at least the trace before the sightings, s at least the sum of the terms of S without the noise, v
-/// at least the inverse of any eigenvalue of S. `odometry`: the position noise that work.still lacks.
+/// at least the inverse of any eigenvalue of S. `trace`: of W P with all noise but the sightings', before the robot
+/// moves; `odometry`: the position noise that work.still lacks.
 template <class Layout, class Real>
-CREDENCE_FLAT Real lost_to_rounding(const Planning<Layout, Real>& given, double odometry) {
+CREDENCE_FLAT Real lost_to_rounding(const Planning<Layout, Real>& given, Real trace, double odometry) {
     const auto& [control, filter, sensor, layout, work] = given;
     constexpr auto x = Layout::position;
     const auto& P = work.still.covariance.entry;
     const Vector2<Real> robot = point_at(work.still.mean, x);
     const Real position = P[x][x] + P[x + one][x + one] + Real(2 * odometry), reach = Real(control.squared_reach);
-    Real T = weighted_trace(work.still.covariance, layout, control.weights), s = Real(0);
-    T = T + Real(control.weights.position * 2 * odometry);
-    if constexpr (Layout::has_heading) {
-        T = T + Real(control.weights.heading * filter.variance_heading);
+    Real T = trace, s = Real(0);
+    if constexpr (Layout::has_heading)
         T = fma(Real(control.weights.position) * reach, P[Layout::heading][Layout::heading], T);
-    }
     each(zero, layout.features(), [&](auto j) {
         const auto f = Layout::feature(j);
         s = s + position + P[f][f] + P[f + one][f + one];
