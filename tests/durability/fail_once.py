@@ -2,8 +2,10 @@
 the same, or ends with 1 or 2 and one line that says what the system said, and does not speak of writing where it writes
 no file; nothing is lost: every file is what it was before, is not there, or is whole, and the same command without the
 failure ends as it always does. A read or write of half the bytes, one that is interrupted, and a file system without
-the flags of renameat2 must make no difference. Where memory is refused, libhdf5 1.10 may end the process itself, and so
-do constants made before main(); where it gets no memory to start with, it prints what it always prints of an error.
+the flags of renameat2 must make no difference. If memory is refused, libhdf5 1.10 may end the process itself, and so
+do constants made before main(); if it gets no memory to start with, it prints what it always prints of an error.
+OpenMP's library says of a thread and of memory that it does not get what the system said, and calls exit(): the
+program's own line then follows.
 
 With --most N at most N of the calls of a kind fail, at random, and --many N of the kinds that have thousands; 0: each.
 With --every N only each N-th of the kinds, others from command to command. With --callers D, one allocation and one
@@ -21,6 +23,7 @@ from commands import commands
 from harness import HERE, Bench, Failed, arguments, finish, finish_all
 
 IO = "input/output error"
+EXIT = ": cannot finish (exit() was called in the middle of it)."
 MEMORY = ("malloc", "mmap")
 MANY = (*MEMORY, "short", "eintr")
 # What must be said of a failure; nothing of what a program has to bear.
@@ -135,6 +138,8 @@ class Failing:
         lines = [line for line in done.stderr.strip().splitlines() if not line.startswith("shim: ")]
         if words == "memory":
             lines = [line for line in lines if not line.startswith(("HDF5-DIAG", "  #", "    major: ", "    minor: "))]
+        if lines[0:1] and lines[0].startswith("libgomp: ") and EXIT in lines[-1]:
+            del lines[-1]
         if len(lines) != 1:
             raise Failed(f"ended with {done.returncode} and said {lines}")
         # pthread_create() says of memory that it does not get what it says of threads.
