@@ -150,7 +150,7 @@ def main() -> int:
     parser.add_argument("--short", action="store_true", help="fewer trials and wider margins, two minutes in all")
     parser.add_argument("--page", action="store_true", help="print the table as docs/theory/in-the-wild.md has it")
     parser.add_argument("--reports", type=pathlib.Path, help="write the text reports to this folder")
-    parser.add_argument("--keep", type=pathlib.Path, help="keep the trials in this folder, and go on with those there")
+    parser.add_argument("--keep", type=pathlib.Path, help="keep the trials in this folder, and resume from those there")
     parser.add_argument("names", nargs="*", metavar="NAME", help="a part of a study's library or name")
     given = parser.parse_args()
     wanted = [

@@ -83,7 +83,7 @@ def parser() -> argparse.ArgumentParser:
         "--batch", type=int, nargs="?", const=True, default=False, help="the function takes many generators"
     )
     made.add_argument("-o", "--output", metavar="FILE.h5", help="the record; with arms FILE.ARM.h5")
-    made.add_argument("--resume", action="store_true", help="go on with the trials that are kept beside the output")
+    made.add_argument("--resume", action="store_true", help="resume from the trials that are kept beside the output")
     made.add_argument("--until", action="append", metavar="NUMBER=WIDTH", help="stop at a precision: nees_ratio=1%%")
     made.add_argument("--timeout", type=float, metavar="SECONDS", help="of a trial")
     made.add_argument("--failed", default=0.01, metavar="SHARE", help="of the trials that may fail (1%%)")
@@ -112,7 +112,7 @@ def main(words: Sequence[str]) -> int:
             )  # fmt: skip
         print(study, end="")
     except Interrupted as stopped:
-        print(f"credence simulate: {stopped}. This goes on: --resume.", file=sys.stderr)
+        print(f"credence simulate: {stopped}. To resume it: --resume.", file=sys.stderr)
         return STOPPED
     except (InputError, Failure) as error:
         print(f"credence simulate: {error}", file=sys.stderr)

@@ -35,8 +35,8 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     study : Study, Simulation or None
-        The trials that were done; ``credence.resume(study)`` goes on with those of a Study, and ``simulate`` with
-        ``resume=True`` with those beside its output.
+        The trials that were done; ``credence.resume(study)`` resumes from those of a Study, and ``simulate`` with
+        ``resume=True`` from those beside its output.
     """
 
     def __init__(self, message: str, study: Any) -> None:
@@ -145,7 +145,7 @@ def _finish(words: list[str], output: str, progress: bool | None, folder: str | 
     if folder is not None:
         weakref.finalize(study, _remove, folder, os.getpid())
     if code == STOPPED:
-        raise Interrupted(said(err.split(" This goes on")[0].strip()), study)
+        raise Interrupted(said(err.split(" To resume it:")[0].strip()), study)
     if err:
         warnings.warn(said(err.strip()), stacklevel=3)
     return study

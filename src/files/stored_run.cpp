@@ -91,12 +91,12 @@ void StoredRun::open_journal() {
 
 void StoredRun::go_on() {
     const StudyDefinition asked = definition_of(study_);
-    if (journal_ && journal_->header()) go_on_with(*journal_->header(), asked);
+    if (journal_ && journal_->header()) resume_journal(*journal_->header(), asked);
     else if (output_.there) read_file(asked);
     check_releases();
 }
 
-void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& asked) {
+void StoredRun::resume_journal(const JournalHeader& header, const StudyDefinition& asked) {
     check_same_study(header.study, asked, journal_path_,
                      "Finish that study first, remove the journal if it is not to be finished, or name another output");
     if (header.base != JournalBase::grown) {
@@ -106,14 +106,14 @@ void StoredRun::go_on_with(const JournalHeader& header, const StudyDefinition& a
     }
     if (!output_.there)
         throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
-                         ", which it goes on with, is gone). Put that back, or remove the journal and start anew.");
+                         ", which it extends, is gone). Put that back, or remove the journal and start anew.");
     read_file(asked);
     try {
         journal_->load(study_);
     } catch (const InputError&) {
         if (is_base_of(header)) throw;
         throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
-                         " is not the file that it goes on with). Put that back, or remove the journal to go on with " +
+                         " is not the file that it extends). Put that back, or remove the journal to resume " +
                          output_.path + " as it is.");
     }
 }
@@ -137,7 +137,7 @@ Study StoredRun::stored(const StudyDefinition& asked) const {
     Study study = read_results(output_.target, most_totals_in_memory).study;
     check_same_study(
         definition_of(study), asked, output_.path,
-        journal_ && journal_->header() ? "Move it away to go on with " + journal_path_ : "Name another output");
+        journal_ && journal_->header() ? "Move it away to resume " + journal_path_ : "Name another output");
     require_all_columns(study, "cannot resume " + output_.path);
     return study;
 }

@@ -71,7 +71,7 @@ private:
 
     void open_journal();
     void go_on();
-    void go_on_with(const JournalHeader& header, const StudyDefinition& asked);
+    void resume_journal(const JournalHeader& header, const StudyDefinition& asked);
     void choose(const StudyDefinition& asked);
     void read_file(const StudyDefinition& asked);
     Study stored(const StudyDefinition& asked) const;

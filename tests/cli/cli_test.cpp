@@ -126,7 +126,7 @@ TEST_CASE("cli: resume starts where there is nothing, ends at once where all is 
 }
 
 TEST_CASE(
-    "cli: resume without a scenario goes on with the study of the file, or of the journal of a run that was killed") {
+    "cli: resume without a scenario resumes the study of the file, or of the journal of a run that was killed") {
     const Workplace here;
     const std::string run =
         "run " + seed_scenario("ekf-straight-constant") + " --seed 7 --set noise.walk=0.25 --quiet ";

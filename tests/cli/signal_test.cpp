@@ -38,7 +38,7 @@ TEST_CASE("cli: a signal stops the run with everything kept, and the line that i
         CHECK(stopped.out == "exit code 3\n");
         CHECK_THAT(stopped.err,
                    Contains("credence run: stopped by SIG" + name + " with ") &&
-                       Contains("trials kept in x.h5 (complete = 0). This goes on with them:\n  " CREDENCE_PROGRAM
+                       Contains("trials kept in x.h5 (complete = 0). To resume it:\n  " CREDENCE_PROGRAM
                                 " run"));
         CHECK(here.names() == std::vector<std::string>{"small world.ini", "x.h5"});
         const Study study = read_results(here.path("x.h5")).study;

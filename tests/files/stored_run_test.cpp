@@ -222,7 +222,7 @@ TEST_CASE("stored run: a journal beside a results file of the same study that it
     }
     SECTION("another study's file, or journal, is named with what to do") {
         put(here.of(3, 9), asked, 4);
-        CHECK(says(refused(here.path, asked), "Move it away to go on with " + here.journal));
+        CHECK(says(refused(here.path, asked), "Move it away to resume " + here.journal));
         CHECK(says(refused(here.path, here.of(3, 9)), "remove the journal if it is not to be finished"));
     }
     SECTION("the file that a journal grows was replaced") {
@@ -231,6 +231,6 @@ TEST_CASE("stored run: a journal beside a results file of the same study that it
         run_and_die(here.path, asked, 2);
         run_to_end(here.folder / "merged.h5", here.of(256));
         std::filesystem::rename(here.folder / "merged.h5", here.path);
-        CHECK(says(refused(here.path, asked), here.path + " is not the file that it goes on with"));
+        CHECK(says(refused(here.path, asked), here.path + " is not the file that it extends"));
     }
 }

@@ -60,7 +60,7 @@ void take_stored(const Parsed& parsed, RunRequest& request) {
         if (parsed.has(option))
             throw InputError(
                 std::string("--") + option +
-                " needs a scenario (without one, the study in the file goes on as it is). Name one or more "
+                " needs a scenario (without one, the study in the file is resumed as it is). Name one or more "
                 "SCENARIO.ini, or leave it out.");
     StudyDefinition stored = stored_definition(request.output);
     request.scenarios = std::move(stored.scenarios);

@@ -23,7 +23,7 @@ const Command& run_command() {
         "run a study: every scenario under all its arms",
         "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
         "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
-        "everything kept (exit code 3), and --resume goes on; without scenarios, with those of the file.\n",
+        "everything kept (exit code 3), and --resume resumes it; without scenarios, with those of the file.\n",
         {output_option("results file (default credence.h5)", "FILE.h5"),
          {"trials", "N", "trials of each scenario (default 10000)"},
          {"seed", "N", "root seed, from 0 to 2^64 - 1 (default 1)"},
@@ -125,7 +125,7 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
     std::int64_t done = 0;
     for (const ScenarioResults& results : stored.study().scenarios) done += results.trials;
     say(program_name() + " run: stopped by " + Interrupt::name() + " with " + std::to_string(done) +
-        " trials kept in " + printable(request.output) + " (complete = 0). This goes on with them:\n  " +
+        " trials kept in " + printable(request.output) + " (complete = 0). To resume it:\n  " +
         resuming(command_line, request.options.shard) + "\n");
     return 3;
 }

@@ -48,12 +48,12 @@ std::string state_text(const Snapshot& snapshot) {
 std::string advice(const Snapshot& snapshot) {
     constexpr double long_time = 60;
     if (snapshot.state == RunState::incomplete && snapshot.shard.count == 1)
-        return "A run that was stopped goes on with --resume; parts are joined by `" + program_name() +
+        return "A run that was stopped is resumed by --resume; parts are joined by `" + program_name() +
                " merge`.\n";
     if (snapshot.ended() || snapshot.seconds_since_commit < long_time) return "";
     return std::string(snapshot.trials_done() < snapshot.trials_asked() ? "Nothing has been committed for a while"
                                                                 : "All is committed, and the results file is due") +
-           ". If the run is dead, the same command with --resume goes on.\n";
+           ". If the run is dead, the same command with --resume resumes it.\n";
 }
 
 std::string units_text(const WatchedScenario& scenario) {
