@@ -163,7 +163,7 @@ std::string trend_of(const Evidence& evidence, const Limits& limits) {
     const double trials = evidence.groups.front().dimension * static_cast<double>(evidence.trials),
                  right = std::log1p(3 * limits.margin), noise = 3 * std::sqrt(2 / trials),
                  wrong = std::log(1.5) + noise;
-    const std::size_t some = std::max<std::size_t>(2, steps.size() / 5);
+    const auto some = std::max<std::ptrdiff_t>(2, std::ssize(steps) / 5);
     const double last = std::accumulate(steps.end() - some, steps.end(), 0.0,
                                         [](double sum, const Moments& step) { return sum + std::log(step.mean); }) /
                         static_cast<double>(some);
