@@ -70,7 +70,7 @@ StoredRun::StoredRun(const std::string& path, Study study, Start start, const st
       study_(std::move(study)) {
     refuse_clashing_links(study_);
     open_journal();
-    if (start_ == Start::resume) go_on();
+    if (start_ == Start::resume) resume();
 }
 
 StoredRun::StoredRun(StoredRun&&) noexcept = default;
@@ -89,7 +89,7 @@ void StoredRun::open_journal() {
     if (start_ == Start::resume) journal_ = std::make_unique<Journal>(journal_path_);
 }
 
-void StoredRun::go_on() {
+void StoredRun::resume() {
     const StudyDefinition asked = definition_of(study_);
     if (journal_ && journal_->header()) resume_journal(*journal_->header(), asked);
     else if (output_.there) read_file(asked);

@@ -70,7 +70,7 @@ private:
     };
 
     void open_journal();
-    void go_on();
+    void resume();
     void resume_journal(const JournalHeader& header, const StudyDefinition& asked);
     void choose(const StudyDefinition& asked);
     void read_file(const StudyDefinition& asked);

@@ -60,7 +60,8 @@ int program_with_leaver(const Workplace& here, const std::string& forks) {
 TEST_CASE("cli: a world that calls exit(0) ends the run with 1 and a message") {
     const Workplace here;
     CHECK(program_with_leaver(here, "0") == 1);
-    CHECK_THAT(here.read("err"), Contains("leaver run: cannot finish (exit() was called in the middle of it)"));
+    CHECK_THAT(here.read("err"),
+               Contains("leaver run: cannot finish (exit() was called in the middle of it, by a world"));
 }
 
 TEST_CASE("cli: a process that a world forks may exit") {

@@ -4,7 +4,7 @@
 # is the program (build/credence); FURTHER_PROGRAMS, parted by spaces, are others that a page calls as build/NAME.
 #
 # What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis,
-# python, docs/theory and counts.txt in it:
+# python and docs/theory in it:
 #
 #   ```console                   A block whose lines begin with `$ ` shows commands, each with its standard output below.
 #   $ credence report a.h5       A line `…` stands for any lines, and `…` in a line for anything there.
@@ -41,10 +41,9 @@ trap 'rm -rf "$folder"' EXIT
 status=0
 for page in "${pages[@]}"; do
   scratch=$folder/$(tr / _ <<<"${page%.md}") complaints=$folder/complaints renewed=$folder/renewed
-  mkdir -p "$scratch/build" "$scratch/docs/figures" "$scratch/tests/durability"
+  mkdir -p "$scratch/build" "$scratch/docs/figures"
   cp -r experiments analysis python "$scratch"
   cp -r docs/theory "$scratch/docs"
-  cp tests/durability/counts.txt "$scratch/tests/durability"
   ln -s "$CREDENCE" "$scratch/build/credence"
   for program in ${FURTHER_PROGRAMS:-}; do ln -s "$(realpath "$program")" "$scratch/build"; done
   : >"$complaints"

@@ -5,8 +5,7 @@
 #   evening  more of each, in about an hour
 #   full     every chain of 8 callers of an allocation, every byte of two small results files, every change of a file:
 #            hours
-# As many harnesses run at a time as there are processors. The last two depths keep the lines in counts.txt, which
-# README.md shows.
+# As many harnesses run at a time as there are processors. The last two depths keep the lines in counts.txt.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 credence=$(realpath "$1")
@@ -76,7 +75,6 @@ done
 wait
 [ ! -e "$kept/failed" ] || exit 1
 
-# What is counted is what the page shows.
 if [ "$depth" != sample ]; then
   { echo "$("$credence" --version | head -n 1), depth $depth"; cat "$kept"/*.lines; } >"$here/counts.txt"
 fi

@@ -12,6 +12,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 TRIALS = 1500  # five blocks and a partial one
 LESS = 700  # two blocks and a partial one
+EXIT = ": cannot finish (exit() was called in the middle of it, by a world or by a library)."  # said by the program
 
 # What is set for OpenMP or credence where the tests run must not change what they do.
 for name in [name for name in os.environ if name.startswith(("OMP_", "CREDENCE"))]:

@@ -24,8 +24,8 @@ extern "C" void refuse_exit() {
 ExitGuard::ExitGuard(const std::string& command) {
     [[maybe_unused]] static const bool registered =
         std::atexit(refuse_exit) == 0 && std::at_quick_exit(refuse_exit) == 0;
-    message = command + ": cannot finish (exit() was called in the middle of it). A library that does so has said why, "
-                        "in the line above; a world throws an exception instead.\n";
+    message = command + ": cannot finish (exit() was called in the middle of it, by a world or by a library). A "
+                        "library may have said why, above; in a world throw an exception instead.\n";
     guarded = getpid();
 }
 
