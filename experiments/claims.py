@@ -1,10 +1,10 @@
 """Whether the sentences of a page, or of several, are true of the tables that a script prints:
 
-    ... | python3 claims.py CLAIMS.py [-] [REPORT.csv...] [PAGE.md...]
+    ... | python3 claims.py CLAIMS.py [-] [TABLE.csv...] [PAGE.md...]
 
 CLAIMS.py has the dictionary CLAIMS, of sentences and their conditions, and TABLES, which gives the tables' cells names.
-Conditions are checked on the tables of the standard input (-, which is passed on), of the reports of `credence report
---format csv`, and of the pages. With pages every table must be there, no two may differ in a row that both have, every
+Conditions are checked on the tables of the standard input (-, which is passed on), of CSV files, reports of `credence
+report --format csv` among them, and of the pages. With pages every table must be there, no two may differ in a row that both have, every
 sentence must stand in one of the pages, and every number of their bullets and pictures must stand in one of the
 sentences. Without a page, what needs another script's table is left out.
 """
@@ -102,8 +102,10 @@ def main(claims_file, *sources):
     for source in sources:
         if source.endswith(".csv"):
             with open(source, newline="") as file:
-                for row in csv.DictReader(file):
-                    wrong += add_row(tables, described.TABLES, REPORT.split(), [row[name] for name in REPORT.split()])
+                head, *rows = csv.reader(file)
+            wanted = [head.index(name) for name in REPORT.split()] if {*REPORT.split()} < {*head} else range(len(head))
+            for row in rows:
+                wrong += add_row(tables, described.TABLES, [head[at] for at in wanted], [row[at] for at in wanted])
             continue
         text = sys.stdin.read() if source == "-" else Path(source).read_text()
         if source == "-":

@@ -3,7 +3,7 @@
 # their commands print. With --update the pages are rewritten; with --slow what takes minutes is run as well. CREDENCE
 # is the program (build/credence); FURTHER_PROGRAMS, parted by spaces, are others that a page calls as build/NAME.
 #
-# What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis,
+# What is run, in the order of the page, in a folder of each page's own with the project's experiments, analysis, bench,
 # python and docs/theory in it:
 #
 #   ```console                   A block whose lines begin with `$ ` shows commands, each with its standard output below.
@@ -13,6 +13,8 @@
 #   <!-- $ bash study.sh -->     The Markdown table below is the first that the command prints; below the next comment with
 #   | … |                        the same command is its second. Rows and last columns whose names are in italics are not
 #                                the command's.
+#   <!-- $ bash study.sh → experiments/study.csv -->
+#                                The file, which is too long for the page, is that table.
 #   ```console slow              Both forms, run with --slow only.
 #   <!-- slow $ bash study.sh -->
 #   ```ini                       A scenario whose first line is its name is a file that commands below may read.
@@ -42,7 +44,7 @@ status=0
 for page in "${pages[@]}"; do
   scratch=$folder/$(tr / _ <<<"${page%.md}") complaints=$folder/complaints renewed=$folder/renewed
   mkdir -p "$scratch/build" "$scratch/docs/figures"
-  cp -r experiments analysis python "$scratch"
+  cp -r experiments analysis bench python "$scratch"
   cp -r docs/theory "$scratch/docs"
   ln -s "$CREDENCE" "$scratch/build/credence"
   for program in ${FURTHER_PROGRAMS:-}; do ln -s "$(realpath "$program")" "$scratch/build"; done
@@ -61,6 +63,12 @@ for page in "${pages[@]}"; do
   elif ! cmp -s "$page" "$renewed"; then
     diff -u --label "$page" --label "$page, as its commands print it" "$page" "$renewed" || true
     if [ $update -eq 1 ]; then cat "$renewed" >"$page"; else status=1; fi
+  fi
+  if [ -e "$scratch/.files" ]; then
+    while read -r file; do
+      diff -u --label "$file" --label "$file, as its command prints it" "$file" "$scratch/$file" && continue
+      if [ $update -eq 1 ]; then cp "$scratch/$file" "$file"; else status=1; fi
+    done <"$scratch/.files"
   fi
   rm -rf "$scratch"
 done

@@ -46,6 +46,8 @@ $ echo >>own.ini; wc -l <own.ini
 |---|
 | 7 ± 8 |
 END
+all='awk -f experiments/rows.awk -v rows=.* -v columns="1 2 3 4 5 6 7"' csv=experiments/estimators/nees.csv
+printf '%s\n' "<!-- \$ $all $csv → $csv -->" >>"$page"
 cp "$page" "$work/right.md"
 check || fail "refuses a page that is right"
 long=$(printf 'ü%.0s' {1..121})
@@ -60,6 +62,12 @@ for wrong in 's/^one 1$/one 2/' '/^one 1$/d' 's/^six 6$/six 7/' 's/^one 1$/&\nze
   if cmp -s "$page" "$work/right.md"; then fail "changes nothing: $wrong"; fi
   if check; then fail "does not find $wrong"; fi
   check --update && cmp -s "$page" "$work/right.md" || fail "does not renew $wrong"
+done
+# A file that is not the table.
+for wrong in "s/columns=\"1 /columns=\"2 /" "s/→ experiments/→ nowhere/" 's/^<!-- \$ awk [^→]*/<!-- $ true /'; do
+  sed "$wrong" "$work/right.md" >"$page"
+  if cmp -s "$page" "$work/right.md"; then fail "changes nothing: $wrong"; fi
+  if check; then fail "does not find $wrong"; fi
 done
 # Each of these is a mistake that --update cannot mend.
 for wrong in '0,/^```console$/s//```/' 's/^six 6$/elsewhere/' 's/^\$ true$/$ false/' 's/^<!-- slow .*//' 's/^<!-- slow /<!-- /' \

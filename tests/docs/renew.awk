@@ -160,6 +160,30 @@ function end_table(    i, measured) {
   maker = ""
 }
 
+# A row of a Markdown table as a line of a CSV file.
+function without_bars(row,    cells, n, i, line) {
+  n = split(row, cells, / *\| */)
+  for (i = 2; i < n; ++i) {
+    if (cells[i] ~ /[,"]/) { gsub(/"/, "\"\"", cells[i]); cells[i] = "\"" cells[i] "\"" }
+    line = line (i > 2 ? "," : "") cells[i]
+  }
+  return line
+}
+
+# Writes the next table of the command to the file, which has to be there already.
+function renew_file(command, file, where, is_run,    path, i) {
+  path = scratch "/" file
+  if ((getline i <path) < 0) complain(where, file " is not there")
+  close(path)
+  if (!is_run) return
+  run(command, where)
+  find_table(++tables[command])
+  if (!table_lines) complain(where, "`" command "` prints no table " tables[command])
+  for (i = 1; i <= table_lines; ++i) if (i != 2) print without_bars(table[i]) >path
+  close(path)
+  print file >>(scratch "/.files")
+}
+
 function end_fence(    i) {
   if (language ~ /^ini/ && block[1] ~ /^# [a-z]+\.ini$/) {
     file = scratch "/" substr(block[1], 3)
@@ -178,6 +202,14 @@ fence { block[++lines] = $0; next }
   fence = 1; lines = 0; fence_line = NR
   language = substr($0, 4)
   if (language == "") complain(NR, "a block without a language: `console` for commands with what they print, `sh` without")
+}
+/^<!-- (slow )?\$ .* → [^ ]*\.csv -->$/ {
+  command = file = $0
+  gsub(/^<!-- (slow )?\$ | → [^ ]* -->$/, "", command)
+  gsub(/^.* → | -->$/, "", file)
+  renew_file(command, file, NR, slow || !/^<!-- slow /)
+  print
+  next
 }
 /^<!-- (slow )?\$ .* -->$/ {
   maker = $0

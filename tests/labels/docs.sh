@@ -18,7 +18,7 @@ package_venv "$work"
 export CREDENCE_PYTHON=$work/venv/bin/python
 PYTHON=/usr/bin/python3 FURTHER_PROGRAMS="$work/own_filter/tracker $work/worlds/gallery" bash tests/docs/check.sh --slow "$@"
 bash docs/build.sh >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-/usr/bin/python3 tests/planning_claims.py docs/theory/planning.md
+/usr/bin/python3 tests/planning_claims.py docs/theory/planning.md experiments/planning/criteria.csv
 bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
 experiments=$PWD/experiments
 (cd "$work" && GALLERY=worlds/gallery bash "$experiments/worlds/run.sh" >verdicts)
