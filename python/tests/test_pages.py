@@ -39,11 +39,16 @@ def run(rng, q=1.0, r=1.0):
 """
 
 
-def block_lines(page: pathlib.Path) -> list[str]:
-    """The blocks of a page, each at its line, so that what fails names it."""
+def block_lines(page: pathlib.Path) -> list[tuple[str, str | None]]:
+    """The blocks of a page, each at its line, so that what fails names it, and what the page says that they print."""
     text = page.read_text()
-    found = re.finditer(r"^```python\n(.+?)^```$", text, re.MULTILINE | re.DOTALL)
-    return ["\n" * text[: block.start(1)].count("\n") + block[1] for block in found]
+    found = re.finditer(r"^```python\n(.+?)^```\n(?:```text\n(.+?)^```$)?", text, re.MULTILINE | re.DOTALL)
+    return [("\n" * text[: block.start(1)].count("\n") + block[1], block[2]) for block in found]
+
+
+def printed_like(shown: str) -> str:
+    """An expression for what is printed, where a line `…` stands for any lines."""
+    return "".join(r"(.*\n)*?" if line == "…" else re.escape(line + "\n") for line in shown.splitlines())
 
 
 @pytest.fixture
@@ -67,11 +72,13 @@ def names(page, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(studies.ROOT).as_posix())
-def test_the_blocks_of_a_page_run(page, names):
+def test_the_blocks_of_a_page_run(page, names, capsys):
     blocks = block_lines(page)
     assert blocks
-    for block in blocks:
+    for block, shown in blocks:
+        capsys.readouterr()
         exec(compile(block, str(page), "exec"), names)
+        assert shown is None or re.fullmatch(printed_like(shown), capsys.readouterr().out)
     for test in [value for name, value in names.items() if name.startswith("test_")]:
         test()
 
