@@ -4,15 +4,16 @@ include(CMakePackageConfigHelpers)
 set(CREDENCE_DATA ${CMAKE_INSTALL_DATADIR}/credence)
 set(CREDENCE_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/credence)
 
-# The program itself prints the manual page and the completion. They are written during installation, because the
-# program alone may have been built.
+# The program itself prints the completion and what the manual pages are made of. They are written during installation,
+# because the program alone may have been built.
 set(pages ${PROJECT_BINARY_DIR}/pages)
 install(CODE "file(MAKE_DIRECTORY \"${pages}\")
-execute_process(COMMAND \"$<TARGET_FILE:credence>\" manual OUTPUT_FILE \"${pages}/credence.1\" COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND \"$<TARGET_FILE:credence>\" completion bash OUTPUT_FILE \"${pages}/credence\"
-  COMMAND_ERROR_IS_FATAL ANY)" COMPONENT runtime)
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:credence> -D VERSION=${PROJECT_VERSION}
+  -D FOLDER=${pages}/man -P ${CMAKE_CURRENT_LIST_DIR}/manual.cmake COMMAND_ERROR_IS_FATAL ANY)" COMPONENT runtime)
 install(TARGETS credence RUNTIME COMPONENT runtime)
-install(FILES ${pages}/credence.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
 install(FILES ${pages}/credence DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
 
 # find_package(credence) gives credence::credence, and credence::program for a program with worlds of one's own.

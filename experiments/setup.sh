@@ -25,7 +25,7 @@ install_missing() {
 }
 
 build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev libdeflate-dev nlohmann-json3-dev"
-test_packages="catch2 librandom123-dev hdf5-tools mandoc"
+test_packages="catch2 librandom123-dev hdf5-tools"
 
 # python_venv FOLDER REQUIREMENTS [WHAT…]: makes the Python environment FOLDER with WHAT and what the file REQUIREMENTS
 # names, unless there is one that is newer than the file.

@@ -50,7 +50,6 @@ expect 'running.h5 study.h5 sub' credence watch ''
 expect 'study.h5 sub world.ini' credence replay ''
 expect 'study.h5 sub' credence replay world.ini --noise ''
 expect 'bash' credence completion ''
-expect '' credence manual ''
 expect 'noise.heading=' credence run --set noise.he
 expect 'static straight' credence run --set features.path = s
 expect 'circle static straight' credence run --set features.path =

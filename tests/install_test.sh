@@ -12,7 +12,13 @@ credence=usr/bin/credence
 [[ $($credence --version) == credence\ [0-9]* ]]
 printf '[scenario]\nname = mine\n' >mine.ini
 $credence show mine.ini | grep '^name = mine$' >/dev/null
-grep -q '^\.TH CREDENCE 1' usr/share/man/man1/credence.1
+if command -v help2man >/dev/null; then  # a page of each command, with its options
+  for command in $($credence --help | sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p'); do
+    grep -q '^\.TH CREDENCE' usr/share/man/man1/credence-"$command".1
+  done
+  grep -q '^\.TH CREDENCE' usr/share/man/man1/credence.1
+  grep -qF -- '\-\-until' usr/share/man/man1/credence-run.1
+fi
 bash -c 'source usr/share/bash-completion/completions/credence; COMP_WORDS=(credence rep) COMP_CWORD=1; _credence
   [ "${COMPREPLY[*]}" = "report replay" ]' || { echo "the completion does not answer"; exit 1; }
 for file in doc/credence/{README.md,LICENSE,CHANGELOG.md,docs/model.md} credence/analysis/record/write_record.py \

@@ -307,13 +307,4 @@ Option format_option(const std::vector<std::string>& formats) {
     return {"format", "FORMAT", help, false, formats};
 }
 
-const std::vector<ExitCode>& exit_codes() {
-    static const std::vector<ExitCode> codes{{0, "done"},
-                                             {1, "failed"},
-                                             {2, "bad input"},
-                                             {3, "stopped by a signal with everything kept"},
-                                             {130, "ended at once by a second signal"}};
-    return codes;
-}
-
 }  // namespace credence::cli

@@ -124,7 +124,6 @@ const Command& show_command();
 const Command& merge_command();
 const Command& watch_command();
 const Command& completion_command();
-const Command& manual_command();
 int run(const Parsed& parsed, const std::string& command_line);
 int report(const Parsed& parsed);
 int judge(const Parsed& parsed);
@@ -134,7 +133,6 @@ int show(const Parsed& parsed);
 int merge(const Parsed& parsed, const std::string& command_line);
 int watch(const Parsed& parsed);
 int completion(const Parsed& parsed);
-int manual(const Parsed& parsed);
 
 /// Runs the words of a command line, without `credence`, and returns the exit code; errors are thrown.
 int obey(const std::vector<std::string>& words);
@@ -147,12 +145,5 @@ DescribedKey described_world();
 
 /// All subcommands, in the order in which they are shown.
 std::vector<const Command*> all_commands();
-
-/// The meanings of the program's exit codes.
-struct ExitCode {
-    int code;
-    std::string meaning;
-};
-const std::vector<ExitCode>& exit_codes();
 
 }  // namespace credence::cli

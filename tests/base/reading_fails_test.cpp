@@ -4,8 +4,8 @@
 #include "judgement_support.hpp"
 #include "program.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::reading_fails_test {
+
 using Catch::Contains;
 
 TEST_CASE("cli: a disk that fails in the middle of a file is what the message says, not that something is missing") {
@@ -51,3 +51,5 @@ TEST_CASE("cli: what a crash left behind and cannot be removed ends the run with
     CHECK(here.credence(run + " --resume").exit_code == 0);
     CHECK(here.names() == std::vector<std::string>{"x.h5"});
 }
+
+}  // namespace credence::test::reading_fails_test

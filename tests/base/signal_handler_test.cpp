@@ -4,7 +4,7 @@
 
 #include "catch.hpp"
 
-using namespace credence;
+namespace credence::test::signal_handler_test {
 
 namespace {
 
@@ -35,3 +35,5 @@ TEST_CASE("signals: a handler gives way to the one before it, and leaves one tha
     CHECK(handler_of(SIGUSR1) == 3);
     std::signal(SIGUSR1, first);
 }
+
+}  // namespace credence::test::signal_handler_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-using namespace credence;
+namespace credence::test::text_test {
 
 namespace {
 using Parts = std::vector<std::string>;
@@ -148,3 +148,5 @@ TEST_CASE("text: what is far from every word is close to none, however long") {
 TEST_CASE("text: a number has one sign") {
     CHECK_FALSE(to_number("+-5").has_value());
 }
+
+}  // namespace credence::test::text_test

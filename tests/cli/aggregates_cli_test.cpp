@@ -5,7 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-using namespace credence;
+namespace credence::test::aggregates_cli_test {
+
 using Catch::Contains;
 
 TEST_CASE("cli: a study of aggregates is run, resumed, reported, compared, followed and replayed") {
@@ -53,3 +54,5 @@ TEST_CASE("cli: a billion trials of which none is kept are expected to take no m
     CHECK(expected("1e9") == expected("1e6"));
     CHECK_THAT(expected("1e9"), Contains("MB in credence.h5, as much in its journal at every commit"));
 }
+
+}  // namespace credence::test::aggregates_cli_test

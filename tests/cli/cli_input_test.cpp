@@ -6,8 +6,8 @@
 
 #include <utility>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::cli_input_test {
+
 using Catch::Contains;
 
 namespace {
@@ -142,7 +142,7 @@ TEST_CASE("cli: a standard output that takes nothing makes every command fail") 
     const Workplace here;
     add_results(here);
     for (const std::string command : {"--help", "help", "help run", "--version", "run --help", "completion bash",
-                                      "manual", "show", "report small.h5", "watch small.h5", "compare small.h5"})
+                                      "show", "report small.h5", "watch small.h5", "compare small.h5"})
         CHECK(here.credence(command + " >/dev/full").exit_code == 1);
 }
 
@@ -267,10 +267,9 @@ TEST_CASE("cli: a program of another name says its own in messages, help, comple
     CHECK_THAT(own("").out, Contains("usage: tracker COMMAND") && !Contains("credence COMMAND"));
     CHECK_THAT(own("run --help").out, Contains("usage: tracker run SCENARIO.ini") && Contains("`tracker merge`"));
     for (const std::string command :
-         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion", "manual"})
+         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion"})
         CHECK_THAT(own(command + " --help").out, !Contains("credence " + command));
     CHECK_THAT(own("completion bash").out, Contains("complete -F _tracker tracker\n") && !Contains("_credence"));
-    CHECK_THAT(own("manual").out, Contains(".TH TRACKER 1") && Contains("tracker watch") && !Contains("credence run "));
     REQUIRE(own("run small.ini --trials 20 --quiet -o own.h5").exit_code == 0);
     CHECK_THAT(own("report own.h5 --format html").out,
                Contains("./tracker run small.ini") && !Contains("credence run "));
@@ -344,7 +343,7 @@ TEST_CASE("cli: lines of help, reports and progress have less than 120 columns")
         "watch swept.h5",
         "compare swept.h5"};
     for (const char* command :
-         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion", "manual"})
+         {"run", "report", "judge", "compare", "replay", "merge", "watch", "show", "completion"})
         commands.push_back(std::string(command) + " --help");
     for (const std::string& command : commands) {
         const Outcome outcome = here.credence(command);
@@ -354,3 +353,5 @@ TEST_CASE("cli: lines of help, reports and progress have less than 120 columns")
         if (!outcome.err.starts_with("credence ")) CHECK(longest_line(outcome.err) < 120);  // a message is one line
     }
 }
+
+}  // namespace credence::test::cli_input_test

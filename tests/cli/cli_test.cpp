@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::cli_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -272,3 +272,5 @@ TEST_CASE("cli: report --require consistent fails for a pessimistic filter and p
     CHECK_THAT(refused.out, Contains("pessimistic"));  // the report itself is printed all the same
     check_refused(here.credence("report m.h5 --require optimistic"), "invalid --require=optimistic");
 }
+
+}  // namespace credence::test::cli_test

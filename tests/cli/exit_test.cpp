@@ -11,7 +11,8 @@
 
 #include <cstdlib>
 
-using namespace credence;
+namespace credence::test::exit_test {
+
 using Catch::Contains;
 
 namespace {
@@ -69,3 +70,5 @@ TEST_CASE("cli: a process that a world forks may exit") {
     CHECK(program_with_leaver(here, "1") == 0);
     CHECK(here.read("err").empty());
 }
+
+}  // namespace credence::test::exit_test

@@ -10,8 +10,8 @@
 #include <numeric>
 #include <random>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judge_cli_test {
+
 using Catch::Contains;
 
 namespace {
@@ -240,3 +240,5 @@ TEST_CASE("judge: --require no-finding passes on what is not refuted, and fails 
     record.write(here.path("failed.h5"));
     CHECK(code("failed", "no-finding") == 1);
 }
+
+}  // namespace credence::test::judge_cli_test

@@ -6,8 +6,8 @@
 #include "program.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judge_hints_test {
+
 using Catch::Contains;
 
 namespace {
@@ -276,3 +276,5 @@ TEST_CASE("judge: innovations whose covariance cannot be inverted are left out, 
     CHECK(arm["nis"][0]["degrees"] == 2 * (60 * 6 - 10));
     CHECK(arm["nis"][0]["ratio"].get<double>() < 2);  // theirs would be 1e8
 }
+
+}  // namespace credence::test::judge_hints_test

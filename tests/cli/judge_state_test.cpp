@@ -7,8 +7,7 @@
 #include "program.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judge_state_test {
 
 namespace {
 
@@ -158,3 +157,5 @@ TEST_CASE("judge: other axes of the positions change no verdict, and no NEES of 
         tracker.spoil();
     }
 }
+
+}  // namespace credence::test::judge_state_test

@@ -12,9 +12,9 @@
 #include <map>
 #include <set>
 
-using namespace credence;
+namespace credence::test::launcher_test {
+
 using namespace credence::cli;
-using namespace credence::test;
 using Catch::Contains;
 
 namespace {
@@ -152,3 +152,5 @@ TEST_CASE(
     CHECK(unnamed.exit_code == 2);
     CHECK_THAT(unnamed.err, Contains("there is no --shard that {shard} could stand for"));
 }
+
+}  // namespace credence::test::launcher_test

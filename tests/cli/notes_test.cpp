@@ -3,7 +3,8 @@
 #include "catch.hpp"
 #include "program.hpp"
 
-using namespace credence;
+namespace credence::test::notes_test {
+
 using Catch::Contains;
 
 TEST_CASE("cli: a standard deviation of an angle above 1 rad is noted once, and used") {
@@ -27,3 +28,5 @@ TEST_CASE("cli: a standard deviation of an angle above 1 rad is noted once, and 
     CHECK_THAT(here.credence("show --set scenario.world=landmarks --set noise.heading=2").err,
                Contains("noise.heading=2 is"));
 }
+
+}  // namespace credence::test::notes_test

@@ -4,8 +4,8 @@
 #include "catch.hpp"
 #include "program.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::nothing_run_test {
+
 using Catch::Contains;
 
 TEST_CASE("cli: show prints a scenario that reads back to itself") {
@@ -59,3 +59,5 @@ TEST_CASE("cli: a run that cannot fit is refused before any work, unless --force
     CHECK(here.shell(run + "--trials 1e12 --dry-run").exit_code == 0);
     CHECK(here.shell("timeout -s INT 0.5 " + run + "--trials 1e12 --force").exit_code == 124);
 }
+
+}  // namespace credence::test::nothing_run_test

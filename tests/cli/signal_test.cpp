@@ -5,7 +5,8 @@
 #include "catch.hpp"
 #include "program.hpp"
 
-using namespace credence;
+namespace credence::test::signal_test {
+
 using Catch::Contains;
 
 namespace {
@@ -125,3 +126,5 @@ TEST_CASE("cli: run --until that was killed and goes on stops where it would hav
     CHECK(here.credence("run " + arguments + "-o x.h5 --resume").exit_code == 0);
     CHECK(here.shell("h5diff --exclude-path /run whole.h5 x.h5").exit_code == 0);
 }
+
+}  // namespace credence::test::signal_test

@@ -5,7 +5,8 @@
 
 #include <filesystem>
 
-using namespace credence;
+namespace credence::test::streams_test {
+
 using Catch::Contains;
 
 namespace {
@@ -46,3 +47,5 @@ TEST_CASE("cli: output that a closed stream loses is a failure, and nothing is r
     CHECK(here.shell(CREDENCE_PROGRAM " show small.ini >&- 2>&-").exit_code == 1);
     CHECK(here.shell(CREDENCE_PROGRAM " show small.ini <&- 2>&-").exit_code == 0);
 }
+
+}  // namespace credence::test::streams_test

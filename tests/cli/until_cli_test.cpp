@@ -5,7 +5,8 @@
 
 #include <algorithm>
 
-using namespace credence;
+namespace credence::test::until_cli_test {
+
 using Catch::Contains;
 
 namespace {
@@ -111,3 +112,5 @@ TEST_CASE("cli: goals that cannot be met by this study are refused in one line, 
     }
     CHECK(here.names().empty());
 }
+
+}  // namespace credence::test::until_cli_test

@@ -5,7 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-using namespace credence;
+namespace credence::test::watch_cli_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -105,3 +106,5 @@ TEST_CASE("cli: watch refuses what it cannot follow") {
         CHECK_THAT(outcome.err, Contains(why));
     }
 }
+
+}  // namespace credence::test::watch_cli_test

@@ -60,6 +60,5 @@ def commands(bench):
     yield Command("show", ["show", "../tiny.ini"])
     # Boost indents the text by the names that a stream of its own holds, whole or cut short.
     yield Command("help", ["run", "--help"], printed="the same words")
-    yield Command("manual", ["manual"])
     yield Command("completion", ["completion", "bash"])
     yield Command("version", ["--version"], printed="the processor, where it can be read")

@@ -8,8 +8,7 @@
 #include <array>
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::block_test {
 
 namespace {
 
@@ -193,3 +192,5 @@ TEST_CASE("block: sums are folded in eight, in trial order, over the trials that
         CHECK(same_as(block.arms[0].run_square_sums, run_squares[0]));
     }
 }
+
+}  // namespace credence::test::block_test

@@ -8,7 +8,7 @@
 #include <credence/ini.hpp>
 #include <credence/detail/worlds.hpp>
 
-using namespace credence;
+namespace credence::test::moments_test {
 
 namespace {
 
@@ -75,3 +75,5 @@ TEST_CASE("moments: later blocks, and states of more than 64 components, keep no
     CHECK(moment_count(64, 3) == 3 + 64 + 64 * 65);
     CHECK(moment_count(65, 3) == 0);
 }
+
+}  // namespace credence::test::moments_test

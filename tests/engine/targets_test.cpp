@@ -10,7 +10,8 @@
 #include "program.hpp"
 #include "of_scenarios.hpp"
 
-using namespace credence;
+namespace credence::test::targets_test {
+
 using Catch::Contains;
 
 namespace {
@@ -86,3 +87,5 @@ TEST_CASE("targets: the committed digest is of this version of the draws, and th
     CHECK(source_file("tests/digest/expected.txt").starts_with(schema + "\n"));
     CHECK_THAT(source_file("CHANGELOG.md"), Contains("(" + schema + ")"));
 }
+
+}  // namespace credence::test::targets_test

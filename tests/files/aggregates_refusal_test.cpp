@@ -5,8 +5,7 @@
 #include "journal_forged.hpp"
 #include "store_damage.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::aggregates_refusal_test {
 
 namespace {
 
@@ -205,3 +204,5 @@ TEST_CASE("aggregates: a journal of trials is not read as one of aggregates, nor
         std::filesystem::remove(one->path + ".journal");
     }
 }
+
+}  // namespace credence::test::aggregates_refusal_test

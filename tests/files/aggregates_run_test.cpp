@@ -12,8 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::aggregates_run_test {
 
 namespace {
 
@@ -291,3 +290,5 @@ TEST_CASE("aggregates: a run is followed from its journal's totals, while it gro
     run_and_die(path, small(2000));
     check(undisturbed(small(2000)));
 }
+
+}  // namespace credence::test::aggregates_run_test

@@ -8,8 +8,7 @@
 
 #include <map>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::checksum_test {
 
 namespace {
 
@@ -115,3 +114,5 @@ TEST_CASE("hdf5: where HDF5 gets no memory, the message says so") {
     H5Eclear2(H5E_DEFAULT);
     CHECK(std::string(hdf5::failure("/x", "is no group").what()) == "/x: is no group");
 }
+
+}  // namespace credence::test::checksum_test

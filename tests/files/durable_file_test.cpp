@@ -13,8 +13,7 @@
 
 #include <csignal>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::durable_file_test {
 
 namespace {
 
@@ -168,7 +167,7 @@ TEST_CASE("durable file: a missing folder, a folder in its place and devices are
 TEST_CASE("durable file: a second writer is turned away") {
     const TemporaryFolder folder;
     const std::string aside = folder / "file.credence-partial";
-    const int other = open(aside.c_str(), O_WRONLY | O_CREAT, 0666);
+    const int other = ::open(aside.c_str(), O_WRONLY | O_CREAT, 0666);
     REQUIRE(flock(other, LOCK_EX | LOCK_NB) == 0);
     CHECK(contains(refusal<InputError>([&] { write(folder / "file", "x"); }), "another program is writing it"));
     CHECK(std::filesystem::exists(aside));  // it is the other's
@@ -237,3 +236,5 @@ TEST_CASE("store: an output that could not be written is refused before anything
     CHECK(folder.entries() == 3);
     CHECK(bytes_of(folder / "old.h5") == "x");
 }
+
+}  // namespace credence::test::durable_file_test

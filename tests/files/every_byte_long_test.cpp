@@ -14,8 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::every_byte_long_test {
 
 namespace {
 
@@ -139,3 +138,5 @@ TEST_CASE("store: a results file of which any byte is flipped reads the same, or
                       << " refused by name\n";
     }
 }
+
+}  // namespace credence::test::every_byte_long_test

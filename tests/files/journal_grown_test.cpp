@@ -5,8 +5,7 @@
 
 #include <atomic>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::journal_grown_test {
 
 namespace {
 
@@ -139,3 +138,5 @@ TEST_CASE("journal: a study that grows and is stopped at once keeps all trials t
     run_to_end(folder / "x.h5", asked_for(1300));
     CHECK(same_results(read_results(folder / "x.h5").study, undisturbed(asked_for(1300))));
 }
+
+}  // namespace credence::test::journal_grown_test

@@ -6,8 +6,7 @@
 
 #include <sys/resource.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::journal_hostile_test {
 
 namespace {
 
@@ -190,3 +189,5 @@ TEST_CASE("journal: a header that was made up is refused") {
     CHECK(says(said([](ByteWriter& rest) { rest.put_count(~std::uint64_t{0}); }), "is damaged"));
     CHECK(says(said([](ByteWriter& rest) { rest.put_count(1); rest.put_count(~std::uint64_t{0}); }), "is damaged"));
 }
+
+}  // namespace credence::test::journal_hostile_test

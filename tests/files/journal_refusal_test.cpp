@@ -7,8 +7,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::journal_refusal_test {
 
 namespace {
 
@@ -178,3 +177,5 @@ TEST_CASE("journal: a results file that it grows and that is gone, or another's,
     run_to_end(path, {});
     CHECK(same_results(read_results(path).study, undisturbed({})));
 }
+
+}  // namespace credence::test::journal_refusal_test

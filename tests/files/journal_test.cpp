@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::journal_test {
 
 namespace {
 
@@ -131,3 +130,5 @@ TEST_CASE("journal: left after the results file was renamed into place it is onl
         std::filesystem::remove(run.path);
     }
 }
+
+}  // namespace credence::test::journal_test

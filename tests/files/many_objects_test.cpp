@@ -5,8 +5,7 @@
 #include "catch.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::many_objects_test {
 
 TEST_CASE("hdf5: opening and closing an object takes no longer after thousands of others") {
     constexpr int objects = 20000, part = 1000;
@@ -29,3 +28,5 @@ TEST_CASE("hdf5: opening and closing an object takes no longer after thousands o
     for (int i = part; i + part < objects; i += part) seconds(i);
     CHECK(seconds(objects - part) < 3 * first);  // it grew with the number of those before: sixfold, here
 }
+
+}  // namespace credence::test::many_objects_test

@@ -5,8 +5,7 @@
 #include "journal_support.hpp"
 #include "store_damage.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::merge_test {
 
 namespace {
 
@@ -192,3 +191,5 @@ TEST_CASE("merge: shards without a block are taken, first and last") {
     CHECK(missing_text(merge_results({paths[0]})) ==
           "scenario a lacks blocks 0, 1 of 2; scenario b lacks blocks 0, 1 of 2");
 }
+
+}  // namespace credence::test::merge_test

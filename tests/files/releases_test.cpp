@@ -6,8 +6,7 @@
 #include "journal_support.hpp"
 #include "store_damage.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::releases_test {
 
 namespace {
 
@@ -111,3 +110,5 @@ TEST_CASE("releases: a file of another schema version is refused with the releas
     CHECK(refusal<InputError>([&] { merge_results({old}); }) == said);
     CHECK(refused(old, by(first, 600)) == said);
 }
+
+}  // namespace credence::test::releases_test

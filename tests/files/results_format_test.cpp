@@ -15,8 +15,7 @@
 #include <map>
 #include <numeric>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::results_format_test {
 
 namespace {
 
@@ -206,3 +205,5 @@ TEST_CASE("store: what outside tools need to know is in the file") {
     // NaN has the same bits whatever made it: made_up_study put one with its sign set.
     CHECK(!std::signbit(hdf5::Dataset(group, "trace_P").read<double>()[1]));
 }
+
+}  // namespace credence::test::results_format_test

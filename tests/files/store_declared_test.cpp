@@ -7,8 +7,7 @@
 #include "../../experiments/own_filter/tracker.hpp"
 
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::store_declared_test {
 
 namespace {
 
@@ -95,3 +94,5 @@ TEST_CASE("store: a file of a world that this program does not have is read by w
 TEST_CASE("store: a file of another world that does not say enough of itself is refused") {
     require_refused(unknown_world(), damages);
 }
+
+}  // namespace credence::test::store_declared_test

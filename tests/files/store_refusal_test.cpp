@@ -8,8 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::store_refusal_test {
 
 namespace {
 
@@ -256,3 +255,5 @@ TEST_CASE("store: a flipped byte is mostly refused, and never crashes the reader
     CHECK(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 0);
 }
+
+}  // namespace credence::test::store_refusal_test

@@ -7,8 +7,7 @@
 #include <chrono>
 #include <thread>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::store_test {
 
 namespace {
 
@@ -146,3 +145,5 @@ TEST_CASE("store: a scenario named run is refused, its group is taken") {
           std::string::npos);
     CHECK(folder.entries() == 0);
 }
+
+}  // namespace credence::test::store_test

@@ -8,8 +8,7 @@
 #include "store_damage.hpp"
 #include "of_scenarios.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::store_trajectory_test {
 
 namespace {
 
@@ -207,3 +206,5 @@ TEST_CASE("store: innovations beyond the kept size are left out, and the file sa
     CHECK(!hdf5::has_link(group, "row"));
     CHECK(hdf5::read_text(group, "innovation_omitted") == "552 rows, more than the 512 that are kept");
 }
+
+}  // namespace credence::test::store_trajectory_test

@@ -9,8 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::stored_run_test {
 
 namespace {
 
@@ -234,3 +233,5 @@ TEST_CASE("stored run: a journal beside a results file of the same study that it
         CHECK(says(refused(here.path, asked), here.path + " is not the file that it extends"));
     }
 }
+
+}  // namespace credence::test::stored_run_test

@@ -17,8 +17,8 @@
 #include <algorithm>
 #include <sstream>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::sweep_run_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -319,3 +319,5 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
     CHECK_THAT(page, Contains("<figcaption>sensor.noise=ranged</figcaption>"));
     CHECK_THAT(report_html(make_report(run({scenarios.back()}, 40), 0.05), {"r.h5", {}, "test"}), !Contains("Sweep"));
 }
+
+}  // namespace credence::test::sweep_run_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::draws_statistics_long_test {
 
 namespace {
 
@@ -151,3 +151,5 @@ TEST_CASE("draws: truncation does not touch the uniforms") {
         CHECK(KeyedDraws<double>(1, 1, 0.5).uniform(Source::detection, pose, 0) ==
               KeyedDraws<double>(1, 1, never).uniform(Source::detection, pose, 0));
 }
+
+}  // namespace credence::test::draws_statistics_long_test

@@ -15,7 +15,7 @@
 #include <set>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::draws_test {
 
 namespace {
 
@@ -206,3 +206,5 @@ TEST_CASE("draws: neighbouring seeds share no draw over a block") {
                     }
     CHECK(seen.size() == asked);
 }
+
+}  // namespace credence::test::draws_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-using namespace credence;
+namespace credence::test::elementary_test {
 
 namespace {
 
@@ -185,3 +185,5 @@ TEST_CASE("elementary: wrapped leaves small angles alone, keeps NaN and tells th
     CHECK(std::isnan(wrapped(not_a_number)));
     CHECK(std::isnan(wrapped(infinity)));
 }
+
+}  // namespace credence::test::elementary_test

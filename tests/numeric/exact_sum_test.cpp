@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::exact_sum_test {
 
 namespace {
 
@@ -207,3 +207,5 @@ TEST_CASE("exact sum: a total beyond the limit of its values is NaN, and has one
         CHECK(sum.parts() == std::vector<double>{9e299});
     }
 }
+
+}  // namespace credence::test::exact_sum_test

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::functions_test {
 
 namespace {
 
@@ -148,3 +148,5 @@ TEST_CASE("functions: min and max are those of the standard library, and any and
         CHECK(lane_bits(Lane<4>(1.0) != select(mask, Lane<4>(1.0), Lane<4>(2.0))) == (bits ^ 15u));
     }
 }
+
+}  // namespace credence::test::functions_test

@@ -20,7 +20,7 @@ int wrong_masks_of_eight(const double* numbers, int count, double low, double hi
 }
 #endif
 
-using namespace credence;
+namespace credence::test::lane_test {
 
 namespace {
 
@@ -103,3 +103,5 @@ TEST_CASE("lanes: each lane takes the candidates that are left in it, in order, 
         for (int lane = 0; lane < 4; ++lane) CHECK(taken[lane] == expected[lane]);
     }
 }
+
+}  // namespace credence::test::lane_test

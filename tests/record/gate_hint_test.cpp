@@ -5,8 +5,8 @@
 #include "catch.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::gate_hint_test {
+
 using Catch::Contains;
 
 namespace {
@@ -66,3 +66,5 @@ TEST_CASE("gate: none is suspected of exact records of odd kinds, nor where S ha
         CHECK_THAT(hints_of(record), !Contains("gate"));
     }
 }
+
+}  // namespace credence::test::gate_hint_test

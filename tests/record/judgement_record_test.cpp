@@ -8,8 +8,7 @@
 #include "record/read.hpp"
 #include "judgement_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judgement_record_test {
 
 namespace {
 
@@ -263,3 +262,5 @@ TEST_CASE("record: a covariance is singular where rounding alone could have made
     CHECK(failed_trials(1 - 0x1p-22, true) == 1);
     CHECK(failed_trials(1 - 0x1p-20, true) == 0);
 }
+
+}  // namespace credence::test::judgement_record_test

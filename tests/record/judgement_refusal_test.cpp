@@ -6,8 +6,7 @@
 
 #include <limits>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judgement_refusal_test {
 
 namespace {
 
@@ -236,3 +235,5 @@ TEST_CASE("record: what is no HDF5 file is refused, a MATLAB workspace by its na
     put_bytes(path, bytes_of(path).substr(0, 900));
     CHECK(said().find("is truncated or damaged") != std::string::npos);
 }
+
+}  // namespace credence::test::judgement_refusal_test

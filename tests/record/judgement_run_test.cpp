@@ -13,8 +13,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::judgement_run_test {
 
 namespace {
 
@@ -145,3 +144,5 @@ TEST_CASE("judge: a run's trajectories, written as a record, give the run's evid
         CHECK(judge(run, 0.05).verdict == judge(record, 0.05).verdict);
     }
 }
+
+}  // namespace credence::test::judgement_run_test

@@ -6,8 +6,8 @@
 
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_arrays_test {
+
 using Catch::Contains;
 
 namespace {
@@ -119,3 +119,5 @@ TEST_CASE("record: arrays that do not fit are refused by their names") {
     CHECK_THROWS_WITH(read_record({{error.array, scalar.array}, {}, {}}, "record"),
                       Contains("/covariance: has no extents"));
 }
+
+}  // namespace credence::test::record_arrays_test

@@ -6,8 +6,8 @@
 #include "catch.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_gaps_test {
+
 using Catch::Contains;
 
 namespace {
@@ -108,3 +108,5 @@ TEST_CASE("units: squares of different units are not added, and those of one hav
         CHECK((text.find("Squares of different units are not added") != std::string::npos) == (components == 2));
     }
 }
+
+}  // namespace credence::test::record_gaps_test

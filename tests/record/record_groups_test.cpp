@@ -3,8 +3,7 @@
 
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_groups_test {
 
 namespace {
 
@@ -200,3 +199,5 @@ TEST_CASE("record: what its attributes and times cannot mean is refused by name"
           folder / "record.h5" +
               ": /@record_version: is 3. Write 2, or use a newer credence if there is such a version.");
 }
+
+}  // namespace credence::test::record_groups_test

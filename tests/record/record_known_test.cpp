@@ -5,8 +5,7 @@
 
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_known_test {
 
 namespace {
 
@@ -197,3 +196,5 @@ TEST_CASE("record: planar poses of SE(3) are judged as poses in the plane, in ei
     CHECK(in_memory.troubles == 0);
     CHECK(in_memory.sentences == std::vector<std::string>{left_out});
 }
+
+}  // namespace credence::test::record_known_test

@@ -5,8 +5,7 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_manifold_test {
 
 namespace {
 
@@ -207,3 +206,5 @@ TEST_CASE("record: a manifold, chart or quaternion that cannot be is refused by 
         write_errors(root, poses.drawn);
     }, "/estimate: is there, and `error` too");
 }
+
+}  // namespace credence::test::record_manifold_test

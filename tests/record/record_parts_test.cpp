@@ -5,8 +5,7 @@
 
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_parts_test {
 
 namespace {
 
@@ -238,3 +237,5 @@ TEST_CASE("record: parts that do not fit together are refused by name") {
         hdf5::write_text(root, "groups", "x1 0 2");
     }, "/@groups: `x1` is a component's name as well");
 }
+
+}  // namespace credence::test::record_parts_test

@@ -4,8 +4,7 @@
 
 #include "statistics/goodness.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::record_presence_test {
 
 namespace {
 
@@ -182,3 +181,5 @@ TEST_CASE("record: a step that does not exist is no leaving, and a trial that en
               write_values(root, "steps", {all_trials}, declared);
           }).trouble_count == 0);
 }
+
+}  // namespace credence::test::record_presence_test

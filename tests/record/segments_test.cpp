@@ -6,8 +6,7 @@
 #include "statistics/autocorrelation.hpp"
 #include "record_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::segments_test {
 
 namespace {
 
@@ -237,3 +236,5 @@ TEST_CASE("segments: a short log decides nothing but what no correlation explain
     for (Eigen::MatrixXd& P : wrong.covariance) P *= 20 * 300;
     CHECK(verdict_on(wrong).verdict == Verdict::pessimistic);
 }
+
+}  // namespace credence::test::segments_test

@@ -7,8 +7,8 @@
 #include "store_study.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::compare_choice_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -256,3 +256,5 @@ TEST_CASE("compare: the program refuses bad input in one line with exit code 2, 
     refused_with("one.h5 --arm x", "Did you mean --arms?");
     CHECK(here.names() == before);
 }
+
+}  // namespace credence::test::compare_choice_test

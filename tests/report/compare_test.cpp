@@ -8,8 +8,8 @@
 #include "store_study.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::compare_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -221,3 +221,5 @@ TEST_CASE("compare: what is not shown is said so, and ranks against the mean are
     CHECK_THAT(conclusion([](std::size_t i) { return i % 4 == 0 ? -0.5 - 0.001 * static_cast<double>(i) : 0.0; }),
                Contains("lower; ") && Contains(", in 25 % of trials (equal in 75 %)"));
 }
+
+}  // namespace credence::test::compare_test

@@ -7,7 +7,8 @@
 #include "catch.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
+namespace credence::test::failure_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -38,3 +39,5 @@ TEST_CASE("report: where trials failed it says with which status, and at which p
     CHECK(arm["failed_most"] == Json{{"status", "non_finite"}, {"trials", 40}, {"pose", 3}, {"trials_there", 30}});
     CHECK_FALSE(Json::parse(report_json(report)).back().contains("failed_most"));
 }
+
+}  // namespace credence::test::failure_test

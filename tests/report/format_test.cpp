@@ -7,7 +7,7 @@
 #include "catch.hpp"
 #include "report/table.hpp"
 
-using namespace credence;
+namespace credence::test::format_test {
 
 TEST_CASE("format: a half-width has two significant digits, however small, and its mean as many decimals") {
     CHECK(with_interval(1.25, {1, 1.5}) == "1.25 ± 0.25");
@@ -26,3 +26,5 @@ TEST_CASE("format: what does not vary has four significant digits at least and t
     CHECK(with_interval(4.0123456e-8, {NAN, NAN}) == "4.012e-08");
     CHECK(with_interval(0.25, {NAN, NAN}) == "0.2500");
 }
+
+}  // namespace credence::test::format_test

@@ -14,7 +14,8 @@
 #include <numeric>
 #include <set>
 
-using namespace credence;
+namespace credence::test::html_test {
+
 using Catch::Contains;
 
 namespace {
@@ -177,3 +178,5 @@ TEST_CASE("histogram: bins of equal ratio are the same for every sample, and far
     CHECK(histogram(negative, BinWidths::ratio).total() == 3);
     CHECK(histogram(negative, BinWidths::ratio).widths == BinWidths::equal);
 }
+
+}  // namespace credence::test::html_test

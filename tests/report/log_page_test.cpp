@@ -6,8 +6,7 @@
 
 #include <regex>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::log_page_test {
 
 namespace {
 
@@ -148,3 +147,5 @@ TEST_CASE("log page: a run that fails is drawn up to there, and of many runs non
     CHECK(many.arms.front().curves.empty());
     CHECK(report_html(many, {"record.h5", {}, "test"}).find("record: error of") == std::string::npos);
 }
+
+}  // namespace credence::test::log_page_test

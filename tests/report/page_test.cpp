@@ -9,8 +9,8 @@
 #include "report/html/charts/chart.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::page_test {
+
 using Catch::Contains;
 
 namespace {
@@ -93,3 +93,5 @@ TEST_CASE("page: a text that is longer than its drawing is moved and narrowed in
     CHECK(shortened("größtes", 6) == "größt…");
     CHECK(shortened("0.71 theta - 0.62 r_x + 0.22 r_y", 28) == "0.71 theta - 0.62 r_x +…");
 }
+
+}  // namespace credence::test::page_test

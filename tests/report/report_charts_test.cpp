@@ -7,7 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-using namespace credence;
+namespace credence::test::report_charts_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -87,3 +88,5 @@ TEST_CASE("charts: text, JSON and CSV show them; scenarios without another estim
     CHECK_THAT(report_csv(plain), !Contains("invariant"));
     CHECK(!Json::parse(report_json(plain)).front().contains("other_charts"));
 }
+
+}  // namespace credence::test::report_charts_test

@@ -14,7 +14,8 @@
 #include <limits>
 #include <set>
 
-using namespace credence;
+namespace credence::test::report_html_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -206,3 +207,5 @@ TEST_CASE("page: report, compare and judge write it") {
     CHECK_THAT(judged, Contains("record_single.h5") && Contains("<svg ") && !Contains("<h3>Scenario</h3>") &&
                            !Contains(CREDENCE_SOURCE));
 }
+
+}  // namespace credence::test::report_html_test

@@ -9,7 +9,8 @@
 #include "catch.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
+namespace credence::test::report_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -132,3 +133,5 @@ TEST_CASE("report: requiring consistency names the arms that are not") {
     none.arms.clear();
     CHECK_NOTHROW(require(none, Requirement::consistent));
 }
+
+}  // namespace credence::test::report_test

@@ -10,7 +10,7 @@
 #include "catch.hpp"
 #include "report/html/charts/chart.hpp"
 
-using namespace credence;
+namespace credence::test::scale_test {
 
 namespace {
 
@@ -75,3 +75,5 @@ TEST_CASE("chart: ticks of a scale without a place for them are none") {
     CHECK(ticks({ScaleKind::linear, 1, INFINITY, 0, 1}, 5).size() <= 6);
     CHECK(ticks({ScaleKind::logarithmic, 0, 100, 0, 1}, 5).empty());
 }
+
+}  // namespace credence::test::scale_test

@@ -7,7 +7,8 @@
 
 #include <cmath>
 
-using namespace credence;
+namespace credence::test::table_test {
+
 using Catch::Contains;
 
 namespace {
@@ -62,3 +63,5 @@ TEST_CASE("table: a row may have more columns than the heads") {
                                   "fixed      1\n"
                                   "greedy    10  3  word\n");
 }
+
+}  // namespace credence::test::table_test

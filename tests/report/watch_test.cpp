@@ -2,8 +2,7 @@
 
 #include "watch_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::watch_test {
 
 namespace {
 
@@ -128,3 +127,5 @@ TEST_CASE("watch: a study that is grown is shown with what its file has, whose p
         std::filesystem::remove(journal);
     }
 }
+
+}  // namespace credence::test::watch_test

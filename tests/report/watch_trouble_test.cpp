@@ -3,8 +3,7 @@
 #include "files/journal/file.hpp"
 #include "watch_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::watch_trouble_test {
 
 namespace {
 
@@ -105,3 +104,5 @@ TEST_CASE("watch: where there is nothing, or nothing of credence, it says so") {
     std::filesystem::remove(path + ".journal");
     CHECK(says(refusal<InputError>([&] { watch.snapshot(); }), "nothing to watch"));
 }
+
+}  // namespace credence::test::watch_trouble_test

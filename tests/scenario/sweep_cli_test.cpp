@@ -5,7 +5,8 @@
 
 #include <credence/text.hpp>
 
-using namespace credence;
+namespace credence::test::sweep_cli_test {
+
 using Catch::Contains;
 
 namespace {
@@ -76,3 +77,5 @@ TEST_CASE("sweep: bad sweeps are refused in one line with exit code 2, and nothi
     }
     CHECK(here.names() == std::vector<std::string>{"base.ini", "other.ini"});
 }
+
+}  // namespace credence::test::sweep_cli_test

@@ -9,7 +9,8 @@
 
 #include <algorithm>
 
-using namespace credence;
+namespace credence::test::sweep_test {
+
 using Catch::Contains;
 
 namespace {
@@ -145,3 +146,5 @@ TEST_CASE("sweep: a place survives the way through text, its numbers written as 
         CHECK_THAT(refusal([&] { parse_coordinates(one.first); }),
                    Contains("invalid sweep.at=") && Contains(one.second));
 }
+
+}  // namespace credence::test::sweep_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <map>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::baselines_test {
 
 namespace {
 
@@ -141,3 +140,5 @@ TEST_CASE("baselines: no candidates are priced where none are needed") {
          {Controller::random, Controller::nearest, Controller::follow, Controller::waypoints})
         CHECK(run_arm(scenario, controller, silent_noise()).steps[1].candidate_cost.empty());
 }
+
+}  // namespace credence::test::baselines_test

@@ -3,8 +3,7 @@
 #include "catch.hpp"
 #include "filter_samples.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::controller_test {
 
 namespace {
 
@@ -193,3 +192,5 @@ TEST_CASE("controller: standing still ties on all rays, and the last ray wins") 
         CHECK(relative(run.steps[1].candidate_cost[static_cast<std::size_t>(21 * ray + 10)],
                        run.steps[1].candidate_cost[10]) < 1e-13);
 }
+
+}  // namespace credence::test::controller_test

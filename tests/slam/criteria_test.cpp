@@ -3,8 +3,7 @@
 #include "catch.hpp"
 #include "filter_samples.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::criteria_test {
 
 namespace {
 
@@ -121,3 +120,5 @@ TEST_CASE("criteria: equals are decided alike, the later one, where costs are ne
     CHECK(choice.command.turn == 1);
     CHECK(choice.best == -50);
 }
+
+}  // namespace credence::test::criteria_test

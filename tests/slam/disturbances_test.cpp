@@ -9,8 +9,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::disturbances_test {
 
 namespace {
 
@@ -159,3 +158,5 @@ TEST_CASE("every: features are seen at every third pose only, and edges at all")
         CHECK(run.figure("unseen_features", k) == (k % 3 == 0 ? 0 : 3));
     }
 }
+
+}  // namespace credence::test::disturbances_test

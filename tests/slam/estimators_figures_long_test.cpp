@@ -10,8 +10,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::estimators_figures_long_test {
 
 namespace {
 
@@ -106,3 +105,5 @@ TEST_CASE("estimators: in lanes, planned and fixed, on few and many features, th
         }
     }
 }
+
+}  // namespace credence::test::estimators_figures_long_test

@@ -7,8 +7,7 @@
 #include "filter_samples.hpp"
 #include "oracle/estimators.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::estimators_long_test {
 
 namespace {
 
@@ -221,3 +220,5 @@ TEST_CASE("estimators: who believes to observe the turn of everything, and who d
         CHECK(learned_of_the_turn<IteratedFilter>(seed) > 0.1);
     }
 }
+
+}  // namespace credence::test::estimators_long_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-using namespace credence;
+namespace credence::test::figures_long_test {
 
 namespace {
 
@@ -131,3 +131,5 @@ TEST_CASE("figures: misinformed filters are off where they were misinformed", "[
     CHECK(group_ratio(r, 0, "pose") == Approx(1.41).margin(0.08));
     CHECK(group_ratio(r, 0, "feature_0") == Approx(1.215).margin(0.05));
 }
+
+}  // namespace credence::test::figures_long_test

@@ -9,8 +9,8 @@
 
 #include <array>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::filter_belief_test {
+
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -221,3 +221,5 @@ TEST_CASE("filter: the covariance factor scales what is reported and touches not
         CHECK(same_bits(four.series("nis"), one.series("nis")));
     }
 }
+
+}  // namespace credence::test::filter_belief_test

@@ -15,8 +15,8 @@
 
 #include <random>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::filter_long_test {
+
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -152,3 +152,5 @@ TEST_CASE("filter: 64 features with all 2016 edges agree with the update in info
     CHECK((step.covariance - P).norm() < tolerance * P.norm());
     CHECK((step.mean - step.prior_mean - P * pull).norm() < tolerance * (P * pull).norm());
 }
+
+}  // namespace credence::test::filter_long_test

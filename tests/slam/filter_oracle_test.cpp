@@ -3,8 +3,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::filter_oracle_test {
 
 namespace {
 
@@ -64,3 +63,5 @@ TEST_CASE("filter: the matched world agrees with the oracle") {
             check_trial(settings, Controller::fixed, trial);
         }
 }
+
+}  // namespace credence::test::filter_oracle_test

@@ -5,8 +5,7 @@
 #include "catch.hpp"
 #include "filter_samples.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::filter_test {
 
 namespace {
 
@@ -179,3 +178,5 @@ TEST_CASE("filter: updating with two rows after two is the joint update") {
             CHECK(relative(result.nis, nu.dot(joint.S.ldlt().solve(nu))) < 1.3e-12);
         });
 }
+
+}  // namespace credence::test::filter_test

@@ -7,8 +7,7 @@
 #include "slam/estimators/estimator.hpp"
 #include "statistics/moments/conditioning.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::heading_fifty_digits_long_test {
 
 namespace {
 
@@ -172,3 +171,5 @@ TEST_CASE("fifty digits: a sighting tells a lost heading, and loses what the con
     });
     CHECK(compared > 300);
 }
+
+}  // namespace credence::test::heading_fifty_digits_long_test

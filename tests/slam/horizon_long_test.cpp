@@ -11,8 +11,7 @@
 #include <algorithm>
 #include <memory>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::horizon_long_test {
 
 namespace {
 
@@ -235,3 +234,5 @@ TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any target
         }
     }
 }
+
+}  // namespace credence::test::horizon_long_test

@@ -79,8 +79,8 @@ private:
 }  // namespace credence
 #undef CALL
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::ill_conditioned_long_test {
+
 using Eigen::MatrixXd;
 
 namespace {
@@ -313,3 +313,5 @@ TEST_CASE("fifty digits: NEES, the gate and failures of ill-conditioned trials, 
 TEST_CASE("fifty digits: NEES, the gate and failures of ill-conditioned trials, kf") {
     compare_with_fifty_digits<Process::translation, KalmanFilter>(scenarios);
 }
+
+}  // namespace credence::test::ill_conditioned_long_test

@@ -7,8 +7,7 @@
 
 #include <unsupported/Eigen/MatrixFunctions>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::invariant_chart_long_test {
 
 namespace {
 
@@ -112,3 +111,5 @@ TEST_CASE("invariant chart: scenarios of the process model's own estimator have 
     for (const Series& figure : step_series(scenario_with({{"model.process", "translation"}})))
         CHECK(figure.role != SeriesRole::nees_in_chart);
 }
+
+}  // namespace credence::test::invariant_chart_long_test

@@ -8,8 +8,7 @@
 
 #include <set>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::keys_test {
 
 namespace {
 
@@ -198,3 +197,5 @@ TEST_CASE("keys: names, titles, units and published values change no bit") {
         for (std::size_t trial = 0; trial < trials; ++trial) CHECK(same_bits(before[trial], after[trial]));
     }
 }
+
+}  // namespace credence::test::keys_test

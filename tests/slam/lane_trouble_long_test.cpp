@@ -11,8 +11,7 @@
 #include <limits>
 #include <memory>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::lane_trouble_long_test {
 
 namespace {
 
@@ -135,3 +134,5 @@ TEST_CASE("lanes: a singular innovation covariance fails its own trial only") {
         for (const int i : {3, 4}) P.entry[i][i].v[lane] = -sigma * sigma;
     });
 }
+
+}  // namespace credence::test::lane_trouble_long_test

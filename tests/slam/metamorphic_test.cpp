@@ -6,8 +6,7 @@
 #include "catch.hpp"
 #include "metamorphic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::metamorphic_test {
 
 namespace {
 
@@ -144,3 +143,5 @@ TEST_CASE("metamorphic: a random trial with more poses to come begins with the s
             REQUIRE(same_bits(run.figures, MatrixXd(other.figures.leftCols(3))));
         }
 }
+
+}  // namespace credence::test::metamorphic_test

@@ -7,8 +7,7 @@
 
 #include <memory>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::planner_cost_long_test {
 
 namespace {
 
@@ -187,3 +186,5 @@ TEST_CASE("planner: the bound touches the cost at its reference, and its slope i
         }
     });
 }
+
+}  // namespace credence::test::planner_cost_long_test

@@ -5,8 +5,7 @@
 
 #include <cstdlib>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::planner_hard_long_test {
 
 namespace {
 
@@ -108,3 +107,5 @@ TEST_CASE("planner: by every criterion that is no trace, two and three steps ahe
             check_same<Lane<8>>(hard_scenarios(10) / 10, ahead);
         }
 }
+
+}  // namespace credence::test::planner_hard_long_test

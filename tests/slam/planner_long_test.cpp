@@ -6,8 +6,7 @@
 
 #include <memory>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::planner_long_test {
 
 namespace {
 
@@ -88,3 +87,5 @@ TEST_CASE("planner: ties are decided alike") {
         CHECK(tally.different == 0);
     }
 }
+
+}  // namespace credence::test::planner_long_test

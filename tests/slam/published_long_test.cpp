@@ -10,8 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::published_long_test {
 
 namespace {
 
@@ -114,3 +113,5 @@ TEST_CASE("published: the oracle agrees on the recorded noise") {
         CHECK(worst.nees < 1e-10);
     }
 }
+
+}  // namespace credence::test::published_long_test

@@ -7,8 +7,7 @@
 #include "slam_steps.hpp"
 #include "worlds/deformable/deformable.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::recorded_noise_test {
 
 namespace {
 
@@ -86,3 +85,5 @@ TEST_CASE("recorded noise: a record that does not cover the scenario is refused,
         CHECK(message.find(remedy) != std::string::npos);
     }
 }
+
+}  // namespace credence::test::recorded_noise_test

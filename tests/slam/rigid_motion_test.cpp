@@ -7,8 +7,7 @@
 #include "metamorphic.hpp"
 #include "rigid_motion.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::rigid_motion_test {
 
 namespace {
 
@@ -139,3 +138,5 @@ TEST_CASE("metamorphic: in a turned and shifted world a first sight is the same 
                                }
                        });
 }
+
+}  // namespace credence::test::rigid_motion_test

@@ -11,8 +11,7 @@
 #include <set>
 #include <sstream>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::scenario_test {
 
 namespace {
 
@@ -230,3 +229,5 @@ TEST_CASE("scenario: up to 64 features, 1000 waypoints and 100 turns are taken")
     CHECK(scenario.planner.turns->size() == 100);
     check_refused("planner.turns", repeated("0.1", 101));
 }
+
+}  // namespace credence::test::scenario_test

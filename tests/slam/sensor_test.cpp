@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::sensor_test {
 
 namespace {
 
@@ -183,3 +182,5 @@ TEST_CASE("sensor: a share of the features in range is detected") {
     }
     CHECK(std::abs(seen / looks - 0.3) < 5 * std::sqrt(0.3 * 0.7 / looks));
 }
+
+}  // namespace credence::test::sensor_test

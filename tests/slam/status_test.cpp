@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::status_test {
 
 namespace {
 
@@ -239,3 +238,5 @@ TEST_CASE("status: columns of a completed trial are left alone") {
     CHECK_FALSE(fill_failed(trial_columns(DeformableSettings{}), columns.data()));
     CHECK(columns == before);
 }
+
+}  // namespace credence::test::status_test

@@ -15,8 +15,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::step_parts_test {
 
 namespace {
 
@@ -179,3 +178,5 @@ TEST_CASE("step parts: a true step is the sum of its parts, jitter as it is afte
         check_truth<Layout<Process::translation, features>>(scenario_with(translation));
     }
 }
+
+}  // namespace credence::test::step_parts_test

@@ -6,8 +6,7 @@
 #include "continued.hpp"
 #include "metamorphic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::time_split_test {
 
 namespace {
 
@@ -62,3 +61,5 @@ TEST_CASE("time split: a trial goes on from every pose with the same bits") {
             }
         }
 }
+
+}  // namespace credence::test::time_split_test

@@ -8,8 +8,7 @@
 #include <set>
 #include <tuple>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::trial_test {
 
 namespace {
 
@@ -186,3 +185,5 @@ TEST_CASE("trial: a heading error is evaluated the short way round") {
           Approx(-0.5 / std::sqrt(run.steps[1].covariance(0, 0))).epsilon(1e-12));
     CHECK(run.figure("nees_heading", 1) == Approx(0.25 / run.steps[1].covariance(0, 0)).epsilon(1e-12));
 }
+
+}  // namespace credence::test::trial_test

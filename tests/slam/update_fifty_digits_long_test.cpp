@@ -7,8 +7,7 @@
 #include "slam/update.hpp"
 #include "statistics/moments/conditioning.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::update_fifty_digits_long_test {
 
 namespace {
 
@@ -106,3 +105,5 @@ TEST_CASE("fifty digits: what a step spoils of an ill-conditioned P is within th
     CHECK(spoilt > 30);
     CHECK(exact > 60);
 }
+
+}  // namespace credence::test::update_fifty_digits_long_test

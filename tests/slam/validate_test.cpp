@@ -8,8 +8,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::validate_test {
 
 namespace {
 
@@ -177,3 +176,5 @@ TEST_CASE("scenario: a refusal is one line, whatever was given") {
     }
     CHECK(torn == std::vector<std::string>{});
 }
+
+}  // namespace credence::test::validate_test

@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::world_test {
 
 namespace {
 
@@ -188,3 +187,5 @@ TEST_CASE("world: moments of the truth at the last pose") {
         CHECK(std::abs(position.variance_score(position_variance)) < 5);
     }
 }
+
+}  // namespace credence::test::world_test

@@ -4,8 +4,7 @@
 
 #include "statistics/verdict_cases.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::advice_test {
 
 namespace {
 
@@ -79,3 +78,5 @@ TEST_CASE("advice: the number that would show it is where the bound crosses the 
     CHECK(std::abs(number - std::pow(t_quantile(0.002, 399) / 0.1, 2)) < 1e-9 * number);
     CHECK(std::isinf(trials_to_show_bias({400, 0.1, 1, 0.05}, 0.001, 0.1)));
 }
+
+}  // namespace credence::test::advice_test

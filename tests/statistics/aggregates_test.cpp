@@ -13,8 +13,7 @@
 #include <cmath>
 #include <random>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::aggregates_test {
 
 namespace {
 
@@ -235,3 +234,5 @@ TEST_CASE("aggregates: the variance reduction and an arm's own mean over pairs n
                          arms[1].differences[0][column_unseen].difference)
               .variance_reduction == Approx(2));
 }
+
+}  // namespace credence::test::aggregates_test

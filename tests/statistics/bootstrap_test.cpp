@@ -12,8 +12,7 @@ int omp_get_max_threads();
 void omp_set_num_threads(int);
 }
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::bootstrap_test {
 
 namespace {
 
@@ -134,3 +133,5 @@ TEST_CASE("bootstrap: coverage of 50 normal and lognormal values is what replica
     CHECK(within_binomial(intervals_that_hold(std::exp(0.5), replications, values, 32, lognormal), replications,
                           coverage["lognormal"]));
 }
+
+}  // namespace credence::test::bootstrap_test

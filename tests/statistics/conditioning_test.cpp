@@ -10,7 +10,7 @@
 
 #include "catch.hpp"
 
-using namespace credence;
+namespace credence::test::conditioning_test {
 
 namespace {
 
@@ -72,3 +72,5 @@ TEST_CASE(
     CHECK(rounding_bound(MatrixXd::Identity(3, 3), single) == 3 * single);
     CHECK(rounding_bound(MatrixXd::Zero(2, 2), single) == 0);
 }
+
+}  // namespace credence::test::conditioning_test

@@ -5,8 +5,8 @@
 #include "reference.hpp"
 #include "synthetic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::credibility_test {
+
 using Catch::Matchers::WithinAbs;
 
 namespace {
@@ -94,3 +94,5 @@ TEST_CASE("credibility: a filter that is right is credible, one that assumes 0.8
     const Credibility optimistic = credibility(wrong.nees, wrong.errors, 3);
     CHECK_THAT(optimistic.inclination - credible.inclination, WithinAbs(-20 * std::log10(0.8), 1e-9));
 }
+
+}  // namespace credence::test::credibility_test

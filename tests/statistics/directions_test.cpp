@@ -4,8 +4,7 @@
 
 #include "statistics/verdict_cases.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::directions_test {
 
 namespace {
 
@@ -130,3 +129,5 @@ TEST_CASE("directions: sums over more trials than are kept give the ratio, the k
                  less = all.largest.ratio.mean - all.largest.bounds.low;
     CHECK(std::abs(half / less - 2) < 0.03);  // but for Student's quantiles
 }
+
+}  // namespace credence::test::directions_test

@@ -7,8 +7,8 @@
 #include "reference.hpp"
 #include "synthetic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::goodness_test {
+
 using Catch::Matchers::WithinAbs;
 
 namespace {
@@ -201,3 +201,5 @@ TEST_CASE("goodness: values 20 % too large are found not to be chi-square") {
     const std::vector<double> values = chi_square_values(normals, 9, 2000, 1.2);
     CHECK(kolmogorov_smirnov_p(chi_square_distance(values, 9), 2000) < 1e-18);
 }
+
+}  // namespace credence::test::goodness_test

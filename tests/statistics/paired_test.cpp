@@ -5,8 +5,7 @@
 #include "reference.hpp"
 #include "synthetic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::paired_test {
 
 namespace {
 
@@ -165,3 +164,5 @@ TEST_CASE("paired: the variance reduction of correlated pairs is the known one")
     CHECK(std::abs(sum / replications - expected) < 4 * deviation / std::sqrt(double{replications}));
     CHECK(std::abs(expected - (s * s + 1)) < 0.25);
 }
+
+}  // namespace credence::test::paired_test

@@ -2,8 +2,8 @@
 
 #include "reference.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::statistics_reference_test {
+
 using Catch::Matchers::WithinAbs;
 
 TEST_CASE("statistics: t and normal quantiles agree with SciPy, alpha being that of both tails") {
@@ -56,3 +56,5 @@ TEST_CASE("statistics: a 99th percentile is one, not the mean and 2.33 standard 
     for (const double value : values) below += value < percentile;
     CHECK(below == 99);  // of 101; below the mean and 2.33 sd are 97
 }
+
+}  // namespace credence::test::statistics_reference_test

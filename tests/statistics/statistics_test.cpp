@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-using namespace credence;
+namespace credence::test::statistics_test {
+
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
@@ -91,3 +92,5 @@ TEST_CASE("statistics: moments from sums are those of the values") {
     CHECK(std::isnan(moments_from_sums(1, 2, 4).standard_error));
     CHECK(moments_from_sums(3, 3, 3).standard_deviation == 0.0);  // equal values: rounding must not go below 0
 }
+
+}  // namespace credence::test::statistics_test

@@ -9,8 +9,8 @@
 #include "statistics/verdict_cases.hpp"
 #include "statistics/whiteness.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::verdict_oracle_test {
+
 using Json = nlohmann::json;
 
 namespace {
@@ -164,3 +164,5 @@ TEST_CASE("verdict: the correlation at a lag agrees with the oracle's, for few t
     few.add(1, 29, 1);
     CHECK_FALSE(correlation_of(few, 0.05).has_value());
 }
+
+}  // namespace credence::test::verdict_oracle_test

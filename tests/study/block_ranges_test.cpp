@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-using namespace credence;
+namespace credence::test::block_ranges_test {
 
 namespace {
 
@@ -83,3 +83,5 @@ TEST_CASE("block ranges: all blocks of a study are one range, whatever their num
     all.add(BlockRange{3, 9});
     CHECK(all == BlockRanges::below(many));
 }
+
+}  // namespace credence::test::block_ranges_test

@@ -12,8 +12,7 @@
 #include <malloc.h>
 #endif
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::memory_test {
 
 namespace {
 
@@ -155,3 +154,5 @@ TEST_CASE("memory: that of a run, of the table and of the file does not grow wit
     CHECK(allocated() - before < all / 4);
 }
 #endif
+
+}  // namespace credence::test::memory_test

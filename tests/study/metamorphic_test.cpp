@@ -5,8 +5,7 @@
 
 #include <credence/columns.hpp>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::metamorphic_test {
 
 namespace {
 
@@ -71,3 +70,5 @@ TEST_CASE("metamorphic: a trial that goes on for longer begins as the shorter on
         check_same_steps(study.scenarios[0], longer.scenarios[0], 7);
     }
 }
+
+}  // namespace credence::test::metamorphic_test

@@ -8,8 +8,7 @@
 
 #include <algorithm>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::results_test {
 
 namespace {
 
@@ -140,3 +139,5 @@ TEST_CASE("results: columns are stored at their trials") {
         for (std::size_t trial = 0; trial < 44; ++trial)
             CHECK(same_bits(results.arms[0].columns[c][256 + trial], second.arms[0].columns[c * 44 + trial]));
 }
+
+}  // namespace credence::test::results_test

@@ -11,8 +11,7 @@
 
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::stopping_coverage_long_test {
 
 namespace {
 
@@ -127,3 +126,5 @@ TEST_CASE("stopping: the engine's own intervals cover, where the truth is known 
     CHECK(beyond_the_first > 20);
     CHECK(beyond_the_first < 180);
 }
+
+}  // namespace credence::test::stopping_coverage_long_test

@@ -6,7 +6,8 @@
 #include <credence/error.hpp>
 #include "study/stopping.hpp"
 
-using namespace credence;
+namespace credence::test::stopping_goal_test {
+
 using Catch::Contains;
 using Catch::Matchers::WithinRel;
 
@@ -73,3 +74,5 @@ TEST_CASE("stopping: goals of which the study has not the column or the arms are
     CHECK_THAT(refusal_of("trace_P[greedy-fixed]=1", study), Contains("Name one of greedy.ekf, greedy.other"));
     CHECK(refusal_of("trace_P[greedy.other-greedy.ekf]=1", study).empty());
 }
+
+}  // namespace credence::test::stopping_goal_test

@@ -10,7 +10,8 @@
 #include <cmath>
 #include <limits>
 
-using namespace credence;
+namespace credence::test::stopping_test {
+
 using Catch::Matchers::WithinRel;
 
 namespace {
@@ -231,3 +232,5 @@ TEST_CASE("stopping: a goal that cannot be evaluated is refused before any trial
     CHECK_THROWS_AS(run_until(study, {goals({"trase_P=1"}), 3000, 64}, {0, 2, {}}), InputError);
     CHECK(study.scenarios[0].trials == 0);
 }
+
+}  // namespace credence::test::stopping_test

@@ -7,7 +7,7 @@
 
 #include <set>
 
-using namespace credence;
+namespace credence::test::study_test {
 
 TEST_CASE("study: 1, 2 and 5 threads give the same bits") {
     const Study one = small_study(1, 700, 1);
@@ -100,3 +100,5 @@ TEST_CASE("study: the footprint grows by what a trial keeps") {
           1000 * (4 * 73 + 2 * 7 * 4 * (10 + 9) + 2 * 8 * (moment_count(9, 8) + moment_count(8, 6))));
     CHECK(many.memory > few.memory);
 }
+
+}  // namespace credence::test::study_test

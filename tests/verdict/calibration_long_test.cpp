@@ -8,8 +8,7 @@
 
 #include "calibration_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::calibration_long_test {
 
 namespace {
 
@@ -186,3 +185,5 @@ TEST_CASE("calibration: a single trial rarely makes a filter that is right look 
     });
     calibration.check();
 }
+
+}  // namespace credence::test::calibration_long_test

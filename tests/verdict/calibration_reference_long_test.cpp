@@ -7,8 +7,8 @@
 #include "statistics/mean_bounds.hpp"
 #include "calibration_draws.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::calibration_reference_long_test {
+
 using namespace credence::test::drawn;
 
 namespace {
@@ -159,3 +159,5 @@ TEST_CASE("calibration: NumPy's draws are called what they are, with their inter
         check_agrees(finding.interval.high * claimed, mean + half + (1 - std::pow(0.135, 1.0 / trials)) * 8 * mean);
     }
 }
+
+}  // namespace credence::test::calibration_reference_long_test

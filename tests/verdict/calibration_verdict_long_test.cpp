@@ -7,8 +7,7 @@
 #include "statistics/mean_bounds.hpp"
 #include "calibration_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::calibration_verdict_long_test {
 
 namespace {
 
@@ -130,3 +129,5 @@ TEST_CASE("calibration: what all steps say counts as soon as their corrected int
     CHECK(found(run.mean - 1 - 1.05 * half));
     CHECK_FALSE(found(run.mean - 1 - 0.95 * half));
 }
+
+}  // namespace credence::test::calibration_verdict_long_test

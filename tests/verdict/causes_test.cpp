@@ -6,8 +6,8 @@
 #include "record_support.hpp"
 #include "verdict/consistency_parts.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::causes_test {
+
 using Catch::Contains;
 
 namespace {
@@ -149,3 +149,5 @@ TEST_CASE("causes: two trials that are the same run are named, however many ther
     }
     CHECK(named() == "trials 3 and 41 are the same run: was a seed used twice?");
 }
+
+}  // namespace credence::test::causes_test

@@ -7,8 +7,7 @@
 #include "store_study.hpp"
 #include "study_support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::compare_calibration_long_test {
 
 TEST_CASE("compare: the variance reduction is what unpaired runs with seeds of their own have too much", "[long]") {
     // 400 small studies give the variance of a paired mean difference; two arms of two further seeds each give that of
@@ -66,3 +65,5 @@ TEST_CASE("compare: conclusions hold together at 95 %", "[long]") {
     CAPTURE(wrong);
     CHECK(wrong == 0);
 }
+
+}  // namespace credence::test::compare_calibration_long_test

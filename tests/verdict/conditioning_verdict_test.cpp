@@ -8,8 +8,8 @@
 #include "matched.hpp"
 #include "of_scenarios.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::conditioning_verdict_test {
+
 using Catch::Contains;
 
 namespace {
@@ -68,3 +68,5 @@ TEST_CASE("conditioning: what is left out is nothing in JSON, and no number in t
     CHECK_THAT(report_csv(report),
                Contains(",nees_per_dimension:all,1,,,,,") && Contains(",nees_rounding:features,1,0."));
 }
+
+}  // namespace credence::test::conditioning_verdict_test

@@ -12,8 +12,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::consistency_note_test {
 
 namespace {
 
@@ -114,3 +113,5 @@ TEST_CASE("consistency: a single trial decides nothing, whatever its innovations
     CHECK(judge(evidence_of_values({100}), 0.05).verdict == Verdict::optimistic);  // of any correlation of its steps
     CHECK(judge(evidence_of_values({1e-9}), 0.05).verdict == Verdict::pessimistic);
 }
+
+}  // namespace credence::test::consistency_note_test

@@ -9,8 +9,7 @@
 
 #include <algorithm>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::consistency_test {
 
 namespace {
 
@@ -204,3 +203,5 @@ TEST_CASE("consistency: trials that failed and trials that are lost count alike 
         CHECK(judge(evidence, {0.05, 0.02}).verdict == Verdict::undecided);
     }
 }
+
+}  // namespace credence::test::consistency_test

@@ -15,8 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::evidence_test {
 
 namespace {
 
@@ -222,3 +221,5 @@ TEST_CASE("evidence: stable quantiles of chi-square are Boost's") {
                   Approx(boost::math::quantile(distribution, level)).epsilon(2e-12));
     }
 }
+
+}  // namespace credence::test::evidence_test

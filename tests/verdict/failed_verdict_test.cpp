@@ -11,8 +11,8 @@
 #include <cmath>
 #include <limits>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::failed_verdict_test {
+
 using Catch::Contains;
 
 namespace {
@@ -240,3 +240,5 @@ TEST_CASE("failed: the program's gate, its share and its refusals") {
     const Outcome replayed = here.credence("replay r.h5 --scenario ekf-straight-constant --arm fixed.ekf --trial 0");
     CHECK_THAT(replayed.out, Contains("trace(P) - dm^2 + rad^2, unseen -, pose error -, NEES/n -, NIS/m -, log score -\n"));
 }
+
+}  // namespace credence::test::failed_verdict_test

@@ -12,8 +12,7 @@
 #include "calibration_support.hpp"
 #include "synthetic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::mistakes_long_test {
 
 namespace {
 
@@ -173,3 +172,5 @@ TEST_CASE("mistakes: an analysis uses its own values, not the widest or narrowes
     CHECK(look_at_first(values, rule, 16, 1).states.front().half_width < 1);
     CHECK(look_at_first(values, rule, 32, 2).states.front().half_width > 5);
 }
+
+}  // namespace credence::test::mistakes_long_test

@@ -15,7 +15,8 @@
 #include <limits>
 #include <regex>
 
-using namespace credence;
+namespace credence::test::no_nan_test {
+
 using Catch::Contains;
 using Json = nlohmann::json;
 
@@ -169,3 +170,5 @@ TEST_CASE("report: an arm that is not run yet is said to be so, in every form") 
         CHECK(Json::parse(compare_json(compared))[1]["conclusion"] == "not run yet");
     }
 }
+
+}  // namespace credence::test::no_nan_test

@@ -7,7 +7,7 @@
 #include "statistics/moments/advice.hpp"
 #include "verdict/judgement.hpp"
 
-using namespace credence;
+namespace credence::test::suspicion_test {
 
 namespace {
 
@@ -83,3 +83,5 @@ TEST_CASE("suspicion: the range holds the number that the true mean needs") {
         CHECK(held > 0.83 * suspected);
     }
 }
+
+}  // namespace credence::test::suspicion_test

@@ -15,7 +15,8 @@
 #include <cmath>
 #include <limits>
 
-using namespace credence;
+namespace credence::test::declared_test {
+
 using Catch::Contains;
 
 namespace {
@@ -222,3 +223,5 @@ TEST_CASE("own world: of two worlds of one name neither is taken") {
           "test:2: invalid scenario.world=twin (this program has two worlds of that name). Give the one that was added "
           "another name.");
 }
+
+}  // namespace credence::test::declared_test

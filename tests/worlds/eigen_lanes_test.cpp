@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::eigen_lanes_test {
 
 namespace {
 
@@ -172,3 +172,5 @@ TEST_CASE("lanes: matrices are selected by lane") {
     CHECK(lane_of(or_zero(0), 1) == 0);
     CHECK(select(false, Eigen::Vector2d(1, 2), 0) == Eigen::Vector2d::Zero());
 }
+
+}  // namespace credence::test::eigen_lanes_test

@@ -10,8 +10,7 @@
 
 #include <credence/report.hpp>
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::fifty_digits_long_test {
 
 namespace {
 
@@ -127,3 +126,5 @@ TEST_CASE(
         if (!left_out) CHECK(std::abs(all.run.mean / static_cast<double>(exact) - 1) <= all.rounding);
     }
 }
+
+}  // namespace credence::test::fifty_digits_long_test

@@ -10,7 +10,7 @@
 
 #include <random>
 
-using namespace credence;
+namespace credence::test::filters_gallery_long_test {
 
 namespace {
 
@@ -115,3 +115,5 @@ TEST_CASE("gallery: the inertial unit's Jacobian is that of its motion, with bot
         }
     }
 }
+
+}  // namespace credence::test::filters_gallery_long_test

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::filters_lie_long_test {
 
 namespace {
 
@@ -277,3 +277,5 @@ TEST_CASE("filters: a wrong Jacobian is found, and a right one is not") {
     J(4, 1) = std::nan("");
     CHECK(std::isnan(jacobian_mismatch(change, xi, J)));
 }
+
+}  // namespace credence::test::filters_lie_long_test

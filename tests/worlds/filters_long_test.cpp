@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-using namespace credence;
+namespace credence::test::filters_long_test {
 
 namespace {
 
@@ -200,3 +200,5 @@ TEST_CASE("filters: predictions and updates have the same bits in every lane, an
         for (std::size_t i = 0; i < four.size(); ++i) REQUIRE(lane_of(four[i], 2) == lane_of(eight[i], 6));
     }
 }
+
+}  // namespace credence::test::filters_long_test

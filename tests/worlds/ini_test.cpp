@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
-using namespace credence;
+namespace credence::test::ini_test {
 
 namespace {
 
@@ -127,3 +127,5 @@ TEST_CASE("ini: a file's stem is its default name, and must be a good one") {
     std::filesystem::remove(good);
     std::filesystem::remove(bad);
 }
+
+}  // namespace credence::test::ini_test

@@ -9,8 +9,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::landmark_figures_long_test {
 
 namespace {
 
@@ -149,3 +148,5 @@ TEST_CASE("landmarks: under less heading noise the extended Kalman filter loses 
         check(totals.at(1, "nees_heading", 600), riekf, 0.01);
     }
 }
+
+}  // namespace credence::test::landmark_figures_long_test

@@ -5,8 +5,7 @@
 #include "landmark_run.hpp"
 #include "slam/metamorphic.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::landmark_metamorphic_test {
 
 namespace {
 
@@ -135,3 +134,5 @@ TEST_CASE("landmarks metamorphic: in another unit, and with other numbers, trial
 TEST_CASE("landmarks metamorphic: hundreds of trials are the same in another unit and with other numbers", "[long]") {
     compare_to_rounding(40);
 }
+
+}  // namespace credence::test::landmark_metamorphic_test

@@ -11,8 +11,8 @@
 #include "catch.hpp"
 #include "support.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::landmark_world_test {
+
 using Catch::Contains;
 
 namespace {
@@ -122,3 +122,5 @@ TEST_CASE("landmark world: a block is its trials one by one, on every target") {
         }
     }
 }
+
+}  // namespace credence::test::landmark_world_test

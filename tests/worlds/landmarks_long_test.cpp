@@ -6,8 +6,7 @@
 #include "catch.hpp"
 #include "oracle/landmarks.hpp"
 
-using namespace credence;
-using namespace credence::test;
+namespace credence::test::landmarks_long_test {
 
 namespace {
 
@@ -245,3 +244,5 @@ TEST_CASE("landmarks: an iterated update that has not come to rest is counted") 
     const LandmarkRun other = run_landmarks(scenario, Estimator::ekf, noise_of(0));
     for (int k = 1; k < scenario.poses; ++k) CHECK(other.figure(scenario, "unsettled_updates", k) == 0);
 }
+
+}  // namespace credence::test::landmarks_long_test

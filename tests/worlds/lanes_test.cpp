@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <random>
 
-using namespace credence;
+namespace credence::test::lanes_test {
 
 namespace {
 
@@ -303,3 +303,5 @@ TEST_CASE("lanes: what a world does wrong is said in the same words as of one tr
             CHECK(message([&] { one_by_one<Troubled>(scenario, s, target, 5); }) == expected);
     }
 }
+
+}  // namespace credence::test::lanes_test

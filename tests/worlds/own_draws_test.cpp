@@ -10,7 +10,8 @@
 #include <limits>
 #include <set>
 
-using namespace credence;
+namespace credence::test::own_draws_test {
+
 using test::run;
 
 namespace {
@@ -94,3 +95,5 @@ TEST_CASE("own world: keys that differ are draws that differ, and small indices 
         CHECK(keyed(7, 3, index)[1] == small.uniform(static_cast<Source>(7), 3, index));
     }
 }
+
+}  // namespace credence::test::own_draws_test

@@ -5,7 +5,7 @@
 #include <credence/error.hpp>
 #include <credence/detail/own_keys.hpp>
 
-using namespace credence;
+namespace credence::test::own_keys_test {
 
 namespace {
 
@@ -49,3 +49,5 @@ TEST_CASE("keys: a world's lists and choices are read, shown, and refused by nam
     refused("beacons.x", "", "invalid beacons.x= (it is empty). Give at least one number.");
     refused("filter.chart", "polar", "invalid filter.chart=polar (not one of its choices). Give one of own, plane.");
 }
+
+}  // namespace credence::test::own_keys_test

@@ -18,7 +18,8 @@
 #include <fstream>
 #include <limits>
 
-using namespace credence;
+namespace credence::test::own_world_test {
+
 using test::run;
 using test::TemporaryFolder;
 
@@ -226,3 +227,5 @@ TEST_CASE("own world: its keys are swept like those of any other") {
     CHECK_THROWS_WITH(read_scenario_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
                       Catch::Contains("the scenario has sensor.sigma=0.5"));
 }
+
+}  // namespace credence::test::own_world_test

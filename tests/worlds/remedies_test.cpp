@@ -5,7 +5,7 @@
 
 #include <credence/ini.hpp>
 
-using namespace credence;
+namespace credence::test::remedies_test {
 
 namespace {
 
@@ -165,3 +165,5 @@ TEST_CASE("scenario: points that are not pairs are told their form") {
     CHECK_THAT(read({{"features.positions", "1 1, 2 2e9"}}),
                Catch::Contains("=2e9 (must be at least -1e+09 and at most 1e+09)"));
 }
+
+}  // namespace credence::test::remedies_test

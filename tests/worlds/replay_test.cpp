@@ -10,7 +10,7 @@
 
 #include <bit>
 
-using namespace credence;
+namespace credence::test::replay_test {
 
 namespace {
 
@@ -140,3 +140,5 @@ TEST_CASE("replay: a covariance beyond the recorded size is left out, and a note
     CHECK(values_at(trajectory, "error", 2).isOnes());
     CHECK(values_at(trajectory, "nees", 2)(0) == Approx(513));
 }
+
+}  // namespace credence::test::replay_test

@@ -10,7 +10,7 @@
 
 #include <bit>
 
-using namespace credence;
+namespace credence::test::trajectory_test {
 
 namespace {
 
@@ -115,3 +115,5 @@ TEST_CASE("trajectory: recorded noise that does not cover the scenario is refuse
     s.sensor.detection = 0.5;
     CHECK_THROWS_AS(check_covers(record, s, "r.h5"), InputError);
 }
+
+}  // namespace credence::test::trajectory_test
