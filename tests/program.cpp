@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace credence {
+namespace credence::test {
 
 namespace {
 
@@ -51,4 +51,4 @@ Outcome Workplace::shell(const std::string& command) const {
 
 std::string seed_scenario(const std::string& name) { return CREDENCE_SOURCE "/experiments/seed/" + name + ".ini"; }
 
-}  // namespace credence
+}  // namespace credence::test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace credence {
+namespace credence::test {
 
 struct Outcome {
     int exit_code = -1;
@@ -28,10 +28,10 @@ public:
     Outcome shell(const std::string& command) const;
 
 private:
-    test::TemporaryFolder folder_;
+    TemporaryFolder folder_;
 };
 
 /// The project's own scenario files.
 std::string seed_scenario(const std::string& name);
 
-}  // namespace credence
+}  // namespace credence::test
