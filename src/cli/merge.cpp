@@ -14,10 +14,8 @@ const Command& merge_command() {
         "merge",
         "SHARD.h5... -o FILE.h5 [options]",
         "make one results file of the files of shards",
-        "\nThe files may come in any order, and may share blocks. The result is that of one run without shards. Exit "
-        "code\n"
-        "1 where blocks are missing: their numbers b say which shards I/N to run or to resume, those with b mod N = "
-        "I.\n",
+        "\nThe files may come in any order. The result is that of one run without shards. Exit code 1 where blocks are\n"
+        "missing: their numbers b say which shards I/N to run or to resume, those with b mod N = I.\n",
         {output_option("the results file to write", "FILE.h5"),
          {"overwrite", "", "replace a results file that exists"},
          {"quiet", "", "say nothing where it goes well"}}};
@@ -30,7 +28,7 @@ int merge(const Parsed& parsed, const std::string& command_line) {
     if (!output) throw InputError("no -o given. Name the results file to write.");
     allow_open_files();
     for (const std::string& shard : parsed.arguments) check_kind(shard, {FileKind::results});
-    const Study study = merge_results(parsed.arguments, most_totals_in_memory, made_by());
+    const Study study = merge_results(parsed.arguments);
     if (!study.complete)
         throw Failure("blocks are missing: " + missing_text(study) +
                       ". Run or resume the shards that have them, then merge again.");

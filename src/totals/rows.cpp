@@ -123,20 +123,6 @@ void extend(ScenarioResults& results, std::int64_t trials) {
     set_blocks(results, BlockRanges::below(block_count(trials)), trials);
 }
 
-bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block) {
-    const std::int64_t row_a = first_row(a, block).value(), row_b = first_row(b, block).value();
-    if (row_a >= a.detailed() || row_b >= b.detailed()) return true;
-    const std::int64_t rows = block_rows(b, static_cast<std::size_t>(row_b / block_size));
-    bool all_same = true;
-    const auto compare = [&](const auto& in_a, const auto& in_b, std::int64_t width) {
-        const auto begin = in_a.begin() + row_a * width;
-        all_same = all_same && std::equal(begin, begin + rows * width, in_b.begin() + row_b * width,
-                                          [](double x, double y) { return x == y || (x != x && y != y); });
-    };
-    visit_details(b, compare, a.arms[arm], b.arms[arm]);
-    return all_same;
-}
-
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
     const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
     if (row_to >= to.detailed() || row_from >= from.detailed()) return;

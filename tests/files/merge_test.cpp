@@ -3,7 +3,6 @@
 #include "files/merge/merge.hpp"
 
 #include "journal_support.hpp"
-#include "store_damage.hpp"
 
 namespace credence::test::merge_test {
 
@@ -44,22 +43,20 @@ TEST_CASE("merge: shards in any order give the bytes of one run") {
     } while (std::next_permutation(paths.begin(), paths.end()));
 }
 
-TEST_CASE("merge: a file alone, twice, beside others that have its blocks") {
+TEST_CASE("merge: files that have the same block are refused by name") {
     const Shards shards;
-    const Study expected = undisturbed(shards.asked);
-    const std::string whole = shards.shard(0, 1), first = shards.shard(0, 2), second = shards.shard(1, 2);
-    const std::vector<std::string> thirds{shards.shard(0, 3), shards.shard(1, 3), shards.shard(2, 3)};
-    const std::vector<std::vector<std::string>> unions{
-        {whole},          {whole, whole},  {first, whole},
-        {whole, second},  {first, second, first},
-        {first, thirds[0], thirds[1], thirds[2]},
-        {thirds[2], first, thirds[1], second, thirds[0], whole}};
-    for (const std::vector<std::string>& paths : unions) {
-        CAPTURE(paths.size());
-        const Study merged = merge_results(paths);
-        CHECK(merged.complete);
-        CHECK(same_results(merged, expected));
-    }
+    const std::string whole = shards.shard(0, 1), half = shards.shard(0, 2), rest = shards.shard(1, 2),
+                      third = shards.shard(1, 3);
+    CHECK(same_results(merge_results({whole}), undisturbed(shards.asked)));
+    const auto said = [](const std::string& file, const std::string& other, int block) {
+        return "cannot merge " + file + " with " + other + " (both have block " + std::to_string(block) +
+               " of scenario a). Give files of which no two have the same trials.";
+    };
+    CHECK(refused_to_merge({whole, whole}) == said(whole, whole, 0));
+    CHECK(refused_to_merge({half, rest, whole}) == said(whole, half, 0));
+    CHECK(refused_to_merge({whole, rest}) == said(rest, whole, 1));
+    CHECK(refused_to_merge({half, rest, third}) == said(third, rest, 1));
+    CHECK(refused_to_merge({third, half}) == said(half, third, 4));
 }
 
 TEST_CASE("merge: details of trials come from whichever file has them") {
@@ -75,68 +72,6 @@ TEST_CASE("merge: details of trials come from whichever file has them") {
                  (found.errors[i] != found.errors[i] && arm.errors[i] != arm.errors[i])));
 }
 
-TEST_CASE("merge: the same block with other values is refused by trials, arm and column") {
-    const Shards shards;
-    const std::string good = shards.shard(0, 2), bad = shards.folder / "bad.h5";
-    damaged_copy(good, bad, [&](const Handle& root) {
-        const Handle column = open(root, "/b/fixed.ekf/pose_error");
-        const hsize_t row = 300, one = 1;  // of block 2, trials 512 to 767
-        const Handle file(H5Dget_space(column.id()), H5Sclose, bad, "space"),
-            memory(H5Screate_simple(1, &one, nullptr), H5Sclose, bad, "space");
-        H5Sselect_hyperslab(file.id(), H5S_SELECT_SET, &row, nullptr, &one, nullptr);
-        const double value = 0.125;
-        REQUIRE(H5Dwrite(column.id(), H5T_NATIVE_DOUBLE, memory.id(), file.id(), H5P_DEFAULT, &value) >= 0);
-        forget_checksum(column);
-    });
-    const std::string said = refused_to_merge({shards.shard(1, 2), good, bad});
-    CAPTURE(said);
-    CHECK(said.starts_with("cannot merge " + bad + " with " + good +
-                           " (trials 512 to 767 of b/fixed.ekf differ in pose_error)"));
-    CHECK_FALSE(refused_to_merge({bad, good}).empty());
-}
-
-TEST_CASE("merge: totals of blocks that several files have contradict each other, whichever comes first") {
-    Shards shards;
-    shards.asked.scenarios = {tiny("b")};
-    for (const Keep keep : {Keep::trials, Keep::aggregates}) {
-        shards.asked.keep = keep;
-        const std::string half = shards.shard(0, 2), rest = shards.shard(1, 2), whole = shards.shard(0, 1),
-                          third = shards.shard(0, 3);
-        const auto bad = [&](const std::string& good) {
-            return damaged_copy(good, good + "-bad.h5", [](const Handle& root) {
-                scale(root, "/b/fixed.ekf/nees_pose_total", 2);  // no column says it
-            });
-        };
-        // The same blocks; some that another has all of, and the other way round; blocks shared in part; two that make
-        // up a third one. In their order, and the other way round.
-        std::vector<std::vector<std::string>> unions{{half, bad(half)}, {whole, bad(third)}, {third, bad(whole)},
-                                                     {half, bad(third)}, {third, half + "-bad.h5"},
-                                                     {half, rest, whole + "-bad.h5"}, {half + "-bad.h5", rest, whole}};
-        if (keep == Keep::aggregates) unions.resize(4);
-        for (std::vector<std::string>& paths : unions) {
-            for (int order = 0; order < 2; ++order) {
-                const std::string said = refused_to_merge(paths);
-                CAPTURE(paths, said);
-                CHECK(said.starts_with("cannot merge "));
-                CHECK(says(said, "-bad.h5"));
-                CHECK(says(said, " totals of b "));
-                std::reverse(paths.begin(), paths.end());
-            }
-        }
-        CHECK(same_results(merge_results({whole, third, half, rest}), undisturbed(shards.asked)));
-    }
-}
-
-TEST_CASE("merge: the same block with other errors of its trials is refused") {
-    const Shards shards;
-    const std::string good = shards.shard(0, 2);
-    const std::string bad = damaged_copy(good, shards.folder / "bad.h5", [](const Handle& root) {
-        scale(root, "/a/fixed.ekf/detailed_error", 2);
-    });
-    CHECK(says(refused_to_merge({bad, good}), "of a/fixed.ekf differ in their errors"));
-    CHECK(says(refused_to_merge({good, bad}), "of a/fixed.ekf differ in their errors"));
-}
-
 TEST_CASE("merge: blocks that no file has are named by scenario") {
     const Shards shards;
     const std::string first = shards.shard(0, 3), last = shards.shard(2, 3);
@@ -150,13 +85,12 @@ TEST_CASE("merge: blocks that no file has are named by scenario") {
     CHECK(same_results(merge_results({shards.folder / "some.h5", shards.shard(1, 3)}), undisturbed(shards.asked)));
 }
 
-TEST_CASE("merge: an interrupted run's file merges like a shard") {
+TEST_CASE("merge: an interrupted run's file is taken as a shard is") {
     const Shards shards;
     const std::string some = shards.folder / "some.h5";
     run_to_end(some, shards.asked, 7);  // all of a, one block of b
     CHECK(missing_text(merge_results({some})) == "scenario b lacks blocks 1 to 5 of 6");
-    const Study merged = merge_results({some, shards.shard(0, 2), shards.shard(1, 2)});
-    CHECK(same_results(merged, undisturbed(shards.asked)));
+    CHECK(says(refused_to_merge({some, shards.shard(1, 2)}), "(both have block 1 of scenario a)"));
 }
 
 TEST_CASE("merge: files of other studies, seeds and trials are refused") {

@@ -116,8 +116,6 @@ TEST_CASE("memory: a merge whose totals stay in the files gives the same results
     CHECK(same_results(merged, undisturbed(some())));
     write_results(folder / "merged.h5", merged, run_facts);
     CHECK(same_results(results_in(folder / "merged.h5"), undisturbed(some())));
-    paths.push_back(folder / "merged.h5");
-    CHECK(same_results(merge_results(paths, 0), undisturbed(some())));
 }
 
 #if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33) && !defined(CREDENCE_SANITIZED)

@@ -175,9 +175,6 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
 /// Sets all blocks of `trials` trials, the totals in memory.
 void extend(ScenarioResults& results, std::int64_t trials);
 
-/// Whether the details of a block that both have are the same in both, under one arm; true where it has none.
-bool same_details(const ScenarioResults& a, const ScenarioResults& b, std::size_t arm, std::int64_t block);
-
 /// Copies the details, if any, of a block that both have. Different blocks may be copied at once.
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block);
 

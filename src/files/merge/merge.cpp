@@ -7,7 +7,6 @@
 #include "study/block_results.hpp"
 #include "study/releases.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace credence {
@@ -41,10 +40,6 @@ std::string ranges_text(const BlockRanges& blocks) {
     return joined(texts, ", ") + (more > 0 ? " and " + std::to_string(more) + " more places" : "");
 }
 
-}  // namespace
-
-namespace {
-
 /// Throws unless trials of the two files may be merged.
 void check_releases(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t a,
                     std::size_t b) {
@@ -58,8 +53,7 @@ void check_releases(const Study& first, const Study& other, const std::vector<st
 /// The study that results from files that are added one after the other.
 class Merger {
 public:
-    explicit Merger(const std::vector<std::string>& paths)
-        : paths_(paths), shared_paths_(std::make_shared<const std::vector<std::string>>(paths)) {}
+    explicit Merger(const std::vector<std::string>& paths) : paths_(paths) {}
 
     void add(std::size_t file, Study part) {
         require_all_columns(part, "cannot merge " + paths_[file]);
@@ -67,14 +61,14 @@ public:
         check_same_study(study_, part, paths_, file, first_);
         check_releases(study_, part, paths_, first_, file);
         for (const std::string& release : part.computed_by) note_release(study_.computed_by, release);
-        for (std::size_t s = 0; s < scenarios_.size(); ++s) scenarios_[s].add(part.scenarios[s], file);
-    }
-
-    /// Whether a file has a block that an earlier one had.
-    bool shares(const Study& part) const {
-        for (std::size_t s = 0; s < scenarios_.size() && s < part.scenarios.size(); ++s)
-            if (!part.scenarios[s].blocks.common(scenarios_[s].blocks()).empty()) return true;
-        return false;
+        for (std::size_t s = 0; s < scenarios_.size(); ++s) {
+            const ScenarioResults& results = part.scenarios[s];
+            if (const auto shared = scenarios_[s].shared(results.blocks))
+                throw InputError("cannot merge " + paths_[file] + " with " + paths_[shared->file] + " (both have block " +
+                                 std::to_string(shared->block) + " of scenario " + results.scenario.name +
+                                 "). Give files of which no two have the same trials.");
+            scenarios_[s].add(results, file);
+        }
     }
 
     Study merged(std::int64_t most_totals) {
@@ -88,56 +82,23 @@ private:
     void begin(const Study& part, std::size_t file) {
         first_ = file;
         for (std::size_t s = 0; s < part.scenarios.size(); ++s)
-            scenarios_.emplace_back(part.scenarios[s], part.trials, part.root_seed, shared_paths_);
+            scenarios_.emplace_back(part.scenarios[s], part.trials);
         study_ = part;
         for (ScenarioResults& results : study_.scenarios) results.arms.clear();
     }
 
     const std::vector<std::string>& paths_;
-    const std::shared_ptr<const std::vector<std::string>> shared_paths_;  ///< for reading the files at the end
     std::size_t first_ = 0;
     Study study_;
     std::vector<ScenarioMerger> scenarios_;
 };
 
-/// The files by increasing number of blocks: files that together make up another one come before it, and blocks that
-/// they share with it need not be computed again.
-std::vector<std::size_t> by_size(const std::vector<std::string>& paths) {
-    std::vector<std::pair<std::int64_t, std::size_t>> sizes;
-    for (std::size_t file = 0; file < paths.size(); ++file) {
-        std::int64_t blocks = 0;
-        for (const ScenarioResults& results : read_results_without_totals(paths[file]).study.scenarios)
-            blocks += results.blocks.count();
-        sizes.emplace_back(blocks, file);
-    }
-    std::sort(sizes.begin(), sizes.end());
-    std::vector<std::size_t> order;
-    for (const auto& [blocks, file] : sizes) order.push_back(file);
-    return order;
-}
-
-/// Merges files that share blocks, which may have to be computed again.
-Study merge_shared(const std::vector<std::string>& paths, std::int64_t most_totals, const std::string& release) {
-    Merger merger(paths);
-    for (const std::size_t file : by_size(paths)) {
-        Study part = read_results_without_totals(paths[file]).study;
-        if (const std::string other = unmixable(part.computed_by, release); !other.empty())
-            throw InputError("cannot merge " + paths[file] + " (the files share trials, which may have to be computed "
-                             "again; " + why_unmixable(other, release) + "). Merge the files with that release.");
-        merger.add(file, std::move(part));
-    }
-    return merger.merged(most_totals);
-}
-
 }  // namespace
 
-Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals, const std::string& release) {
+Study merge_results(const std::vector<std::string>& paths, std::int64_t most_totals) {
     Merger merger(paths);
-    for (std::size_t file = 0; file < paths.size(); ++file) {
-        Study part = read_results_without_totals(paths[file]).study;
-        if (merger.shares(part)) return merge_shared(paths, most_totals, release);
-        merger.add(file, std::move(part));
-    }
+    for (std::size_t file = 0; file < paths.size(); ++file)
+        merger.add(file, read_results_without_totals(paths[file]).study);
     return merger.merged(most_totals);
 }
 

@@ -3,7 +3,6 @@
 #include "study/block_results.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace credence {
@@ -45,65 +44,94 @@ private:
     std::vector<Span> spans_;
 };
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-        return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || (x != x && y != y);
-    });
-}
-
 }  // namespace
 
-ScenarioMerger::ScenarioMerger(const ScenarioResults& like, std::int64_t trials, std::uint64_t root_seed,
-                               const std::shared_ptr<const std::vector<std::string>>& paths)
+/// Totals and details of the files, read from these one after the other when they are loaded.
+class MergedTotals : public KeptTotals {
+public:
+    /// A file's part of the scenario.
+    struct Part {
+        std::size_t file;
+        BlockRanges blocks;
+        std::vector<std::shared_ptr<const KeptColumns>> columns;  ///< by arm
+        std::shared_ptr<const KeptTotals> totals;
+    };
+
+    explicit MergedTotals(std::int64_t trials) : trials_(trials) {}
+
+    std::vector<Part> parts;
+
+    void load(ScenarioResults& results) const override {
+        for (const Part& part : parts) {
+            const ScenarioResults from = read(part, results);
+            for (std::size_t a = 0; a < from.arms.size(); ++a) add_totals(results.arms[a], from.arms[a]);
+            BlockRanges blocks = results.blocks;
+            blocks.add(part.blocks);
+            set_blocks(results, std::move(blocks), trials_);
+            for (const std::int64_t block : part.blocks) {
+                if (first_row(results, block).value() >= results.detailed()) break;
+                copy_details(results, from, block);
+            }
+        }
+    }
+
+private:
+    ScenarioResults read(const Part& part, const ScenarioResults& like) const {
+        ScenarioResults from = results_without_totals(like.scenario, like.keep);
+        from.kept_totals = part.totals;
+        for (std::size_t a = 0; a < from.arms.size(); ++a) {
+            from.arms[a].columns.clear();
+            from.arms[a].kept = part.columns[a];
+        }
+        set_blocks(from, part.blocks, trials_);
+        load_totals(from);
+        return from;
+    }
+
+    std::int64_t trials_;
+};
+
+ScenarioMerger::ScenarioMerger(const ScenarioResults& like, std::int64_t trials)
     : trials_(trials),
-      paths_(paths),
       results_(results_without_totals(like.scenario, like.keep)),
-      totals_(std::make_shared<MergedTotals>(trials, root_seed, paths)) {
+      totals_(std::make_shared<MergedTotals>(trials)) {
     results_.kept_totals = totals_;
     for (ArmResults& arm : results_.arms) arm.columns.clear();  // they stay in the files
 }
 
+std::optional<ScenarioMerger::Shared> ScenarioMerger::shared(const BlockRanges& blocks) const {
+    const BlockRanges again = blocks.common(results_.blocks);
+    for (const MergedTotals::Part& part : totals_->parts)
+        if (!again.empty() && part.blocks.contains(again.front())) return Shared{again.front(), part.file};
+    return std::nullopt;
+}
+
 void ScenarioMerger::add(const ScenarioResults& from, std::size_t file) {
-    for (const ArmResults& arm : from.arms) columns_[file].push_back(arm.kept);
-    const BlockRanges again = from.blocks.common(results_.blocks), fresh = from.blocks.without(again);
-    shared_ = shared_ || !again.empty();
-    for (const auto& [block, place] : places_)
-        if (again.contains(block)) check_same(from, block, file);
+    MergedTotals::Part part{file, from.blocks, {}, from.kept_totals};
+    for (const ArmResults& arm : from.arms) part.columns.push_back(arm.kept);
     if (results_.keep == Keep::trials)
-        for (const std::int64_t block : fresh)
-            places_[block] = {file, first_row(from, block).value(), trials_in_block(trials_, block)};
+        for (const std::int64_t block : from.blocks)
+            places_[block] = {totals_->parts.size(), first_row(from, block).value(), trials_in_block(trials_, block)};
+    totals_->parts.push_back(std::move(part));
     BlockRanges blocks = results_.blocks;
-    blocks.add(fresh);
+    blocks.add(from.blocks);
     set_blocks(results_, std::move(blocks), trials_);
-    totals_->add(from, file);
 }
 
 ScenarioResults ScenarioMerger::merged(TotalsInMemory& in_memory) {
     for (std::size_t a = 0; a < results_.arms.size() && results_.keep == Keep::trials; ++a) {
         const auto gathered = std::make_shared<GatheredColumns>();
-        for (const auto& [block, place] : places_) gathered->add(columns_.at(place.file)[a], place.row, place.trials);
+        for (const auto& [block, place] : places_)
+            gathered->add(totals_->parts[place.part].columns[a], place.row, place.trials);
         results_.arms[a].kept = gathered;
     }
     in_memory.load(results_);
-    // Files that have the same blocks are compared before anything is written.
-    if (!has_totals(results_) && (shared_ || results_.keep == Keep::aggregates)) {
+    // A file that contradicts itself is found before anything is written.
+    if (!has_totals(results_) && results_.keep == Keep::aggregates) {
         load_totals(results_);
         drop_totals(results_);
     }
     return std::move(results_);
-}
-
-/// Throws unless the columns of a block are the same in this file and in the one that brought it.
-void ScenarioMerger::check_same(const ScenarioResults& from, std::int64_t block, std::size_t file) const {
-    const Found& place = places_.at(block);
-    const std::int64_t row = first_row(from, block).value();
-    for (std::size_t a = 0; a < from.arms.size(); ++a)
-        for (std::size_t c = 0; c < from.columns.size(); ++c)
-            if (!same_bits(columns_.at(place.file)[a]->values(c, place.row, place.trials),
-                           columns_.at(file)[a]->values(c, row, place.trials)))
-                refuse_contradiction((*paths_)[file], {(*paths_)[place.file]},
-                                     place_text(from, from.arms[a], block, place.trials) + " differ in " +
-                                         from.columns[c].name);
 }
 
 }  // namespace credence

@@ -3,47 +3,48 @@
 
 #include <credence/study.hpp>
 
-#include "files/merge/totals.hpp"
-
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace credence {
 
-/// One scenario of the study, collected from the files.
+class MergedTotals;
+
+/// One scenario of the study, collected from files of which no two have the same block.
 class ScenarioMerger {
 public:
-    /// Constructs this scenario of a study of `trials` trials; `paths` are all files.
-    ScenarioMerger(const ScenarioResults& like, std::int64_t trials, std::uint64_t root_seed,
-                   const std::shared_ptr<const std::vector<std::string>>& paths);
+    /// Constructs this scenario of a study of `trials` trials.
+    ScenarioMerger(const ScenarioResults& like, std::int64_t trials);
 
-    const BlockRanges& blocks() const { return results_.blocks; }
+    /// A block that is in a file already.
+    struct Shared {
+        std::int64_t block;
+        std::size_t file;
+    };
+    /// The first of these blocks that is in a file already.
+    std::optional<Shared> shared(const BlockRanges& blocks) const;
 
-    /// Adds the blocks of a file that no earlier file had. Throws InputError where columns of a shared block differ.
     void add(const ScenarioResults& from, std::size_t file);
 
-    /// Leaves the columns in the files, and totals that are too large for `in_memory`. Throws InputError where totals
-    /// or errors of several files contradict each other.
+    /// Leaves the columns in the files, and totals that are too large for `in_memory`. Throws InputError where a file
+    /// contradicts itself.
     ScenarioResults merged(TotalsInMemory& in_memory);
 
 private:
-    /// The place of a block: its file, its first row there, and its trials.
+    /// The place of a block: which of the files it is in, its first row there, and its trials.
     struct Found {
-        std::size_t file;
+        std::size_t part;
         std::int64_t row, trials;
     };
 
-    void check_same(const ScenarioResults& from, std::int64_t block, std::size_t file) const;
-
     std::int64_t trials_;
-    std::shared_ptr<const std::vector<std::string>> paths_;
     ScenarioResults results_;
     std::shared_ptr<MergedTotals> totals_;
-    bool shared_ = false;                   ///< some block is in several files
     std::map<std::int64_t, Found> places_;  ///< of blocks with columns
-    std::map<std::size_t, std::vector<std::shared_ptr<const KeptColumns>>> columns_;  ///< by file and arm
 };
 
 }  // namespace credence
