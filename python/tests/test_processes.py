@@ -208,6 +208,34 @@ def interrupted(_):
     return "removed"
 
 
+def with_decimal_commas(_):
+    """What is said in a locale that is made here: a system need not have one."""
+    pathlib.Path("ascii").write_text("<escape_char> /\nCHARMAP\n<U0000>..<U007F> /x00 ASCII\nEND CHARMAP\n")
+    pathlib.Path("commas").write_text('LC_NUMERIC\ndecimal_point ","\nthousands_sep "."\nEND LC_NUMERIC\n')
+    subprocess.run(["localedef", "-cf", "./ascii", "-i", "./commas", "./xx_XX"], capture_output=True, check=False)
+    credence.run(SCENARIO, trials=5000, set={"noise.heading": 0.2}, output="noisy.h5")
+    said = {}
+    for name in ("C", "xx_XX"):
+        code, said[name] = process(f"""
+            import locale
+            os.environ["LOCPATH"] = os.getcwd()
+            locale.setlocale(locale.LC_ALL, {name!r})
+            assert locale.localeconv()["decimal_point"] == {"." if name == "C" else ","!r}
+            error = 1.3 * np.random.default_rng(5).standard_normal((400, 30, 2)) + 0.2
+            ones = np.broadcast_to(np.eye(2), (400, 30, 2, 2))
+            verdict = credence.judge(error, ones, innovation=error, innovation_covariance=ones)
+            for one in (credence.report("noisy.h5"), credence.compare("noisy.h5"), verdict):
+                print(one, one.html, one.json)
+            replay = "replay --scenario=scenario --arm=fixed --trial=3"
+            for words in ("report --format=csv", "compare --format=csv", replay):
+                print(credence._core.command([*words.split(), "noisy.h5"], None))
+            print(credence.show(SCENARIO, set={{"noise.heading": 0.25}}))
+            credence.run(SCENARIO, trials=8192, until="trace_P=1e-9")  # which is warned of
+        """)
+        assert code == 0, said[name]
+    return "no other number" if said["C"] == said["xx_XX"] else said["xx_XX"]
+
+
 CASES = {
     "A study that is closed": closed,
     "A study whose file was changed, replaced or removed since it was opened": changed_beneath,
@@ -220,6 +248,7 @@ CASES = {
     "The end of Python while a daemon thread is in a call": ended,
     "`exit()` of a C or C++ library in the middle of a call": left,
     "Ctrl-C, once or more, in a run without `output`": interrupted,
+    "A locale with decimal commas": with_decimal_commas,
 }
 
 

@@ -2,10 +2,11 @@
 
 #include <credence/error.hpp>
 
+#include "base/formatted.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace credence {
@@ -75,18 +76,14 @@ bool is_control(unsigned long code) {
 
 /// Two digits.
 std::string hexadecimal(char byte) {
-    char text[8];
-    std::snprintf(text, sizeof text, "%02x", static_cast<unsigned>(static_cast<unsigned char>(byte)));
-    return text;
+    return formatted("%02x", static_cast<unsigned>(static_cast<unsigned char>(byte)));
 }
 
 /// `\u009b`, as in JSON; `\xff` for a byte that is not UTF-8, for which JSON has no escape.
 std::string escape(std::string_view piece) {
     const Character character = character_at(piece, 0);
     if (character.length == 0) return "\\x" + hexadecimal(piece.front());
-    char text[16];
-    std::snprintf(text, sizeof text, "\\u%04lx", character.code);
-    return text;
+    return formatted("\\u%04lx", character.code);
 }
 
 }  // namespace

@@ -10,13 +10,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/formatted.hpp"
 #include "base/nan.hpp"
 #include "base/program_name.hpp"
 #include "study/releases.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace credence::cli {
 
@@ -196,9 +196,9 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
         for (const ShownColumn& shown : shown_columns) {
             const Column* column = find_column(t, shown.name);
             if (column == nullptr) continue;
-            char number[40];
-            std::snprintf(number, sizeof number, "%.*g", shown.digits, value_of(t, *column));
-            text += std::string(", ") + shown.label + " " + (std::isfinite(value_of(t, *column)) ? number : "-");
+            const double value = value_of(t, *column);
+            text += std::string(", ") + shown.label +
+                    (std::isfinite(value) ? formatted(" %.*g", shown.digits, value) : " -");
             if (column->unit != "1" && column == find_column(t, "trace_P")) text += " " + column->unit;
         }
         text += "\n";

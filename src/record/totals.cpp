@@ -5,11 +5,11 @@
 
 #include "record/results.hpp"
 #include "record/segments.hpp"
+#include "base/formatted.hpp"
 #include "base/nan.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace credence {
 
@@ -230,9 +230,8 @@ void RecordTotals::add_columns(std::int64_t trial) {
 void RecordTotals::note_lost(std::int64_t trial, double nees_ratio) {
     const auto nees = [&](std::size_t k) { return std::isnan(series(0, k)) ? -1 : series(0, k); };
     const std::size_t worst = *std::ranges::max_element(present_, {}, nees);
-    char text[80];
-    std::snprintf(text, sizeof text, "the trial is lost: NEES/dim %.3g over its steps, most here", nees_ratio);
-    note({trial, static_cast<int>(worst)}, Status::lost, text);
+    note({trial, static_cast<int>(worst)}, Status::lost,
+         formatted("the trial is lost: NEES/dim %.3g over its steps, most here", nees_ratio));
 }
 
 void RecordTotals::add_totals() {

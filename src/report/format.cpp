@@ -2,10 +2,11 @@
 
 #include <credence/text.hpp>
 
+#include "base/formatted.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <charconv>
-#include <cstdio>
 
 namespace credence {
 
@@ -25,18 +26,14 @@ std::string padded(const std::string& text, int width, bool right) {
 
 std::string number(double value, int digits) {
     if (!std::isfinite(value)) return "-";
-    char buffer[64];
     if (digits > 6 && std::abs(value) < 1e6) {
         if (value == 0) return "0";
         const int significant = digits + 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
-        std::snprintf(buffer, sizeof buffer, "%#.*g", std::clamp(significant, 2, 10), value);
-        return buffer;
+        return formatted("%#.*g", std::clamp(significant, 2, 10), value);
     }
     const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -digits) && digits >= 6;
-    if (vanishes) std::snprintf(buffer, sizeof buffer, "%.2g", value);
-    else if (std::abs(value) < 1e6) std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
-    else std::snprintf(buffer, sizeof buffer, "%.4g", value);
-    return buffer;
+    if (vanishes) return formatted("%.2g", value);
+    return std::abs(value) < 1e6 ? formatted("%.*f", digits, value) : formatted("%.4g", value);
 }
 
 std::string short_number(double value) {
@@ -86,9 +83,7 @@ std::string p_text(double p) {
     if (std::isnan(p) || p == 1) return std::isnan(p) ? "-" : "1";
     if (p >= 0.001) return number(p, 3);
     if (p < 1e-300) return "< 1e-300";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.0e", p);
-    return text;
+    return formatted("%.0e", p);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include "report/words.hpp"
 
+#include "base/formatted.hpp"
 #include "report/html/html.hpp"
 #include <credence/text.hpp>
 
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 namespace credence {
@@ -18,9 +18,7 @@ namespace {
 
 /// Two decimals, or two digits of what is below 0.1.
 std::string ratio_text(double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, std::abs(value) < 0.1 ? "%.2g" : "%.2f", value);
-    return text;
+    return formatted(std::abs(value) < 0.1 ? "%.2g" : "%.2f", value);
 }
 
 /// The distance of a finding from the value of a consistent filter.

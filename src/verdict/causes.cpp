@@ -1,5 +1,6 @@
 // What findings often come from: mistakes that leave their mark in the size of the errors beside that of P.
 
+#include "base/formatted.hpp"
 #include "base/nan.hpp"
 #include "statistics/moments/trial_moments.hpp"
 #include "verdict/consistency_parts.hpp"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numbers>
 #include <numeric>
@@ -169,17 +169,14 @@ std::string trend_of(const Evidence& evidence, const Limits& limits) {
                         static_cast<double>(some);
     const double first = std::log(steps.front().mean);
     const auto smaller = [&](const Moments& step) { return std::abs(std::log(step.mean)) < std::abs(first) + noise; };
-    char text[200];
-    const auto said = [&](const char* format) {
-        std::snprintf(text, sizeof text, format, std::exp(first), std::exp(last));
-        return std::string(text);
+    const auto said = [&](const char* what) {
+        return formatted("NEES/dim is %.2g at the first step and %.2g at the last: ", std::exp(first), std::exp(last)) +
+               what;
     };
     if (std::abs(first) > wrong && std::abs(last) < right && std::ranges::all_of(steps, smaller))
-        return said("NEES/dim is %.2g at the first step and %.2g at the last: is P at the start that of the first "
-                    "errors, and are these small enough to linearise?");
+        return said("is P at the start that of the first errors, and are these small enough to linearise?");
     if (last > wrong && std::abs(first) < std::max(right, last / 3))
-        return said("NEES/dim is %.2g at the first step and %.2g at the last: do errors build up that P does not "
-                    "know of (bias, drift, process noise)?");
+        return said("do errors build up that P does not know of (bias, drift, process noise)?");
     return {};
 }
 
@@ -196,10 +193,8 @@ std::string offset_of(const Evidence& evidence, const Sizes& sizes) {
         constexpr std::size_t least_steps = 5;
         if (means.size() < least_steps) continue;
         const auto [low, high] = std::ranges::minmax(means);
-        char text[60];
-        std::snprintf(text, sizeof text, "%.2g", quantile(means, 0.5));
         if (high - low < std::min(std::abs(low), std::abs(high)))
-            return "errors of " + bias.component + " are " + text + (bias.unit.empty() ? "" : " " + bias.unit) +
+            return "errors of " + bias.component + formatted(" are %.2g", quantile(means, 0.5)) + (bias.unit.empty() ? "" : " " + bias.unit) +
                    " on average at all steps: an offset of the truth, the map or the frame?";
     }
     return {};
@@ -220,10 +215,8 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
                  right = std::pow(1 - 2 / (9 * degrees), 3);
     constexpr double clearly = 1.5;
     if (!(median < (1 + limits.margin) * right && mean * right > clearly * median)) return {};
-    char text[120];
-    std::snprintf(text, sizeof text, "half of the %s have NEES/dim below %.2g: few are wrong, and the worst are named",
-                  evidence.units().c_str(), median);
-    return text;
+    return formatted("half of the %s have NEES/dim below %.2g: few are wrong, and the worst are named",
+                     evidence.units().c_str(), median);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "verdict/judgement.hpp"
 
+#include "base/formatted.hpp"
 #include "base/nan.hpp"
 #include "statistics/mean_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace credence {
@@ -29,11 +29,9 @@ private:
     double margin() const { return judgement_.limits().margin; }
 
     void leave_out() {
-        char text[160];
-        if (std::isfinite(group_.rounding))
-            std::snprintf(text, sizeof text, "rounding alone may change it by %.2g %%", 100 * group_.rounding);
-        else
-            std::snprintf(text, sizeof text, "P cannot be distinguished from a singular one");
+        const std::string text = std::isfinite(group_.rounding)
+                                     ? formatted("rounding alone may change it by %.2g %%", 100 * group_.rounding)
+                                     : "P cannot be distinguished from a singular one";
         judgement_.reach(&Reached::nees, std::numeric_limits<double>::infinity());
         judgement_.not_shown("conditioning: NEES of " + group_.name + " is left out, because " + text, false);
     }
@@ -217,12 +215,10 @@ std::string when_text(const Finding& finding) {
 }
 
 std::string sentence(const Finding& finding) {
-    char numbers[160];
-    std::snprintf(numbers, sizeof numbers, "%s %.3g (%.3g to %.3g)", finding.measure.c_str(), finding.value,
-                  finding.interval.low, finding.interval.high);
     const bool of_component = finding.about == Subject::bias || finding.about == Subject::tenth;
     const std::string where = (of_component ? "component " : "") + finding.where;
-    return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + numbers;
+    return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + finding.measure +
+           formatted(" %.3g (%.3g to %.3g)", finding.value, finding.interval.low, finding.interval.high);
 }
 
 }  // namespace credence

@@ -1,22 +1,16 @@
 // Hints beside a verdict: mistakes in writing a record or a filter that look like the findings at hand.
 
+#include "base/formatted.hpp"
 #include "verdict/consistency_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <numbers>
 
 namespace credence {
 
 namespace {
-
-std::string with_number(const char* format, double number) {
-    char text[160];
-    std::snprintf(text, sizeof text, format, number);
-    return text;
-}
 
 /// All directions are off by nearly one factor: it is beyond three margins, and their spread is small beside it.
 void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) {
@@ -25,8 +19,7 @@ void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) 
     const double middle = std::log(spectrum.front() * spectrum.back()) / 2;
     const double half_spread = std::log(spectrum.back() / spectrum.front()) / 2;
     if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) && half_spread < std::abs(middle) / 3)
-        hints.push_back(with_number("every direction is off by a factor of about %.2g: a scale?",
-                                    std::exp(middle)));
+        hints.push_back(formatted("every direction is off by a factor of about %.2g: a scale?", std::exp(middle)));
 }
 
 /// The errors have the size that P says, and yet some directions are far too large.
@@ -37,18 +30,17 @@ void hint_at_chart(const Evidence& evidence, Consistency& verdict) {
     if (!(spectrum.back() > 1.5 && spectrum.front() < 1 / 1.2)) return;
     verdict.chart_doubted = true;
     verdict.hints.push_back(
-        with_number("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error "
-                    "in the chart and frame of P, and is a correlation missing?",
-                    size));
+        formatted("the size of the errors is right (RMSE/sigma %.3f) and their directions are wrong: is the error "
+                  "in the chart and frame of P, and is a correlation missing?",
+                  size));
 }
 
 /// Errors of an angle beyond half a turn.
 void hint_at_angles(const Evidence& evidence, std::vector<std::string>& hints) {
     for (const BiasEvidence& component : evidence.bias)
         if (component.unit == "rad" && component.largest_error > 1.01 * std::numbers::pi)
-            hints.push_back(with_number(
-                ("errors of " + component.component + " reach %.3g rad: were angles wrapped to half a turn?").c_str(),
-                component.largest_error));
+            hints.push_back(formatted("errors of %s reach %.3g rad: were angles wrapped to half a turn?",
+                                      component.component.c_str(), component.largest_error));
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // The verdict's directions: which combination of the state has errors that P does not allow for.
 
+#include "base/formatted.hpp"
 #include "statistics/moments/bias.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numeric>
 
@@ -29,10 +29,8 @@ std::string name_of(const Direction& direction, const std::vector<BiasEvidence>&
     std::string text;
     for (const DirectionEntry& entry : direction.entries) {
         if (std::abs(entry.weight) < least) continue;
-        char weight[32];
-        std::snprintf(weight, sizeof weight, "%.2f", std::abs(entry.weight));
         text += text.empty() ? (entry.weight < 0 ? "-" : "") : entry.weight < 0 ? " - " : " + ";
-        text += std::string(weight) + " " + component_name(entry.component, components);
+        text += formatted("%.2f ", std::abs(entry.weight)) + component_name(entry.component, components);
     }
     return text + (direction.approximate || sizes.size() > most ? " …" : "");
 }

@@ -1,8 +1,9 @@
 #include "cli/process/progress.hpp"
 
+#include "base/formatted.hpp"
+
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
@@ -13,19 +14,13 @@ namespace {
 
 std::function<void(const Progress&)> progress_listener;
 
-std::string formatted(const char* format, double value, const char* unit) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return std::string(text) + unit;
-}
-
 }  // namespace
 
 std::string bytes_text(std::int64_t bytes) {
     const double value = static_cast<double>(bytes);
-    if (value < 1e6) return formatted("%.0f", value / 1e3, " kB");
-    if (value < 1e9) return formatted("%.1f", value / 1e6, " MB");
-    return formatted("%.1f", value / 1e9, " GB");
+    if (value < 1e6) return formatted("%.0f kB", value / 1e3);
+    if (value < 1e9) return formatted("%.1f MB", value / 1e6);
+    return formatted("%.1f GB", value / 1e9);
 }
 
 std::string file_size_text(const std::string& path) {
@@ -48,7 +43,7 @@ void ProgressLine::operator()(const Progress& progress) {
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = 100 * static_cast<double>(progress.done) / static_cast<double>(progress.total);
     std::cerr << (terminal_ ? "\r\033[K" : "") << progress.done << " of " << progress.total << " trials ("
-              << formatted("%.0f", share, " %") << "), " << formatted("%.0f", rate, " trials/s, ")
+              << formatted("%.0f %%), %.0f trials/s, ", share, rate)
               << duration_text(left) << " left" << (terminal_ ? "" : "\n") << std::flush;
     drawn_ = terminal_;
 }

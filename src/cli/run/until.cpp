@@ -1,10 +1,10 @@
 #include "cli/run/until.hpp"
 
+#include "base/formatted.hpp"
 #include "cli/process/progress.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace credence::cli {
 
@@ -12,14 +12,8 @@ namespace {
 
 const char* const unreachable = "no number of trials is expected to do";
 
-std::string formatted(const char* format, int digits, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, digits, value);
-    return text;
-}
-
 /// A number with two significant digits.
-std::string width_text(double width) { return !std::isfinite(width) ? "unknown" : formatted("%.*g", 2, width); }
+std::string width_text(double width) { return !std::isfinite(width) ? "unknown" : formatted("%.2g", width); }
 
 /// `0.1984 ± 0.0081`: as many decimals as show two digits of the half-width.
 std::string interval_text(const GoalState& state) {
@@ -85,7 +79,7 @@ InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunO
 std::string stopping_text(const InterimAnalysis& analysis) {
     std::string text = "stopped at interim analysis " + std::to_string(analysis.number) + ", " +
                        std::to_string(analysis.trials) + " trials: " + (analysis.met ? "" : "not ") +
-                       "as precise as asked. Intervals at " + formatted("%.*g", 6, 100 * (1 - analysis.alpha)) +
+                       "as precise as asked. Intervals at " + formatted("%g", 100 * (1 - analysis.alpha)) +
                        " %, so that all analyses keep 95 %:\n";
     std::size_t width = 0;
     for (const GoalState& state : analysis.states) width = std::max(width, state.name.size());
