@@ -321,7 +321,7 @@ def replay(
     study : Study or path
         The study, or a scenario file.
     scenario, arm : str
-        Names in the study, such as ``"greedy.ekf"``.
+        Names in the study, such as ``"greedy.ekf"``; by default the only ones.
     trial : int
         The trial, from 0. It is checked against the study's columns bit for bit.
     noise : path

@@ -19,6 +19,7 @@ import pytest
 from conftest import SCENARIO
 
 import credence
+from credence._calls import said
 
 
 def contents(path):
@@ -134,6 +135,58 @@ def test_what_cannot_be_used_is_refused(call, message):
     with pytest.raises(credence.InputError) as refused:
         call()
     assert message in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("message", "in_python"),
+    [
+        ("Give another name, --resume or --overwrite.", "Give another name, credence.resume() or overwrite=True."),
+        ("`credence run 'my own.ini'` runs it.", "credence.run('my own.ini') runs it."),
+        ("`credence show` prints every key.", "credence.show() prints every key."),
+        ("`credence run --help` lists them.", "help(credence.run) lists them."),
+        ("`credence watch x.h5` follows it, and `credence run --resume` resumes it.",
+         "`credence watch x.h5` follows it, and credence.resume() resumes it."),
+        ("`credence replay SCENARIO.ini --noise r.h5` reads it.",
+         "credence.replay('SCENARIO.ini', noise='r.h5') reads it."),
+        ("--set noise.heading: invalid noise.heading=0,1 (a comma). Write --sweep noise.heading=0,1.",
+         'set noise.heading: invalid noise.heading=0,1 (a comma). Write sweep={"noise.heading": "0,1"}.'),
+        ("Write --set section.key=value.", 'Write set={"section.key": "value"}.'),
+        ("more than --trials 10.", "more than trials=10."),
+        ("invalid --margin-direction=0.01 (less than the margin). Give at least --margin=0.05.",
+         "invalid margin_direction=0.01 (less than the margin). Give at least margin=0.05."),
+        ("run both with --keep trials, or give --arms A,B or another.",
+         "run both with keep='trials', or give arms='A,B' or another."),
+        ("invalid -o=x.html (it is HDF5).", "invalid output=x.html (it is HDF5)."),
+        ("see --dry-run, or start it all the same with --force.",
+         "see `credence run --dry-run`, or start it all the same with force=True."),
+        ("cannot write a--set/--force (it exists)", "cannot write a--set/--force (it exists)"),
+    ],
+)  # fmt: skip
+def test_messages_of_the_program_are_in_words_of_python(message, in_python):
+    assert said(message) == in_python
+
+
+def test_refusals_name_what_python_does(scenario, tmp_path):
+    def refused(call):
+        with pytest.raises(credence.InputError) as raised:
+            call()
+        return str(raised.value)
+
+    path = tmp_path / "study.h5"
+    study = credence.run(scenario, trials=256, output=path, set={"arms.controllers": "fixed"})
+    assert refused(lambda: credence.run(scenario, output=path)).endswith(
+        "Give another name, credence.resume() or overwrite=True."
+    )
+    assert f"credence.run('{scenario}') runs it" in refused(lambda: credence.report(scenario))
+    assert 'as sweep={"noise.heading": "0,1"}.' in refused(
+        lambda: credence.run(scenario, set={"noise.heading": "0,1"})
+    )
+    assert "credence.show() prints every key" in refused(lambda: credence.run(scenario, set={"zzz": 1}))
+    assert "invalid output=" in refused(lambda: credence.run(scenario, output=tmp_path / "x.html"))
+    (trial,) = credence.replay(study, trial=3)  # of the only scenario and arm
+    assert trial.trial == 3
+    with pytest.warns(UserWarning, match="has 256 trials of each scenario already, more than trials=100"):
+        credence.resume(study, trials=100)
 
 
 def test_ctrl_c_keeps_what_is_done(tmp_path):

@@ -14,4 +14,10 @@ inline std::istringstream stream_of(const std::string& text) {
     return stream;
 }
 
+/// A text without the mark that some editors begin every text with.
+inline std::string without_mark(const std::string& text) {
+    const std::string byte_order_mark = "\xEF\xBB\xBF";
+    return text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text;
+}
+
 }  // namespace credence

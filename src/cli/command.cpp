@@ -71,6 +71,21 @@ void check_repeats(const Command& command, const Parsed& parsed) {
     }
 }
 
+/// The suffix of -o's file chooses the format of what is written there, and must not contradict HDF5.
+void take_suffix(const Command& command, Parsed& parsed) {
+    const std::string path = parsed.text("output").value_or("");
+    for (const std::string format : {"html", "json", "csv", "txt"})
+        for (const Option& option : command.options) {
+            if (!path.ends_with("." + format)) continue;
+            if (option.long_name() == "output" && option.value.ends_with(".h5"))
+                throw invalid_value("-o", path, "what is written there is HDF5", "Give " + option.value +
+                    (command.name == "replay" ? "; --format json and csv print its numbers"
+                                              : "; `" + program_name() + " report` makes pages and tables of it"));
+            if (option.long_name() == "format" && std::ranges::count(option.choices, format) > 0)
+                parsed.values.try_emplace("format", 1, format);
+        }
+}
+
 /// `5%` or `0.05`; nothing where it is neither.
 std::optional<double> parse_share(const std::string& given) {
     const bool percent = !given.empty() && given.back() == '%';
@@ -180,6 +195,7 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
         return std::nullopt;
     }
     check_repeats(command, parsed);
+    take_suffix(command, parsed);
     return parsed;
 }
 
@@ -303,7 +319,7 @@ Option overwrite_option() { return {"overwrite", "", "replace the file of -o whe
 Option format_option(const std::vector<std::string>& formats) {
     std::string help = formats.front() + " (default)";
     for (std::size_t i = 1; i < formats.size(); ++i) help += (i + 1 < formats.size() ? ", " : " or ") + formats[i];
-    if (formats.back() == "html") help += ", a page to send";
+    if (formats.back() == "html") help += ", a page to send; or the suffix of -o says it";
     return {"format", "FORMAT", help, false, formats};
 }
 

@@ -30,12 +30,18 @@ FileKind kind_of_contents(const std::string& path) {
     return FileKind::unknown;
 }
 
-/// Whether the first line that is neither empty nor a comment is `[section]`.
+bool is_assignment(const std::string& line) {
+    const std::string key = trimmed(line.substr(0, line.find('=')));
+    return key.size() < line.size() && key.find('.') != std::string::npos &&
+           std::ranges::all_of(key, [](char c) { return is_name_character(c) || c == '.'; });
+}
+
+/// Whether the first line that is neither empty nor a comment is `[section]` or `section.key = value`.
 bool is_scenario(const std::string& text) {
-    std::istringstream lines = stream_of(text);
+    std::istringstream lines = stream_of(without_mark(text));
     for (std::string line; std::getline(lines, line);)
         if (const std::string bare = trimmed(line.substr(0, line.find('#'))); !bare.empty())
-            return bare.front() == '[' && bare.back() == ']' && is_utf8(bare);
+            return (bare.front() == '[' && bare.back() == ']' && is_utf8(bare)) || is_assignment(bare);
     return false;
 }
 
@@ -45,14 +51,16 @@ struct Words {
 
 std::string command(const std::string& words) { return "`" + program_name() + " " + words + "`"; }
 
-const Words& words_of(FileKind kind) {
-    static const Words words[] = {
-        {"a scenario", command("run") + " and " + command("show") + " read it"},
-        {"a results file", command("report") + " reads it"},
+Words words_of(FileKind kind, const std::string& path) {
+    const std::string file = shell_word(path);
+    const Words words[] = {
+        {"a scenario", command("run " + file) + " runs it"},
+        {"a results file", command("report " + file) + " reads it"},
         {"the trajectory file of a replay", "`python -m credence.pictures` and whatever opens HDF5 read it"},
-        {"a record", command("judge") + " reads it"},
-        {"a noise record", command("replay SCENARIO.ini --noise") + " reads it"},
-        {"the journal of a run", command("watch") + " follows it, and " + command("run --resume") + " resumes it"},
+        {"a record", command("judge " + file) + " reads it"},
+        {"a noise record", command("replay SCENARIO.ini --noise " + file) + " reads it"},
+        {"the journal of a run",
+         command("watch " + file) + " follows it, and " + command("run --resume") + " resumes it"},
     };
     return words[static_cast<std::size_t>(kind)];
 }
@@ -75,8 +83,9 @@ FileKind kind_of(const std::string& path) {
 void check_kind(const std::string& path, const std::vector<FileKind>& accepted) {
     const FileKind kind = kind_of(path);
     if (kind == FileKind::unknown || std::count(accepted.begin(), accepted.end(), kind) > 0) return;
-    throw InputError("cannot read " + path + " (it is " + words_of(kind).name + ", not " +
-                     words_of(accepted.front()).name + "). " + words_of(kind).advice + ".");
+    const Words words = words_of(kind, path);
+    throw InputError("cannot read " + path + " (it is " + words.name + ", not " +
+                     words_of(accepted.front(), path).name + "). " + words.advice + ".");
 }
 
 }  // namespace credence::cli

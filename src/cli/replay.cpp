@@ -23,15 +23,15 @@ namespace credence::cli {
 const Command& replay_command() {
     static const Command command{
         "replay",
-        "FILE.h5 --scenario NAME --arm ARM --trial I | SCENARIO.ini --noise RECORD.h5",
+        "FILE.h5 [--scenario NAME] [--arm ARM] --trial I | SCENARIO.ini --noise RECORD.h5",
         "run one trial again, pose by pose: from a results file, or on recorded noise",
         "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); "
         "a\n"
         "file that keeps aggregates has none to check it against.\n"
         "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2],\n"
         "standardised.\n",
-        {{"scenario", "NAME", "scenario of the results file"},
-         {"arm", "ARM", "arm of the results file, such as greedy.ekf; greedy alone where that is one arm"},
+        {{"scenario", "NAME", "scenario of the results file, where it has several"},
+         {"arm", "ARM", "arm, where there are several, such as greedy.ekf; greedy alone where that is one arm"},
          {"trial", "I", "trial of the results file, from 0"},
          {"noise", "RECORD.h5", "recorded noise for SCENARIO.ini"},
          set_option(),
@@ -55,29 +55,29 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
     return replay_record(scenario, read_noise_record(record_path), record_path);
 }
 
-std::string needed(const Parsed& parsed, const std::string& option) {
-    const std::optional<std::string> value = parsed.text(option);
-    if (!value)
-        throw InputError("missing --" + option +
-                         ". Give FILE.h5 --scenario NAME --arm ARM --trial I, or SCENARIO.ini --noise RECORD.h5.");
-    return *value;
+/// What --scenario or --arm gives, or the only one that there is.
+std::string given_or_only(const Parsed& parsed, const std::string& option, const std::vector<std::string>& names) {
+    if (const std::optional<std::string> value = parsed.text(option)) return *value;
+    if (names.size() == 1) return names.front();
+    throw InputError("missing --" + option + ". It is one of " + joined(names) + ".");
 }
 
-const ScenarioResults& find_scenario(const Study& study, const std::string& name) {
+const ScenarioResults& find_scenario(const Study& study, const Parsed& parsed) {
     std::vector<std::string> names;
-    for (const ScenarioResults& results : study.scenarios) {
+    for (const ScenarioResults& results : study.scenarios) names.push_back(results.scenario.name);
+    const std::string name = given_or_only(parsed, "scenario", names);
+    for (const ScenarioResults& results : study.scenarios)
         if (results.scenario.name == name) return results;
-        names.push_back(results.scenario.name);
-    }
     throw invalid_value("--scenario", name, "not in the file", "It has " + joined(names));
 }
 
 /// The index of the arm that a name denotes: its own name, or that of the only arm of a controller.
-std::size_t find_arm(const ScenarioResults& results, const std::string& name) {
-    const std::vector<const ArmResults*> meant = arms_meant(results, name);
-    if (meant.size() == 1) return static_cast<std::size_t>(meant.front() - results.arms.data());
+std::size_t find_arm(const ScenarioResults& results, const Parsed& parsed) {
     std::vector<std::string> names;
     for (const ArmResults& arm : results.arms) names.push_back(arm.name);
+    const std::string name = given_or_only(parsed, "arm", names);
+    const std::vector<const ArmResults*> meant = arms_meant(results, name);
+    if (meant.size() == 1) return static_cast<std::size_t>(meant.front() - results.arms.data());
     throw invalid_value("--arm", name, meant.empty() ? "not in the scenario" : "several arms have that controller",
                         "It has " + joined(names));
 }
@@ -104,11 +104,11 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     if (parsed.has("set"))
         throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
     check_kind(parsed.arguments.front(), {FileKind::results});
-    const std::string scenario_name = needed(parsed, "scenario"), arm = needed(parsed, "arm");
-    needed(parsed, "trial");
+    if (!parsed.has("trial"))
+        throw InputError("missing --trial. Give FILE.h5 --trial I, or SCENARIO.ini --noise RECORD.h5.");
     const Study study = read_results(parsed.arguments.front(), 0).study;
-    const ScenarioResults& results = find_scenario(study, scenario_name);
-    const std::size_t a = find_arm(results, arm);
+    const ScenarioResults& results = find_scenario(study, parsed);
+    const std::size_t a = find_arm(results, parsed);
     const std::int64_t trial = parsed.integer("trial", 0, 0, study.trials - 1), row = row_of(results, trial);
     Trajectory trajectory = replay_trial(results.scenario, a, study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {

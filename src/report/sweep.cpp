@@ -62,9 +62,23 @@ std::set<std::string> SweptReport::names_of_points(const Grid& grid) const {
     return names;
 }
 
+namespace {
+
+/// These names, and behind them the columns that neither every world nor one of credence's has: a user's own.
+template <class Columns>
+std::vector<std::string> and_own(std::vector<std::string> names, const Columns& columns) {
+    static const std::set<std::string> usual{"trace_P",    "unseen",       "pose_error", "squared_error", "nees_ratio",
+                                             "nis_ratio", "mean_trace_P", "log_score",  "path_length"};
+    for (const auto& column : columns)
+        if (!usual.contains(column.name)) names.push_back(column.name);
+    return names;
+}
+
+}  // namespace
+
 std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
     std::vector<SweptColumn> columns;
-    for (const char* name : {"nees_ratio", "nis_ratio", "trace_P", "log_score"})
+    for (const std::string& name : and_own({"nees_ratio", "nis_ratio", "trace_P", "log_score"}, arm.columns))
         for (const ColumnReport& column : arm.columns)
             if (column.name == name) columns.push_back({column.name, column.unit, column.summary});
     return columns;
@@ -72,7 +86,8 @@ std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
 
 std::vector<SweptColumn> swept_columns(const Comparison& pair) {
     std::vector<SweptColumn> columns;
-    for (const char* name : {"trace_P", "unseen", "pose_error", "log_score"})
+    for (const std::string& name :
+         and_own({"trace_P", "unseen", "pose_error", "squared_error", "log_score"}, pair.columns))
         for (const ComparedColumn& column : pair.columns)
             if (column.name == name) columns.push_back({column.name, column.unit, column.paired.difference});
     return columns;

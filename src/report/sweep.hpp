@@ -54,7 +54,8 @@ struct SweptColumn {
     Summary summary;
 };
 
-/// The quantities that tables and curves show of an arm, in their order: NEES, NIS and trace(P), as far as it has them.
+/// The quantities that tables and curves show of an arm, in their order: NEES, NIS, trace(P), log score and a
+/// user's own columns, as far as it has them.
 std::vector<SweptColumn> swept_columns(const ArmReport& arm);
 /// Those of a pair: the gain by planning.
 std::vector<SweptColumn> swept_columns(const Comparison& pair);

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "report/format.hpp"
+#include "report/sweep.hpp"
 #include "report/words.hpp"
 #include "verdict/consistency_parts.hpp"
 
@@ -29,6 +30,25 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
     if (shown > 0 && failed > static_cast<std::int64_t>(shown))
         lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
+}
+
+/// The failed and lost trials at the points of sweeps, whose tables count them, in one line.
+void add_swept_failures(const Report& report, const std::set<std::string>& swept, std::vector<std::string>& lines) {
+    const auto share = [](const ArmReport& arm) {
+        return static_cast<double>(arm.failed_trials()) / static_cast<double>(arm.trials);
+    };
+    const ArmReport* worst = nullptr;
+    for (const ArmReport& arm : report.arms)
+        if (swept.contains(arm.scenario) && arm.failed_trials() > 0 && (!worst || share(arm) > share(*worst)))
+            worst = &arm;
+    if (worst == nullptr) return;
+    const bool many = too_many_failed(worst->failed_trials(), worst->trials, report.limits.failed);
+    lines.push_back((many ? "WARNING: trials failed or are lost at points of a sweep, most, "
+                          : "note: trials failed or are lost at points of a sweep, most, ") +
+                    std::to_string(worst->failed_trials()) + " of " + std::to_string(worst->trials) + ", of " +
+                    worst->scenario + "/" + worst->arm +
+                    ". The tables by point count them; failed ones are left out of the numbers, lost ones of the "
+                    "verdict.");
 }
 
 /// What becomes of lost trials, and which they are.
@@ -90,7 +110,10 @@ std::vector<std::string> failure_lines(const std::string& arm, const FailureCoun
 
 std::vector<std::string> warnings_of(const Report& report) {
     std::vector<std::string> lines;
+    const std::set<std::string> swept = swept_scenarios(report);
+    add_swept_failures(report, swept, lines);
     for (const ArmReport& arm : report.arms) {
+        if (swept.contains(arm.scenario)) continue;
         const FailureCounts counts{arm.trials, arm.failed, arm.lost};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
                                         {"are left out of its numbers", lost_text(arm.evidence)}),

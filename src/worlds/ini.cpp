@@ -55,9 +55,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
 std::vector<Assignment> read_lines(const std::string& text, const std::string& origin) {
     std::vector<Assignment> all;
     std::map<std::string, int> lines;
-    const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors begin every text with it
-    std::istringstream stream =
-        stream_of(text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text);
+    std::istringstream stream = stream_of(without_mark(text));
     std::string line, section;
     for (int number = 1; std::getline(stream, line); ++number)
         for (Assignment& one : read_line(line, origin, number, section)) {
@@ -139,6 +137,8 @@ std::string text_of_file(const std::string& path) {
     try {
         std::string text = start_of_file(path, largest_file + 1);
         if (text.size() > largest_file) throw refuse("it is larger than 1 MiB", "Give an INI file");
+        if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || text.find('\0') != std::string::npos)
+            throw refuse("it is no text in UTF-8 but perhaps in UTF-16", "Save it as UTF-8");
         return text;
     } catch (const Unreadable& why) {
         if (why.is_missing()) throw refuse("there is no such file", "Check the path");

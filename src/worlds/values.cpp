@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace credence {
 
@@ -34,12 +35,20 @@ int parse_feature_index(const std::string& value, const std::string& text) {
     return static_cast<int>(*index);
 }
 
+/// The refusal of a text that is no number.
+InputError no_number(const std::string& name, const std::string& value, const std::string& kind,
+                     const std::string& range) {
+    if (value.find(',') == std::string::npos) return invalid_value(name, value, "not a " + kind, "It " + range);
+    return invalid_value(name, value, "it has a comma, and one number is wanted",
+                         "Write decimals with a point, several values as --sweep " + name + "=" + value);
+}
+
 /// A list of names of an enumeration, without repeats.
 template <class Enum>
 std::vector<Enum> parse_names(const std::string& name, const std::string& value,
                               const std::vector<std::string>& names) {
     std::vector<Enum> values;
-    for (const std::string& part : split_list(value)) {
+    for (const std::string& part : list_parts(name, value)) {
         const Enum one = static_cast<Enum>(parse_choice(name, part, names));
         if (std::find(values.begin(), values.end(), one) != values.end())
             throw invalid_value(name, value, part + " is given twice", "Name each once");
@@ -51,9 +60,19 @@ std::vector<Enum> parse_names(const std::string& name, const std::string& value,
 
 }  // namespace
 
+std::vector<std::string> list_parts(const std::string& name, const std::string& value) {
+    std::vector<std::string> parts = split_list(value), words;
+    for (const std::string& part : parts)
+        for (const std::string& word : split_list(part, ' '))
+            if (!word.empty()) words.push_back(word);
+    if (words.size() > parts.size())
+        throw invalid_value(name, value, "blanks part what commas should", "Write " + joined(words));
+    return parts;
+}
+
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range) {
     const std::optional<double> number = to_number(value);
-    if (!number) throw invalid_value(name, value, "not a number", "It " + range_text(range));
+    if (!number) throw no_number(name, value, "number", range_text(range));
     if (!inside(*number, range)) throw invalid_value(name, value, range_text(range), "Give a number in that range");
     return *number;
 }
@@ -63,7 +82,7 @@ std::int64_t parse_integer(const std::string& name, const std::string& value, st
     const std::string bounds = low == high
                                    ? "must be " + std::to_string(low)
                                    : "must be at least " + std::to_string(low) + " and at most " + std::to_string(high);
-    if (!number) throw invalid_value(name, value, "not a whole number", "It " + bounds);
+    if (!number) throw no_number(name, value, "whole number", bounds);
     if (*number < low || *number > high) throw invalid_value(name, value, bounds, "Give a number in that range");
     return *number;
 }
@@ -105,7 +124,7 @@ EdgeSettings parse_graph(const std::string& value) {
     EdgeSettings edges{EdgeGraph::list, {}};
     for (const std::string& pair : split_list(value)) {
         const std::size_t dash = pair.find('-');
-        if (dash == std::string::npos)
+        if (dash == std::string::npos || pair.find('-', dash + 1) != std::string::npos)
             throw invalid_value("edges.graph", value, "'" + pair + "' is not a pair",
                                 "Give all, chain, none or pairs such as `0-1, 1-2`");
         const Edge edge{parse_feature_index(value, trimmed(pair.substr(0, dash))),
@@ -142,7 +161,7 @@ std::optional<std::vector<double>> parse_turns(const std::string& value) {
     if (value == "default") return std::nullopt;
     if (value == "none") return std::vector<double>{};
     std::vector<double> turns;
-    for (const std::string& part : split_list(value))
+    for (const std::string& part : list_parts("planner.turns", value))
         turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
     if (turns.empty() || turns.size() > 100)
         throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns",
@@ -214,27 +233,68 @@ std::string is_unit(const std::string& value) {
 }
 
 void refuse_again(const InputError& refusal, const std::string& value, const std::vector<std::string>& choices) {
-    const auto is_choice = [&](const std::string& word) { return std::ranges::find(choices, word) != choices.end(); };
+    const auto told = [&](const std::string& word) -> std::string {
+        static const std::set<std::string> other_filters{"ukf", "ckf", "enkf", "eskf", "msckf", "imm", "pf"};
+        const bool estimator = refusal.key() == "arms.estimators";
+        if (std::ranges::count(choices, word) > 0 || word.find(' ') != std::string::npos) return {};
+        return (estimator && other_filters.contains(word) ? "" : did_you_mean(word, choices)) +
+               (estimator ? "docs/own-filter.md says how to run a filter of your own. " : "");
+    };
     std::string message = refusal.what();
     const std::string end_of_reason = "). ";
     const std::size_t end = message.rfind(end_of_reason);
     for (const std::string& word : split_list(value))
-        if (const std::string nearest = is_choice(word) ? "" : did_you_mean(word, choices); !nearest.empty()) {
-            if (end != std::string::npos) message.insert(end + end_of_reason.size(), nearest);
+        if (const std::string remedy = told(word); !remedy.empty()) {
+            if (end != std::string::npos) message.insert(end + end_of_reason.size(), remedy);
             break;
         }
     throw InputError(message, refusal.key());
 }
 
+namespace {
+
+/// The known keys of the noise that a key names in other words of the field: `noise.measurement`, `R`, `sensor.std`.
+std::vector<std::string> synonyms(std::string key, const std::vector<std::string>& known) {
+    using Words = std::set<std::string>;
+    static const Words of_noise{"noise", "sigma", "std", "stddev", "sd", "variance", "cov", "covariance", "r", "q"};
+    static const std::pair<Words, std::vector<std::string>> all[] = {
+        {{"measurement", "measurements", "observation", "sensor", "range", "r"}, {"sensor.sigma"}},
+        {{"process", "motion", "model", "system", "dynamics", "q"}, {"noise.heading", "noise.odometry", "noise.walk"}},
+        {{"initial", "prior", "start"}, {"noise.initial_heading", "noise.initial_position"}}};
+    for (char& c : key) c = c == '.' || c == '_' || c == '-' ? ' ' : static_cast<char>(c | 0x20);  // in small letters
+    const std::vector<std::string> words = split_list(key, ' ');
+    for (auto [named, meant] : all) {
+        const auto count_in = [&](const Words& some) {
+            return std::ranges::count_if(words, [&](const std::string& word) { return some.contains(word); });
+        };
+        const auto of_it = count_in(named), noise = count_in(of_noise);
+        named.insert(of_noise.begin(), of_noise.end());
+        std::erase_if(meant, [&](const std::string& one) { return std::ranges::count(known, one) == 0; });
+        if (of_it > 0 && noise > 0 && count_in(named) == std::ssize(words)) return meant;
+    }
+    return {};
+}
+
+/// The known keys that an unknown one may mean. One of the truth never means what the filter believes of it.
+std::vector<std::string> keys_meant(const std::string& key, std::vector<std::string> known) {
+    if (closest(key.substr(0, key.find('.')), {"filter"}).empty()) {
+        if (std::vector<std::string> there = synonyms(key, known); !there.empty()) return there;
+        std::erase_if(known, [](const std::string& one) { return one.starts_with("filter."); });
+    }
+    return split_list(closest(key, known));
+}
+
+}  // namespace
+
 void refuse_unknown_key(const std::string& key, const std::vector<std::string>& known) {
     constexpr std::size_t a_line = 12;
     const std::string whole = key.substr(key.find('.') + 1);  // of a key that stands in a section with its section
     const bool sectioned_twice = std::ranges::find(known, whole) != known.end();
-    const std::string meant = sectioned_twice ? whole : closest(key, known);
-    const std::size_t dot = meant.find('.');
+    const std::vector<std::string> meant = keys_meant(key, known);
+    const std::size_t dot = whole.find('.');
     throw InputError("unknown key " + printable(key) + ". " +
-                         (sectioned_twice ? "Under [" + meant.substr(0, dot) + "] write " + meant.substr(dot + 1) + "."
-                          : !meant.empty()        ? "Did you mean " + meant + "?"
+                         (sectioned_twice ? "Under [" + whole.substr(0, dot) + "] write " + whole.substr(dot + 1) + "."
+                          : !meant.empty()        ? "Did you mean " + joined(meant, " or ") + "?"
                           : known.size() > a_line ? "`" + program_name() + " show` prints every key."
                                                    : "The keys are " + joined(known) + "."),
                      key);

@@ -27,6 +27,8 @@ inline ValueRange between(double low, double high) { return {low, high, true, fa
 inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
 inline const std::string above_least = "above 1e-100";
 
+/// The parts of a list between commas. Throws InputError where blanks stand for commas.
+std::vector<std::string> list_parts(const std::string& name, const std::string& value);
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);

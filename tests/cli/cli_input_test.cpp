@@ -260,7 +260,7 @@ TEST_CASE("cli: a program of another name says its own in messages, help, comple
     const auto own = [&](const std::string& words) { return here.shell("./tracker " + words); };
     here.shell("ln -s " CREDENCE_PROGRAM " tracker");
     check_refused(own("report missing.h5"), "tracker report: missing.h5");
-    check_refused(own("report small.ini"), "`tracker run` and `tracker show` read it");
+    check_refused(own("report small.ini"), "not a results file). `tracker run small.ini` runs it.");
     check_refused(own("reprot"), "tracker reprot: unknown command");
     check_refused(own("run --zzzzz"), "`tracker run --help` lists them");
     check_refused(own("watch missing.h5"), "begin with `tracker run SCENARIO.ini");
@@ -297,8 +297,8 @@ TEST_CASE("cli: a file of another kind is refused with the command that reads it
                                                                  {"small.h5", "results file"},
                                                                  {"record.h5", "record"},
                                                                  {"trace.h5", "trajectory file of a replay"}};
-    const std::vector<std::string> readers{"`credence run` and `credence show` read it", "`credence report` reads it",
-                                           "`credence judge` reads it", "python -m credence.pictures"};
+    const std::vector<std::string> readers{"`credence run small.ini` runs it", "`credence report small.h5` reads it",
+                                           "`credence judge record.h5` reads it", "python -m credence.pictures"};
     const auto check = [&](const std::string& command, const std::string& own) {
         for (std::size_t k = 0; k < kinds.size(); ++k) {
             // It takes both.
@@ -313,8 +313,70 @@ TEST_CASE("cli: a file of another kind is refused with the command that reads it
         else check(command, "results file");
     for (const std::string& command : commands_of_scenarios) check(command, "scenario");
     check_refused(here.credence("replay small.ini --noise record.h5"), "it is a record, not a noise record");
+    here.write("bare.ini", "# no section\nscenario.poses = 3\n");
+    check_refused(here.credence("judge bare.ini"), "a scenario, not a record). `credence run bare.ini` runs it.");
     here.write("small.h5.journal", "credence-journal");
-    check_refused(here.credence("report small.h5.journal"), "`credence watch` follows it");
+    check_refused(here.credence("report small.h5.journal"), "`credence watch small.h5.journal` follows it");
+}
+
+TEST_CASE("cli: a scenario may begin with a byte order mark, and one in UTF-16 is told to be UTF-8") {
+    const Workplace here;
+    here.write("marked.ini", "\xEF\xBB\xBF" + small_world);
+    CHECK(here.credence("show marked.ini").exit_code == 0);
+    check_refused(here.credence("report marked.ini"), "`credence run marked.ini` runs it");
+    for (const std::string code : {"UTF-16", "UTF-16LE", "UTF-16BE", "UTF-32"}) {
+        CAPTURE(code);
+        REQUIRE(here.shell("iconv -f UTF-8 -t " + code + " marked.ini > wide.ini").exit_code == 0);
+        check_refused(here.credence("run wide.ini"),
+                      "scenario wide.ini (it is no text in UTF-8 but perhaps in UTF-16). Save it as UTF-8.");
+    }
+}
+
+TEST_CASE("cli: the suffix of -o's file chooses the format, unless --format does") {
+    const Workplace here;
+    add_results(here);
+    write_plain_record(here.path("record.h5"));
+    for (const std::string command : {"report small.h5", "judge record.h5", "compare small.h5"})
+        for (const std::string format : {"html", "json", "csv"}) {
+            CAPTURE(command, format);
+            REQUIRE(here.credence(command + " -o x." + format).exit_code == 0);
+            CHECK(here.read("x." + format) == here.credence(command + " --format " + format).out);
+            REQUIRE(here.credence(command + " --format text --overwrite -o x." + format).exit_code == 0);
+            CHECK(here.read("x." + format) == here.credence(command).out);
+            here.shell("rm x." + format);
+        }
+    for (const std::string command : {"run small.ini", "merge small.h5", "replay small.h5 --trial 0 --arm fixed"})
+        for (const std::string suffix : {"html", "json", "csv", "txt"})
+            check_refused(here.credence(command + " -o x." + suffix),
+                          "invalid -o=x." + suffix + " (what is written there is HDF5). Give FILE.h5; ");
+    CHECK(here.names() == std::vector<std::string>{"record.h5", "small.h5", "small.ini"});
+}
+
+TEST_CASE("cli: replay takes the only scenario and the only arm, and names them where there are several") {
+    const Workplace here;
+    here.write("small.ini", small_world);
+    REQUIRE(here.credence("run small.ini --trials 20 --quiet --set arms.controllers=fixed -o one.h5").exit_code == 0);
+    CHECK(here.credence("replay one.h5 --trial 3").out ==
+          here.credence("replay one.h5 --scenario small --arm fixed.ekf --trial 3").out);
+    check_refused(here.credence("replay one.h5"), "missing --trial. Give FILE.h5 --trial I, or");
+    here.write("other.ini", "[scenario]\nname = other\nposes = 3\n");
+    REQUIRE(here.credence("run small.ini other.ini --trials 20 --quiet -o two.h5").exit_code == 0);
+    check_refused(here.credence("replay two.h5 --trial 3"), "missing --scenario. It is one of small, other.");
+    check_refused(here.credence("replay two.h5 --trial 3 --scenario small"),
+                  "missing --arm. It is one of fixed.ekf, greedy.ekf.");
+}
+
+TEST_CASE("cli: a run that asks for fewer trials than there are says so, and keeps them") {
+    const Workplace here;
+    add_results(here);
+    const std::string before = here.read("small.h5");
+    const Outcome fewer = here.credence("run small.ini --resume --trials 10 --quiet -o small.h5");
+    CHECK(fewer.exit_code == 0);
+    CHECK(fewer.err ==
+          "credence run: note: small.h5 has 20 trials of each scenario already, more than --trials 10.\n");
+    CHECK(here.read("small.h5") == before);
+    CHECK(here.credence("run small.ini --resume --trials 20 --quiet -o small.h5").err.empty());
+    CHECK(here.credence("run small.ini --resume --quiet -o small.h5").err.empty());
 }
 
 TEST_CASE("cli: lines of help, reports and progress have less than 120 columns") {

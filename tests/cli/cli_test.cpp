@@ -202,7 +202,7 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     check_refused(here.credence("report foreign.h5 --margin 0"), "invalid --margin=0");
     check_refused(here.credence("report foreign.h5 --format xml"), "invalid --format=xml");
     check_refused(here.credence("replay good.ini --noise foreign.h5"), "foreign.h5");
-    check_refused(here.credence("replay foreign.h5"), "missing --scenario");
+    check_refused(here.credence("replay foreign.h5"), "missing --trial");
     check_refused(here.credence("show good.ini good.ini"), "show takes one scenario");
     CHECK(here.names() == before);
 }

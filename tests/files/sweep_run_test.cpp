@@ -11,6 +11,7 @@
 #include "files/hdf5/read.hpp"
 #include "report/format.hpp"
 #include "report/sweep.hpp"
+#include "report/words.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -318,6 +319,28 @@ TEST_CASE("sweep: the report has the grid as table, JSON, CSV and curves") {
             "<th scope=\"row\">ranged</th>"));
     CHECK_THAT(page, Contains("<figcaption>sensor.noise=ranged</figcaption>"));
     CHECK_THAT(report_html(make_report(run({scenarios.back()}, 40), 0.05), {"r.h5", {}, "test"}), !Contains("Sweep"));
+}
+
+TEST_CASE("sweep: failed trials of all points are one note, and a page folds what is more than five notes") {
+    const TemporaryFolder folder;
+    std::vector<Scenario> scenarios = swept(folder, {"noise.heading=0.3,0.6,1,1.5"}, world);
+    const Report grid = make_report(run(scenarios), 0.05);
+    std::int64_t failed = 0;
+    for (const ArmReport& arm : grid.arms) failed += arm.failed_trials() > 0;
+    REQUIRE(failed > 3);
+    const std::vector<std::string> notes = warnings_of(grid);
+    REQUIRE(notes.size() == 1);
+    CHECK_THAT(notes.front(), Contains("WARNING: trials failed or are lost at points of a sweep, most, ") &&
+                                  Contains(" of 300, of base_heading-"));
+    CHECK_THAT(report_html(grid, {"r.h5", {}, "test"}), !Contains(" more note"));
+
+    for (Scenario& scenario : scenarios) scenario.sweep = {};
+    const Report alone = make_report(run(scenarios), 0.05);
+    const std::size_t count = warnings_of(alone).size();
+    REQUIRE(count > 5);
+    const std::string page = report_html(alone, {"r.h5", {}, "test"});
+    REQUIRE_THAT(page, Contains("<summary>" + std::to_string(count - 5) + " more note"));
+    CHECK(page.find("are lost (NEES/dim") < page.find("<details"));
 }
 
 }  // namespace credence::test::sweep_run_test

@@ -46,6 +46,7 @@ TEST_CASE("keys: a world's lists and choices are read, shown, and refused by nam
     refused("beacons.x", "1, 11",
             "invalid beacons.x=11 (must be at least -10 and at most 10). Give a number in that range.");
     refused("beacons.x", "1,,2", "invalid beacons.x= (not a number). It must be at least -10 and at most 10.");
+    refused("beacons.x", "1 2", "invalid beacons.x=1 2 (blanks part what commas should). Write 1, 2.");
     refused("beacons.x", "", "invalid beacons.x= (it is empty). Give at least one number.");
     refused("filter.chart", "polar", "invalid filter.chart=polar (not one of its choices). Give one of own, plane.");
 }

@@ -10,6 +10,8 @@
 #include <credence/evidence.hpp>
 #include <credence/ini.hpp>
 #include "files/merge/merge.hpp"
+#include "report/format.hpp"
+#include "report/sweep.hpp"
 #include <credence/report.hpp>
 #include <credence/detail/store.hpp>
 #include "files/stored_run.hpp"
@@ -17,6 +19,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 namespace credence::test::own_world_test {
 
@@ -226,6 +229,22 @@ TEST_CASE("own world: its keys are swept like those of any other") {
                       Catch::Contains("--sweep target.period: invalid target.period=0"));
     CHECK_THROWS_WITH(read_scenario_text(text.substr(0, text.size() - 4) + "0.7\n", "test", "x"),
                       Catch::Contains("the scenario has sensor.sigma=0.5"));
+}
+
+TEST_CASE("own world: the tables and curves of a sweep have its own columns") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "own.ini") << "[scenario]\nworld = tracker\nposes = 10\n";
+    Study study = new_study(read_grid(folder / "own.ini", {}, parse_grid({"sensor.detection=0.2,0.9"})), 1);
+    RunOptions options;
+    options.trials = 200;
+    run_study(study, options);
+    const Report report = make_report(study, 0.05);
+    for (const ArmReport& arm : report.arms) REQUIRE(swept_columns(arm).back().name == "measurements");
+    const std::string text = report_text(report), page = report_html(report, {"r.h5", {}, "test"});
+    CHECK_THAT(text, Catch::Contains(" measurements "));
+    CHECK_THAT(page, Catch::Contains("<th scope=\"col\">measurements</th>"));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) CHECK(characters(line) < 120);
 }
 
 }  // namespace credence::test::own_world_test

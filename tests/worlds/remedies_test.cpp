@@ -3,6 +3,7 @@
 #include "catch.hpp"
 #include "support.hpp"
 
+#include <credence/detail/worlds.hpp>
 #include <credence/ini.hpp>
 
 namespace credence::test::remedies_test {
@@ -144,7 +145,49 @@ TEST_CASE("scenario: the nearest word is named where a value is not one of a key
     told("planner.turns", "nne", "none");
     told("planner.speeds", "defualt", "default");
     told("noise.truncate", "nonne", "none");
+    told("arms.estimators", "EKF", "ekf");
     CHECK_THAT(read({{"features.path", "polygon"}}), Catch::EndsWith("Give one of straight, circle, static."));
+}
+
+TEST_CASE("scenario: another filter's name leads to the page on filters of one's own") {
+    const std::string own = "docs/own-filter.md says how to run a filter of your own. ";
+    CHECK_THAT(read({{"arms.estimators", "ukf"}}), Catch::Contains("of its choices). " + own + "Give one of ekf"));
+    CHECK_THAT(read({{"arms.estimators", "ekf, pf"}}), Catch::Contains("). " + own));
+    CHECK_THAT(read({{"arms.estimators", "efk"}}), Catch::Contains("Did you mean ekf? " + own));
+}
+
+TEST_CASE("scenario: other words of the field lead to the noise that they name, not to what the filter believes") {
+    const auto meant = [](const std::string& key, const Overrides& world = {}) {
+        const std::string said = read(world + Overrides{{key, "1"}}), begin = "Did you mean ";
+        const std::size_t at = said.find(begin);
+        return at == std::string::npos ? "" : said.substr(at + begin.size(), said.size() - at - begin.size() - 1);
+    };
+    for (const char* key : {"noise.measurement", "noise.sensor", "measurement.noise", "sensor.std", "noise.R", "R",
+                            "sensor.noise_sigma", "observation.covariance"})
+        CHECK((key + (" " + meant(key))) == key + std::string(" sensor.sigma"));
+    for (const char* key : {"noise.process", "process.noise", "noise.motion", "Q"})
+        CHECK((key + (" " + meant(key))) == key + std::string(" noise.heading or noise.odometry or noise.walk"));
+    CHECK(meant("noise.process", landmarks) == "noise.heading or noise.odometry");
+    CHECK(meant("noise.initial") == "noise.initial_heading or noise.initial_position");
+    CHECK(meant("filter.measurment") == "filter.measurement");
+    CHECK(meant("fliter.measurement") == "filter.measurement");
+    for (const DescribedKey& key : world_of({}).keys())
+        if (key.key.starts_with("filter."))
+            for (const std::string section : {"noise", "truth", "sensor", "model", "features"})
+                CHECK_THAT(read({{section + key.key.substr(key.key.find('.')), "1"}}), !Catch::Contains("filter."));
+}
+
+TEST_CASE("scenario: commas in a number and blanks in a list are told what to write") {
+    CHECK(read({{"noise.heading", "0,1"}}) ==
+          "--set noise.heading: invalid noise.heading=0,1 (it has a comma, and one number is wanted). Write decimals "
+          "with a point, several values as --sweep noise.heading=0,1.");
+    CHECK_THAT(read({{"scenario.poses", "1,000"}}), Catch::Contains("several values as --sweep scenario.poses=1,000."));
+    CHECK(read({{"arms.controllers", "fixed greedy"}}) ==
+          "--set arms.controllers: invalid arms.controllers=fixed greedy (blanks part what commas should). Write "
+          "fixed, greedy.");
+    CHECK_THAT(read({{"arms.estimators", "ekf iekf"}}), Catch::EndsWith("commas should). Write ekf, iekf."));
+    CHECK_THAT(read({{"planner.turns", "-0.1 0 0.1"}}), Catch::EndsWith("Write -0.1, 0, 0.1."));
+    CHECK_THAT(read({{"edges.graph", "0-1 1-2"}}), Catch::EndsWith("pairs such as `0-1, 1-2`."));
 }
 
 TEST_CASE("scenario: a key that stands in its section with its section is told how to be written there") {

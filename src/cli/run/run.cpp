@@ -10,8 +10,8 @@
 #include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <ctime>
 
 namespace credence::cli {
@@ -162,6 +162,10 @@ int run(const Parsed& parsed, const std::string& command_line) {
     if (parsed.has("dry-run")) return dry_run(request, stored.study());
     if (!parsed.has("force")) check_fit(request, stored.study());
 
+    const std::int64_t there = least_trials(stored.study());
+    if (request.trials_given && request.goals.empty() && there > request.options.trials)
+        say(program_name() + " run: note: " + printable(request.output) + " has " + std::to_string(there) +
+            " trials of each scenario already, more than --trials " + std::to_string(request.options.trials) + ".\n");
     const Work work = keep(stored, request, command_line);
     if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
     if (work.last_analysis && !work.last_analysis->met)

@@ -40,13 +40,20 @@ Html head(const std::string& title) {
 }
 
 Html intro(const Report& report, const PageOrigin& origin) {
-    Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
-                element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) +
-                "\n"_html + element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
-    Html warnings;
-    for (const std::string& warning : warnings_of(report)) warnings += element("li", escaped(warning));
-    if (!warnings.empty()) html += element("ul", warnings, "class=\"warnings\""_html) + "\n"_html;
-    return html;
+    const Html html = element("h1", "Can this filter's covariance be believed?"_html) + "\n"_html +
+                      element("p", escaped(origin.file + ": " + trials_text(report) + "."), "class=\"source\""_html) +
+                      "\n"_html + element("p", escaped(verdict_counts(report)), "class=\"lead\""_html) + "\n"_html;
+    const std::vector<std::string> warnings = warnings_of(report);
+    const std::size_t shown = std::min<std::size_t>(5, warnings.size());
+    const auto listed = [&](std::size_t from, std::size_t to) {
+        Html items;
+        for (; from < to; ++from) items += element("li", escaped(warnings[from]));
+        return items.empty() ? Html() : element("ul", items, "class=\"warnings\""_html) + "\n"_html;
+    };
+    const std::size_t more = warnings.size() - shown;
+    return html + listed(0, shown) +
+           folded(std::to_string(more) + (more == 1 ? " more note" : " more notes"), listed(shown, warnings.size()),
+                  InPrint::open);
 }
 
 /// The scenarios by themselves; the tables of a sweep lead to its points.

@@ -29,7 +29,7 @@ std::size_t own_choice(const std::string& key, const std::string& text, const st
 
 std::vector<double> own_reals(const std::string& key, const std::string& text, double low, double high) {
     std::vector<double> values;
-    for (const std::string& part : split_list(text)) values.push_back(own_real(key, part, low, high));
+    for (const std::string& part : list_parts(key, text)) values.push_back(own_real(key, part, low, high));
     if (values.empty()) throw invalid_value(key, text, "it is empty", "Give at least one number");
     return values;
 }
