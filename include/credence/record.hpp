@@ -75,7 +75,7 @@ struct RunCurves {
 };
 
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
-/// poses = steps + 1. Step k of the results is step k - 1 of the file. Differences to the results of a run:
+/// poses = steps + 1. Step k of the results is step (k - 1) every of the file. Differences to the results of a run:
 /// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and
 ///   `run_square_sum` of real series (but NIS) are of the trial's mean over its own steps times the number of steps in
 ///   the file;
@@ -87,6 +87,7 @@ struct RunCurves {
 ///   `cells` are empty, and `distribution_distance` is NaN where the values were too many.
 struct Record {
     ScenarioResults results;
+    int every = 1;  ///< which steps the results by step have: all up to 99,999, of longer runs some 10,000
     bool has_innovations = false;
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed

@@ -50,6 +50,7 @@ struct ArmReport {
     Consistency consistency;
     std::optional<FailureCause> cause{};  ///< none where no trial failed
     RecordGaps gaps{};                    ///< of a record
+    int every = 1;                        ///< of a record [Record::every]
     std::vector<RunCurves> curves{};      ///< of a record, by run where there are few
 
     bool not_run() const { return trials == 0; }

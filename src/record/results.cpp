@@ -114,11 +114,11 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
 }  // namespace
 
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
-                                     const std::string& path) {
+                                     const std::string& path, int kept_steps) {
     ScenarioResults results;
     results.scenario.name = scenario_name(path);
     results.scenario.title = "record " + printable(path);
-    results.scenario.poses = shape.steps + 1;
+    results.scenario.poses = kept_steps + 1;
     results.columns = record_columns(shape);
     results.all_series = all_series;
     results.trials = shape.trials;

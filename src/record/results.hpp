@@ -16,8 +16,9 @@ enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, l
 }
 inline constexpr std::size_t record_column_count = RecordColumn::status_pose + 1;
 
-/// Results with one arm: all totals 0, columns filled, details NaN; without distribution cells and distances.
+/// Results with one arm: all totals 0, columns filled, details NaN; without distribution cells and distances. By step
+/// they have `kept_steps`.
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
-                                     const std::string& path);
+                                     const std::string& path, int kept_steps);
 
 }  // namespace credence

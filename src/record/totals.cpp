@@ -21,10 +21,20 @@ constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: whe
 
 std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
 
+/// Totals take some 2.7 kB a step and group, as text as much again.
+std::size_t steps_between_kept(const RecordShape& shape) {
+    constexpr std::int64_t most_steps = 99'999, most = 1'000'000, few_steps = 10'000, few = 100'000;
+    const std::int64_t steps = shape.steps, groups = std::ssize(shape.groups);
+    if (steps <= most_steps && groups * steps <= most) return 1;
+    const std::int64_t kept = std::clamp<std::int64_t>(few / groups, 12, few_steps);
+    return size((steps + kept - 1) / kept);
+}
+
 }  // namespace
 
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, SegmentPlanner* planner)
     : shape_(shape),
+      every_(steps_between_kept(shape_)),
       lost_(lost),
       planner_(planner),
       all_series_(record_series(shape_)),
@@ -34,22 +44,24 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Lo
       gaps_(size(shape_.steps)),
       products_(size(lag_count(shape_.steps + 1)), size(shape_.m)),
       moments_(shape_.n, shape_.groups.size()) {
-    record_.results = empty_record_results(shape_, all_series_.list, path);
+    const std::int64_t kept = (shape.steps - 1) / static_cast<int>(every_) + 1;
+    record_.every = static_cast<int>(every_);
+    record_.results = empty_record_results(shape_, all_series_.list, path, static_cast<int>(kept));
     record_.has_innovations = shape.has_innovations();
     for (std::size_t g = 0; shape.has_innovations() && g <= shape.row_groups.size(); ++g)
         record_.largest_nis.push_back({g == 0 ? "all" : shape.row_groups[g - 1].name, 0, 0, 0, {}});
-    keeps_nees_ = shape.trials <= most_values / shape.steps;
-    keeps_cells_ = std::int64_t{shape.steps} * distribution_cells <= most_values && !keeps_nees_;
-    if (keeps_nees_) nees_.resize(size(shape.steps));
-    if (keeps_cells_) arm().totals.cells.resize(size(shape.steps) * distribution_cells);
+    keeps_nees_ = shape.trials <= most_values / kept;
+    keeps_cells_ = kept * distribution_cells <= most_values && !keeps_nees_;
+    if (keeps_nees_) nees_.resize(size(kept));
+    if (keeps_cells_) arm().totals.cells.resize(size(kept) * distribution_cells);
     for (const ComponentGroup& group : shape.groups)
         for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
     values_.resize(size(shape.steps) * all_series_.list.size());
-    roundings_.resize(size(shape.steps) * (1 + shape.groups.size()));
-    for (SeriesTotals& totals : arm().totals.series) totals.present.resize(size(shape.steps));
+    roundings_.resize(size(kept) * (1 + shape.groups.size()));
+    for (SeriesTotals& totals : arm().totals.series) totals.present.resize(size(kept));
     if (!shape.has_joint()) return;
     dimensions_.resize(size(shape.steps));
-    arm().totals.series.front().dimensions.resize(size(shape.steps));
+    arm().totals.series.front().dimensions.resize(size(kept));
     bounds_by_dimension_.resize(size(shape.n + 1) * coverage_level_count);
 }
 
@@ -123,7 +135,7 @@ void RecordTotals::set_dimension(std::size_t k) {
 /// What rounding may have done to each group's NEES at this step: the mean of many covariances may hide it.
 void RecordTotals::add_rounding(std::size_t k) {
     const std::vector<double>& bounds = judge_.rounding();
-    double* sums = &roundings_[k * (1 + bounds.size())];
+    double* sums = &roundings_[k / every_ * (1 + bounds.size())];
     ++sums[0];
     for (std::size_t b = 0; b < bounds.size(); ++b) sums[1 + b] += bounds[b];
 }
@@ -131,7 +143,7 @@ void RecordTotals::add_rounding(std::size_t k) {
 void RecordTotals::finish_rounding() {
     const std::size_t groups = shape_.groups.size();
     arm().totals.rounding.assign(groups, 0);
-    for (std::size_t k = 0; k < size(shape_.steps); ++k) {
+    for (std::size_t k = 0; k < kept_steps(); ++k) {
         const double* sums = &roundings_[k * (1 + groups)];
         for (std::size_t b = 0; sums[0] > 0 && b < groups; ++b)
             arm().totals.rounding[b] = std::max(arm().totals.rounding[b], sums[1 + b] / sums[0]);
@@ -151,12 +163,13 @@ void RecordTotals::note(const RecordStep& step, Status status, const std::string
 
 void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
     if (trial >= record_.results.detailed()) return;
-    const std::size_t at = size(trial) * size(shape_.steps) + k;
+    if (shape_.has_errors) moments_.add(&series(0, k), &series(all_series_.standardised_error, k), checked.P);
+    if (!is_kept(k)) return;
+    const std::size_t at = size(trial) * kept_steps() + k / every_;
     arm().nees[at] = !dimensions_.empty() && dimensions_[k] < shape_.n ? nan : series(0, k);
     for (Eigen::Index j = 0; j < checked.e.size(); ++j)
         arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
             checked.here.empty() || checked.here[static_cast<std::size_t>(j)] ? checked.e(j) : nan;
-    if (shape_.has_errors) moments_.add(&series(0, k), &series(all_series_.standardised_error, k), checked.P);
 }
 
 void RecordTotals::end_trial(std::int64_t trial) {
@@ -183,8 +196,8 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
         std::fill(first, first + static_cast<std::ptrdiff_t>(row), nan);
     };
-    forget(arm().nees, size(shape_.steps));
-    forget(arm().errors, size(shape_.steps) * size(shape_.n));
+    forget(arm().nees, kept_steps());
+    forget(arm().errors, kept_steps() * size(shape_.n));
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {
@@ -252,17 +265,19 @@ void RecordTotals::add_series(std::size_t f) {
     double run = 0, count = 0;
     for (const std::size_t k : present_) {
         const double value = series(f, k);
-        if (std::isnan(value)) continue;
+        if (std::isnan(value) || (of_innovations && !is_kept(k))) continue;
         run += value;
         ++count;
-        totals.sum[k].add(value);
-        if (!declared.integer) totals.square_sum[k].add(value * value);
+        if (!is_kept(k)) continue;
+        const std::size_t kept = k / every_;
+        totals.sum[kept].add(value);
+        if (!declared.integer) totals.square_sum[kept].add(value * value);
         if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value);
-        if (!totals.present.empty()) ++totals.present[k];
-        if (f == 0 && !dimensions_.empty()) totals.dimensions[k] += dimensions_[k];
+        if (!totals.present.empty()) ++totals.present[kept];
+        if (f == 0 && !dimensions_.empty()) totals.dimensions[kept] += dimensions_[k];
     }
     if (count == 0) return;
-    if (!of_innovations) run *= shape_.steps / count;
+    if (!of_innovations) run *= static_cast<double>(kept_steps()) / count;
     totals.run_sum->add(run);
     totals.run_square_sum.add(run * run);
     ++totals.runs;
@@ -271,7 +286,7 @@ void RecordTotals::add_series(std::size_t f) {
 void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
     const double* bound = bounds(f, k);
     for (std::size_t l = 0; l < coverage_level_count; ++l)
-        arm().totals.series[f].covered[k * coverage_level_count + l] += value < bound[l];
+        arm().totals.series[f].covered[k / every_ * coverage_level_count + l] += value < bound[l];
 }
 
 /// The bounds [levels] of a group's NEES at a step.
@@ -287,13 +302,15 @@ const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
 /// The values of `nees_` are their probabilities, so that those of states of any dimension are together.
 void RecordTotals::add_distribution() {
     for (const std::size_t k : present_) {
-        ++arm().totals.present[k];
+        if (!is_kept(k)) continue;
+        const std::size_t kept = k / every_;
+        ++arm().totals.present[kept];
         const double nees = nees_at(k);
         if (std::isnan(nees)) continue;
         const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
         if (keeps_cells_)
-            ++arm().totals.cells[k * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
-        if (keeps_nees_) nees_[k].push_back(1 - chi_square_p(nees, dimension));
+            ++arm().totals.cells[kept * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
+        if (keeps_nees_) nees_[kept].push_back(1 - chi_square_p(nees, dimension));
     }
 }
 
@@ -324,7 +341,7 @@ Record RecordTotals::finish() {
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");
-    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(size(shape_.steps), nan);
+    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(kept_steps(), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
         arm().totals.distribution_distance[k] = uniform_distance(std::move(nees_[k]));
     return std::move(record_);

@@ -56,12 +56,16 @@ private:
     void add_distribution();
     void keep_largest_nis();
     void set_dimension(std::size_t k);
+    /// Whether the results by step have the step, which is then their step `k / every_`.
+    bool is_kept(std::size_t k) const { return k % every_ == 0; }
+    std::size_t kept_steps() const { return static_cast<std::size_t>(record_.results.steps()); }
     void add_rounding(std::size_t k);
     void finish_rounding();
     double nees_at(std::size_t k);
     const double* bounds(std::size_t f, std::size_t k);
 
     RecordShape shape_;
+    std::size_t every_;                          ///< [Record::every]
     LostTrials lost_;
     SegmentPlanner* planner_;
     StateSeries all_series_;
@@ -72,9 +76,9 @@ private:
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
-    /// [steps, 1 + groups] trials with the step, sums over them of the bounds.
+    /// [kept steps, 1 + groups] trials with the step or one behind it that is not kept, sums over them of the bounds.
     std::vector<double> roundings_;
-    std::vector<std::vector<double>> nees_;      ///< of the whole state by step, all trials; for the exact distance
+    std::vector<std::vector<double>> nees_;      ///< [kept steps] of the whole state, all trials; for the distance
     std::vector<double> bounds_;                 ///< [groups, levels] NEES below them counts as covered
     /// [n + 1, levels] the same of a state of that dimension; 0: not known yet.
     std::vector<double> bounds_by_dimension_;

@@ -167,6 +167,12 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
             "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so few "
             "runs cannot show whether P is right about it.");
     }
+    arm.every = record.every;
+    if (arm.every > 1) {
+        const std::string every = std::to_string(arm.every);
+        report.not_judged.push_back("Figures by step are of one step in " + every +
+                                    ": their step k is step " + every + " (k - 1) + 1 of the record.");
+    }
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     hint_at_gate(record, arm.evidence, arm.consistency);

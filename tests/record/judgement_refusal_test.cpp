@@ -104,8 +104,8 @@ const std::vector<Damage> shape_damages{
     {"/innovation: is [3, 4, 0]: no rows", extents("innovation", {3, 4, 0}, "innovation_covariance", {3, 4, 0, 0})},
     {"/error: is [1, 1, 1001]: more than 1000 components. Write fewer",
      extents<float>("error", {1, 1, 1001}, "covariance", {1, 1, 1001, 1001})},
-    {"/error: is [1, 100000, 1]: more than 99999 steps",
-     extents<float>("error", {1, 100000, 1}, "covariance", {1, 100000, 1, 1})},
+    {"/error: is [1, 10000001, 1]: more than 10000000 steps",
+     extents<float>("error", {1, 10000001, 1}, "covariance", {1, 10000001, 1, 1})},
     {"/innovation: is [1, 1, 2001]: more than 2000 rows", [](auto& r) {
          extents("error", {1, 1, 2}, "covariance", {1, 1, 2, 2})(r);
          extents<float>("innovation", {1, 1, 2001}, "innovation_covariance", {1, 1, 2001, 2001})(r);

@@ -7,7 +7,8 @@
 
 namespace credence {
 
-inline constexpr std::uint64_t largest_record_state = 1000, largest_record_rows = 2000, largest_record_steps = 99999;
+inline constexpr std::uint64_t largest_record_state = 1000, largest_record_rows = 2000,
+                                     largest_record_steps = 10'000'000;
 
 /// A dataset's extents with its place in the file; or those that follow from another.
 struct PlacedExtents {

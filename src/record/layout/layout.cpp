@@ -7,6 +7,7 @@
 #include "record/layout/groups.hpp"
 #include "record/layout/parts.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace credence {
@@ -87,14 +88,15 @@ RecordLayout open_datasets(const RecordSource& source) {
     return layout;
 }
 
-/// The totals of a component group take some 2.7 kB a step: a small file could ask for more memory than there is.
+/// The series of a trial are in memory [RecordTotals]: a small file could ask for more than there is.
 void require_room(const RecordShape& shape) {
-    constexpr std::int64_t most = 1'000'000;
-    const auto groups = static_cast<std::int64_t>(shape.groups.size());
-    if (groups * shape.steps > most)
+    constexpr std::int64_t most = std::int64_t{1} << 28;
+    constexpr int least_steps = 3000;  // for whose series the totals of many groups have no room
+    if (std::ssize(record_series(shape).list) * std::max(shape.steps, least_steps) > most)
         throw RecordError("/",
-                          "has " + std::to_string(groups) + " component groups at " + std::to_string(shape.steps) +
-                              " steps, together more than " + std::to_string(most),
+                          "has " + std::to_string(shape.groups.size()) + " component groups and " +
+                              std::to_string(shape.n) + " components at " + std::to_string(shape.steps) +
+                              " steps, together more than " + std::to_string(most) + " numbers of each trial",
                           "Write fewer groups, or every tenth step");
 }
 

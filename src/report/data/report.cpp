@@ -128,6 +128,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     }
     const SegmentEvidence& segments = arm.evidence.segments;
     json["evidence"] = arm.evidence.units();
+    if (arm.every > 1) json["every"] = arm.every;
     if (segments.steps > 0)
         json["segments"] = {{"count", std::ssize(segments.run)},
                             {"steps", segments.steps},

@@ -66,7 +66,9 @@ Html provenance(const Report& report, const PageOrigin& origin) {
         add(table, "complete", report.complete ? "yes, all of them are there" : "no, trials are missing");
     } else if (!report.arms.empty()) {
         add(table, "trials", std::to_string(report.arms.front().trials));
-        add(table, "steps", std::to_string(report.arms.front().evidence.steps));
+        const ArmReport& arm = report.arms.front();
+        add(table, "steps", std::to_string(arm.evidence.steps) +
+                                (arm.every > 1 ? ", one in " + std::to_string(arm.every) : ""));
     }
     add(table, "margin", to_text(report.limits.margin));
     add(table, "share of trials that may fail", to_text(report.limits.failed));
