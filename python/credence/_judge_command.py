@@ -20,6 +20,13 @@ _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format
 _poses = ("manifold", "chart", "max_gap", "align", "time_offset", "planar")
 
 
+def _pairs(given: str) -> dict[str, str]:
+    parted = [word.rpartition("=") for word in given.split(",")]
+    if not all(name and unit for name, _, unit in parted) or len({name for name, _, _ in parted}) < len(parted):
+        raise argparse.ArgumentTypeError(f"{given} is no NAME=UNIT,… with each name once. Give heading=deg, for one")
+    return {name: unit for name, _, unit in parted}
+
+
 def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         prog="python -m credence judge",
@@ -39,6 +46,11 @@ def parser() -> argparse.ArgumentParser:
         "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
         help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t; "
         "of .npz and .mat: arrays, such as error=e covariance=P",
+    )  # fmt: skip
+    made.add_argument(
+        "--units", type=_pairs, default={}, metavar="NAME=UNIT,…",
+        help="of a table: of its columns, such as heading=deg,t=ms (rad, deg, mgon, arcsec, m, mm, cm, km, s, ms, us, "
+        "ns); of times in text files: time, truth_time",
     )  # fmt: skip
     made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
     made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
@@ -79,6 +91,8 @@ def _names(given: Sequence[str]) -> dict[str, list[str]]:
     for what, _, name in parted:
         if not what or not name:
             raise InputError(f"--names: {what} has no name (must be WHAT=NAME). Give one, such as error=e.")
+        if [one for one, _, _ in parted].count(what) > 1:
+            raise InputError(f"--names: {what} is given twice. Give its names once, parted by commas.")
     return {what: name.split(",") for what, _, name in parted}
 
 
@@ -96,13 +110,17 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     poses = {name: getattr(given, name) for name in _poses if getattr(given, name) is not None}
     if "planar" in poses:
         poses["planar"] = poses["planar"] == "yes"
-    used = {"text": {"truth", "times", "names", *_poses}, "bag": {"truth", "topic", "truth_topic", *_poses}}
+    used = {
+        "text": {"truth", "times", "names", "units", *_poses},
+        "bag": {"truth", "topic", "truth_topic", "units", *_poses},
+    }
     allowed = used.get(kind or "", {"rows"} if kind == "ulg" else {"names"})
-    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", *_poses):
-        if getattr(given, option) not in (None, []) and option not in allowed:
+    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
+        if getattr(given, option) not in (None, [], {}) and option not in allowed:
             raise InputError(f"--{option.replace('_', '-')}: says nothing about a log of this kind. Leave it out.")
     if kind == "bag":
-        return adapters.from_rosbag(given.log, given.truth, topic=given.topic, truth_topic=given.truth_topic, **poses)
+        topics = {"topic": given.topic, "truth_topic": given.truth_topic}
+        return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
     if kind != "text" and not isinstance(single, str):
         raise InputError(f"a verdict is on one .{kind} at a time, which has all runs in it. Give one.")
     if kind == "ulg":
@@ -111,14 +129,18 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         read = adapters.from_mat if kind == "mat" else adapters.from_npz
         return read(single, {what: name[0] for what, name in names.items()})
     if names:
-        return _of_table(single, given.truth, names, given.max_gap)
+        return _of_table(single, given.truth, names, given.units, given.max_gap)
     if given.truth is None:
         raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
-    return trajectories.from_files(given.log, given.truth, given.times, **poses)
+    return trajectories.from_files(given.log, given.truth, given.times, given.units, **poses)
 
 
 def _of_table(
-    log: Any, truth: Sequence[str] | None, names: dict[str, list[str]], max_gap: float | None
+    log: Any,
+    truth: Sequence[str] | None,
+    names: dict[str, list[str]],
+    units: Mapping[str, str],
+    max_gap: float | None,
 ) -> dict[str, Any]:
     from credence.adapters import from_table
 
@@ -132,7 +154,7 @@ def _of_table(
     options: dict[str, Any] = {what: name[0] if what in ("time", "runs") else name for what, name in names.items()}
     if max_gap is not None:
         options["max_gap"] = max_gap
-    return from_table(log, truth[0] if truth else None, **options)
+    return from_table(log, truth[0] if truth else None, units=units, **options)
 
 
 def write_record(path: str, arguments: Mapping[str, Any]) -> None:
@@ -163,6 +185,7 @@ def write_record(path: str, arguments: Mapping[str, Any]) -> None:
 def _said(message: str) -> str:
     """A message of the package with its arguments as options."""
     message = re.sub(r"\((align|topic|times)\)", r"(--\1)", message)
+    message = re.sub(r"\bunits (?=\S+=)", "--units ", message)
     return re.sub(
         r"\b(?:max|time|truth)_(?:gap|offset|topic)\b", lambda name: "--" + name[0].replace("_", "-"), message
     )
@@ -189,6 +212,7 @@ def main(words: Sequence[str]) -> int:
             name = f"{Path(given.log[0]).name}.h5"
             record = os.path.abspath(given.record) if given.record else os.path.join(folder, name)
             write_record(record, arguments)
+            del arguments  # what the program reads again
             # The program, in a process of its own: the folder goes when a signal ends it, too.
             program = [sys.executable, "-m", "credence", "judge", given.record or name, "--quiet", *options]
             where = None if given.record else folder  # the report names the record by its path

@@ -87,7 +87,7 @@ class TestTum:
             (np.zeros((1, 5)), "run.txt: its lines have 5 numbers \\(must be at least 8\\)"),
             (np.zeros((1, 8)), "run.txt: its poses have no covariances"),
             (
-                np.r_[9, np.zeros(43)],
+                np.r_[9, np.zeros(6), 1, np.zeros(36)],
                 "no pose has a truth .* \\(its times are 9 to 9 s, those of .*truth.txt 0 to 1 s\\)",
             ),
         ],

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
+import re
 
 import numpy as np
 import pytest
 import records
 
 import credence
+from credence import adapters
+from credence._judge_command import main as judge_command
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # of NumPy, about what is cast
 ROUNDS = 250
@@ -146,3 +150,97 @@ def test_assert_consistent_refuses_what_judge_refuses():
             assert asserted.verdict == outcome.verdict
         else:
             assert type(asserted) is AssertionError
+
+
+def _table_text():
+    rng = np.random.default_rng(30)
+    return "# x,\N{GREEK SMALL LETTER THETA},s\n" + "".join(
+        f"{e:.17g},{f:.17g},1\n" for e, f in rng.normal(size=(60, 2))
+    )
+
+
+def _poses_text(covariance):
+    rng = np.random.default_rng(31)
+    rows = [[k / 10, *rng.normal(size=3), 0, 0, 0, 1, *covariance] for k in range(60)]
+    return "# time x y z °\n" + "".join(" ".join(f"{one:.17g}" for one in row) + "\n" for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "mark"),
+    [("utf-8-sig", b""), ("utf-16-le", codecs.BOM_UTF16_LE), ("utf-16-be", codecs.BOM_UTF16_BE)],
+)
+def test_texts_in_every_encoding(tmp_path, encoding, mark):
+    texts = {"a.csv": _table_text(), "e.txt": _poses_text(np.eye(6).ravel()), "t.txt": _poses_text(())}
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        (tmp_path / f"other-{name}").write_bytes(mark + text.encode(encoding))
+
+    def read(prefix):
+        table = adapters.from_table(tmp_path / f"{prefix}a.csv", error=["x", "θ"], sigma=["s", "s"])
+        poses = adapters.from_tum(tmp_path / f"{prefix}e.txt", tmp_path / f"{prefix}t.txt", planar=False)
+        return [table["error"], poses["truth"], poses["estimate"]]
+
+    for plain, other in zip(read(""), read("other-")):
+        np.testing.assert_array_equal(other, plain)
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        (b"", "it is no text in UTF-8 or UTF-16 .*Save it as UTF-8"),
+        (b"\0", "it is no text: it has zeros in it. Save it as UTF-8, or check the path"),
+        (codecs.BOM_UTF16_LE, "no text in UTF-8 or UTF-16"),
+    ],
+)
+def test_what_is_no_text_is_refused(tmp_path, start, message, capfd):
+    path = {name: tmp_path / name for name in ("a.csv", "a.txt", "truth.txt")}
+    for one in path.values():
+        one.write_bytes(start + b"x,\xb0,s\n1,2,1\n" + (b"\xd8" if start else b"") * 3)
+    path["truth.txt"].write_text(_poses_text(()))
+    for words in ([path["a.csv"], "--names", "error=x", "sigma=s"], [path["a.txt"], "--truth", path["truth.txt"]]):
+        assert judge_command(list(map(str, words))) == 2
+        said = capfd.readouterr().err
+        assert re.search(f"credence judge: {re.escape(str(words[0]))}: .*{message}", said)
+        assert len(said.splitlines()) == 1
+
+
+def _damages(whole):
+    """Ways in which a file of arrays is damaged."""
+    middle = len(whole) // 2
+    yield from (whole[:length] for length in (0, 1, 4, 30, 100, middle, len(whole) - 30, len(whole) - 1))
+    yield from (
+        whole[:place] + b"\xff\0\xff\0" + whole[place + 4 :] for place in (0, 26, 45, 100, middle, len(whole) - 20)
+    )
+
+
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_damaged_arrays_are_refused(tmp_path, save, capfd):
+    error = np.random.default_rng(32).normal(size=(40, 3, 2))
+    path = tmp_path / "a.npz"
+    save(path, error=error, covariance=np.broadcast_to(np.eye(2), (40, 3, 2, 2)))
+    whole, refused = path.read_bytes(), 0
+    for damaged in _damages(whole):
+        path.write_bytes(damaged)
+        if judge_command([str(path)]) == 0:  # the damage is where nobody looks
+            arguments = adapters.from_npz(path)
+            np.testing.assert_array_equal(arguments["error"], error)
+            capfd.readouterr()
+            continue
+        said = capfd.readouterr().err
+        refused += 1
+        assert said.startswith(f"credence judge: {path}: it cannot be read as an .npz file (")
+        assert said.endswith("). Check the path.\n")
+        assert len(said.splitlines()) == 1
+    assert refused > 10
+
+
+def test_folders_and_what_cannot_be_read_are_refused(tmp_path, capfd):
+    truth = tmp_path / "truth.txt"
+    truth.write_text(_poses_text(()))
+    for suffix, more in ((".csv", ["--names", "error=x", "sigma=s"]), (".txt", ["--truth", str(truth)]), (".npz", [])):
+        folder = tmp_path / f"a{suffix}"
+        folder.mkdir()
+        assert judge_command([str(folder), *more]) == 2
+        said = capfd.readouterr().err
+        assert said.startswith(f"credence judge: {folder}: it cannot be read")
+        assert len(said.splitlines()) == 1

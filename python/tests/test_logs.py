@@ -23,6 +23,7 @@ from scipy.spatial.transform import Rotation
 import credence
 from credence import adapters
 from credence._judge_command import main as judge_command
+from credence._judge_command import write_record
 
 Array = np.ndarray[Any, Any]
 Arguments = dict[str, Any]
@@ -405,6 +406,326 @@ class TestTables:
             adapters.from_table(tmp_path / "a.csv", error="x", sigma="y")
 
 
+class TestUnitsOfTimes:
+    """A time in another unit than its format's pairs a pose with another one's truth."""
+
+    @staticmethod
+    def euroc(folder: Path, of: Log, scale: float, truth_scale: float) -> tuple[Path, Path]:
+        wxyz = [0, 1, 2, 6, 3, 4, 5]
+        rows = np.c_[scale * of.time, of.pose[:, wxyz], of.covariance.reshape(-1, 36)]
+        truth = np.c_[truth_scale * of.truth_time, of.truth[:, wxyz]]
+        return write(folder / "estimate.csv", rows, ","), write(folder / "truth.csv", truth, ",")
+
+    @pytest.mark.parametrize(("unit", "scale"), [("s", 1.0), ("ms", 1e3)])
+    def test_a_spacing_below_a_microsecond_is_refused(self, tmp_path: Path, unit: str, scale: float) -> None:
+        of = log(60)
+        expected = adapters.from_tum(*tum(tmp_path, of))
+        taken = r"estimate.csv: its times are taken for ns, in which they are 5e-\d+ s apart \(must be at least 1e-06"
+        with pytest.raises(credence.InputError, match=rf"{taken} s\). Say their unit, such as units time={unit}."):
+            adapters.from_euroc(*self.euroc(tmp_path, of, scale, scale))
+        with pytest.raises(credence.InputError, match=rf"truth.csv: .*, such as units truth_time={unit}."):
+            adapters.from_euroc(*self.euroc(tmp_path, of, scale, scale), units={"time": unit})
+        both = {"time": unit, "truth_time": unit}
+        read = adapters.from_euroc(*self.euroc(tmp_path, of, scale, scale), units=both)
+        np.testing.assert_allclose(nees(read), nees(expected), rtol=1e-6)
+        mixed = adapters.from_euroc(self.euroc(tmp_path, of, scale, 1e9)[0], tum(tmp_path, of)[1], units={"time": unit})
+        np.testing.assert_allclose(mixed["time"], expected["time"], rtol=1e-9)
+
+    def test_the_unit_that_was_taken_is_said(self, tmp_path: Path) -> None:
+        of = log(60)
+        files = self.euroc(tmp_path, of, 1e6, 1e6)
+        with pytest.warns(UserWarning, match=r"estimate.csv: its times are taken for ns, .* 5e-05 s apart. If they"):
+            adapters.from_euroc(*files)
+        late = of._replace(time=1e9 * of.time)
+        with (
+            pytest.warns(UserWarning, match="estimate.txt: its times are taken for s, .* such as units time=ns"),
+            pytest.raises(credence.InputError, match="no pose has a truth"),
+        ):
+            adapters.from_tum(*tum(tmp_path, late))
+        with pytest.raises(credence.InputError, match="units: time cannot be in deg"):
+            adapters.from_tum(*tum(tmp_path, of), units={"time": "deg"})
+
+    def test_every_file_with_times(self, tmp_path: Path) -> None:
+        of = log(60)
+        estimate, truth = tum(tmp_path, of)
+        matrices = np.concatenate([Rotation.from_quat(of.pose[:, 3:]).as_matrix(), of.pose[:, :3, None]], axis=2)
+        kitti = write(tmp_path / "kitti.txt", np.c_[matrices.reshape(-1, 12), of.covariance.reshape(-1, 36)])
+        times = write(tmp_path / "times.txt", 1e-9 * of.time)
+        small = write(tmp_path / "small.txt", np.c_[1e-9 * of.truth_time, of.truth])
+        bag = write_bag(tmp_path / "run.bag", of, "ros1", truth="pose")
+        vins = write(tmp_path / "vins.txt", np.c_[of.time, of.pose, np.ones((60, 12))])
+        frame = TestTables.frame()
+        for call in (
+            lambda: adapters.from_tum(estimate, small),
+            lambda: adapters.from_kitti(kitti, truth, times),
+            lambda: adapters.from_rosbag(bag, small),
+            lambda: adapters.from_openvins(vins, small),
+            lambda: adapters.from_table(frame.assign(t=1e-9 * frame["t"]), **TestTables.HOW),
+            lambda: (
+                adapters.from_table(frame, frame.assign(t=1e-9 * frame["t"]), **TestTables.HOW, units={"t": "s"})
+                and adapters.from_table(frame, frame, **TestTables.HOW, units={"truth_time": "ns"})
+            ),
+        ):
+            with pytest.raises(credence.InputError, match=r"taken for n?s, .* s apart \(must be at least"):
+                call()
+        in_ms = adapters.from_table(frame.assign(t=1e3 * frame["t"]), frame, **TestTables.HOW, units={
+            "t": "ms", "truth_time": "s",
+        })  # fmt: skip
+        np.testing.assert_allclose(in_ms["time"], adapters.from_table(frame, **TestTables.HOW)["time"])
+
+
+class TestDegrees:
+    """Differences of angles are folded at a turn, so that degrees must not be taken for rad."""
+
+    HOW: ClassVar[Arguments] = {"estimate": ["x", "yaw"], "truth": ["gx", "gyaw"], "angles": "yaw"}
+    P: ClassVar[Array] = np.array([[0.04, 0.002], [0.002, 0.01]])
+
+    @classmethod
+    def frames(cls) -> tuple[pd.DataFrame, pd.DataFrame]:
+        """A turning robot in rad, and in deg."""
+        rng = np.random.default_rng(12)
+        t = np.arange(600.0) / 10
+        truth = np.c_[np.sin(t), np.remainder(0.5 * t + np.pi, 2 * np.pi) - np.pi]
+        estimate = truth + rng.multivariate_normal(np.zeros(2), cls.P, 600)
+        estimate[:, 1] = np.remainder(estimate[:, 1] + np.pi, 2 * np.pi) - np.pi
+        rad = pd.DataFrame(np.c_[t, estimate, truth], columns=["t", "x", "yaw", "gx", "gyaw"])
+        rad = rad.assign(sx=0.2, syaw=0.1, vx=0.04, vyaw=0.01, xx=0.04, xyaw=0.002, yawyaw=0.01)
+        turn = np.degrees(1.0)
+        powers = {"yaw": 1, "gyaw": 1, "syaw": 1, "vyaw": 2, "xyaw": 1, "yawyaw": 2}
+        return rad, rad.assign(**{name: rad[name] * turn**power for name, power in powers.items()})
+
+    SPREADS: ClassVar[dict[str, Any]] = {
+        "sigma": ["sx", "syaw"],
+        "variance": ["vx", "vyaw"],
+        "covariance": ["xx", "xyaw", "yawyaw"],
+    }
+
+    @pytest.mark.parametrize("spread", SPREADS)
+    def test_all_are_converted_together(self, spread: str) -> None:
+        rad, deg = self.frames()
+        how = {**self.HOW, spread: self.SPREADS[spread]}
+        expected = adapters.from_table(rad, **how)
+        with pytest.raises(credence.InputError, match=r"yaw, an angle, .*: in degrees\? Say units yaw=deg, or yaw=rad"):
+            adapters.from_table(deg, **how)
+        del how["angles"]
+        for arguments in (
+            adapters.from_table(deg, **how, units={"yaw": "deg"}),
+            adapters.from_table(deg, deg, **how, time="t", units={"yaw": "deg"}),
+        ):
+            np.testing.assert_allclose(arguments["error"], expected["error"], atol=1e-12)
+            np.testing.assert_allclose(arguments["covariance"], expected["covariance"], rtol=1e-12)
+        whole = adapters.from_table(deg.assign(x=1e3 * deg.x, gx=1e3 * deg.gx), **how, units={"x": "mm", "yaw": "deg"})
+        np.testing.assert_allclose(whole["error"], expected["error"], atol=1e-12)
+        assert whole["component_units"] == ["m", "rad"]
+
+    def test_what_cannot_be_rad(self) -> None:
+        rad, deg = self.frames()
+        sigma: Any = {"sigma": "s", "angles": "e"}
+        rng = np.random.default_rng(13)
+        for error, of in ((rng.normal(0, 4, 500), 0.1), (rng.normal(0, 1, 500), 5.0)):
+            with pytest.raises(credence.InputError, match=r"e, an angle, has .*: in degrees\? Say units e=deg"):
+                adapters.from_table({"e": error, "s": np.full(500, of)}, error="e", **sigma)
+        two = {"e": rng.normal(0, 1.5, 500), "s": np.full(500, 1.5)}
+        with pytest.warns(UserWarning, match="of 500 differences are beyond half a turn .* say units e=deg"):
+            adapters.from_table(two, error="e", **sigma)
+        slow = deg.assign(yaw=deg.t + rng.normal(0, 3, 600), gyaw=deg.t)
+        with pytest.raises(credence.InputError, match="yaw, an angle, has numbers up to"):
+            adapters.from_table(slow, **self.HOW, variance=["vx", "vx"])
+        with pytest.raises(credence.InputError, match=r"yaw, an angle, goes from .* wrapped at 360"):
+            adapters.from_table(rad, deg, **self.HOW, variance=["vx", "vyaw"], time="t")
+
+    @pytest.mark.filterwarnings("error")
+    def test_angles_in_rad_are_taken(self) -> None:
+        rad, _ = self.frames()
+        how = {**self.HOW, "sigma": ["sx", "syaw"]}
+        expected = adapters.from_table(rad, **how)["error"]
+        unwrapped = rad.assign(gyaw=np.unwrap(rad.gyaw))
+        assert unwrapped.gyaw.max() > 20
+        np.testing.assert_allclose(adapters.from_table(unwrapped, **how)["error"], expected, atol=1e-12)
+        np.testing.assert_allclose(adapters.from_table(rad, unwrapped, **how, time="t")["error"], expected, atol=1e-12)
+        lost = rad.assign(yaw=np.random.default_rng(2).uniform(-40, 40, 600))
+        assert np.abs(adapters.from_table(lost, **how, units={"yaw": "rad"})["error"]).max() <= np.pi
+
+    def test_on_a_manifold(self, tmp_path: Path) -> None:
+        rad, deg = self.frames()
+        P = np.tile(self.P, (600, 1, 1))
+        for frame, is_refused in ((rad, False), (deg, True)):
+            given: Any = {"estimate": frame[["x", "yaw"]].to_numpy(), "truth": frame[["gx", "gyaw"]].to_numpy()}
+            given |= {"covariance": P, "manifold": "R1 x SO2", "chart": "local"}
+            if not is_refused:
+                assert credence.judge(**given)["trials"] == 1
+                credence.judge(**given, component_units=["m", "rad"])
+                continue
+            with pytest.raises(credence.InputError, match=r"estimate: has angles up to .* in degrees. Give"):
+                credence.judge(**given)
+            write_record(str(tmp_path / "deg.h5"), given)
+            with pytest.raises(credence.InputError, match=r"deg.h5: /estimate: has angles up to .* the attribute"):
+                credence.judge(tmp_path / "deg.h5")
+            with pytest.raises(credence.InputError, match="component_units: has `deg` for theta, an angle of the"):
+                credence.judge(**given, component_units=["m", "deg"])
+
+
+class TestWhatFilesLack:
+    @staticmethod
+    def kitti(of: Log, rows: int = 3) -> Array:
+        pose = np.concatenate([Rotation.from_quat(of.pose[:, 3:]).as_matrix(), of.pose[:, :3, None]], axis=2)
+        last = np.tile([0.0, 0, 0, 1], (len(pose), 1, 1))
+        return np.concatenate([pose, last], axis=1)[:, :rows].reshape(len(pose), -1)
+
+    def test_kitti_with_all_rows(self, tmp_path: Path) -> None:
+        of = log(40)
+        behind, times = of.covariance.reshape(-1, 36), write(tmp_path / "times.txt", of.time)
+        upper = of.covariance[(slice(None), *np.triu_indices(6))]
+        truth = tum(tmp_path, of)[1]
+        files = [
+            write(tmp_path / f"{rows}{cov.shape[1]}.txt", np.c_[self.kitti(of, rows), cov])
+            for rows in (3, 4)
+            for cov in (behind, upper)
+        ]
+        expected, *others = (adapters.from_kitti(file, truth, times) for file in files)
+        for other in others:
+            np.testing.assert_allclose(other["estimate"], expected["estimate"])
+            np.testing.assert_allclose(other["covariance"], expected["covariance"], rtol=1e-9)
+
+    def test_a_truth_that_lacks_lines(self, tmp_path: Path) -> None:
+        of = log(40)
+        estimate = write(tmp_path / "kitti.txt", np.c_[self.kitti(of), of.covariance.reshape(-1, 36)])
+        truth = write(tmp_path / "poses.txt", self.kitti(of)[np.arange(40) != 7])
+        times = write(tmp_path / "times.txt", of.time)
+        with pytest.raises(credence.InputError, match=r"poses.txt: it has 39 poses, and .*kitti.txt 40. Give the true"):
+            adapters.from_kitti(estimate, truth)
+        with pytest.raises(credence.InputError, match=r"times.txt: it has 40 times, and .*poses.txt 39 poses. Give"):
+            adapters.from_kitti(estimate, truth, times)
+        with pytest.raises(credence.InputError, match=r"kitti.txt: it has no times, and .* Give their times \(times\)"):
+            adapters.from_kitti(estimate, tum(tmp_path, of)[1])
+
+    @pytest.mark.parametrize("more", [4, 8])
+    def test_lines_of_tum_with_as_many_numbers_as_kitti_s(self, tmp_path: Path, more: int) -> None:
+        of = log(40)
+        estimate, truth = tum(tmp_path, of)
+        wide = write(tmp_path / "wide.txt", np.c_[of.truth_rows(), np.ones((len(of.truth), more))])
+        with pytest.warns(UserWarning, match=f"its lines have {8 + more} numbers and are no matrices"):
+            np.testing.assert_array_equal(
+                adapters.from_tum(estimate, wide)["truth"], adapters.from_tum(estimate, truth)["truth"]
+            )
+        with (
+            pytest.warns(UserWarning, match="no matrices of KITTI"),
+            pytest.raises(credence.InputError, match="its poses have no covariances"),
+        ):
+            adapters.from_tum(write(tmp_path / "e.txt", np.c_[of.time, of.pose, np.ones((40, more))]), truth)
+        neither = write(tmp_path / "neither.txt", np.random.default_rng(1).normal(size=(40, 8 + more)))
+        with pytest.raises(credence.InputError, match=r"neither.txt: its lines .* begin neither with a rotation"):
+            adapters.from_tum(neither, truth)
+
+    def test_columns_named_twice(self, tmp_path: Path) -> None:
+        (tmp_path / "a.csv").write_text("x,y,y,s\n1,2,3,1\n1,2,3,1\n")
+        one = pd.DataFrame([[1.0, 2, 3, 1]] * 2, columns=["x", "y", "y", "s"])
+        for table in (tmp_path / "a.csv", one):
+            assert adapters.from_table(table, error="x", sigma="s")["error"].shape == (1, 2, 1)
+            with pytest.raises(credence.InputError, match=r"2 columns are called y. Rename"):
+                adapters.from_table(table, error=["x", "y"], sigma=["s", "s"])
+        with pytest.raises(credence.InputError, match="x is named as two components"):
+            adapters.from_table(one, error=["x", "x"], sigma=["s", "s"])
+
+    def test_negative_sigmas(self, tmp_path: Path) -> None:
+        table = {"e": np.zeros(5), "s": np.array([1.0, 1, -0.5, 1, -2])}
+        with pytest.raises(credence.InputError, match=r"sigma \(s\) is below 0 at row 3 \(-0.5\), and at 2 in all"):
+            adapters.from_table(table, error="e", sigma="s")
+        rows = np.c_[np.arange(4.0), np.tile([0, 0, 0, 1], (4, 1)), np.ones((4, 12))]
+        files = [write(tmp_path / name, rows) for name in ("estimate", "truth")]
+        with pytest.raises(credence.InputError, match="deviation: a standard deviation is below 0 at row 1"):
+            adapters.from_openvins(*files, write(tmp_path / "deviation", np.c_[rows[:, 0], -rows[:, 1:]]))
+
+    @pytest.mark.parametrize("kind", ["tum", "bag", "kitti"])
+    def test_poses_that_are_none(self, tmp_path: Path, kind: str) -> None:
+        of = log(60)
+        truth = write(tmp_path / "truth.txt", of.truth_rows())
+
+        def read(of: Log) -> Arguments:
+            if kind == "bag":
+                return adapters.from_rosbag(
+                    write_bag(tmp_path / f"{of.pose[0, 3]}.bag", of, "ros1", truth="pose"), truth
+                )
+            if kind == "tum":
+                return adapters.from_tum(write(tmp_path / "e.txt", of.rows()), truth)
+            rows = np.c_[self.kitti(log(60)), of.covariance.reshape(-1, 36)]
+            rows[np.isnan(of.pose[:, 0]), :12] = np.nan
+            rows[np.linalg.norm(of.pose[:, 3:], axis=1) < 0.5, :3] = 0
+            return adapters.from_kitti(write(tmp_path / "k.txt", rows), truth, write(tmp_path / "t.txt", of.time))
+
+        for values, message in (
+            (np.nan, r"pose 1 of 60, the first of 3, is not finite. Leave out what was written before"),
+            (0, "begin neither with a rotation" if kind == "kitti" else r"pose 1 of 60 has a quaternion of length 0 "),
+        ):
+            pose = of.pose.copy()
+            pose[:3, 0 if np.isnan(values) else 3 :] = values
+            with pytest.raises(credence.InputError, match=message):
+                read(of._replace(pose=pose))
+
+    def test_a_truth_with_gaps(self, tmp_path: Path) -> None:
+        of = log(60)
+        rows = of.truth_rows()
+        rows[200:203, 1:] = np.nan
+        truth = write(tmp_path / "gaps.txt", rows)
+        with pytest.warns(UserWarning, match=rf"gaps.txt: 3 of {len(rows)} true poses are not finite"):
+            arguments = adapters.from_tum(tum(tmp_path, of)[0], truth)
+        assert np.isfinite(arguments["truth"]).all()
+        rows[:, 4:] = 0
+        with pytest.raises(credence.InputError, match=r"zeros.txt: pose 1 of .* has a quaternion of length 0"):
+            adapters.from_tum(tum(tmp_path, of)[0], write(tmp_path / "zeros.txt", rows[:200]))
+
+
+class TestLongLogs:
+    """More than 99,999 steps: everything over the steps is of all of them, and what is by step of every so many."""
+
+    STEPS = 120_000
+
+    @classmethod
+    def arrays(cls) -> tuple[Array, Array]:
+        error = np.random.default_rng(14).normal(size=(cls.STEPS, 2))
+        error[5] += 7  # at no step that is given
+        return error, np.broadcast_to(np.eye(2), (cls.STEPS, 2, 2))
+
+    def test_all_steps_count(self) -> None:
+        error, covariance = self.arrays()
+        innovations = {"innovation": error, "innovation_covariance": covariance}
+        verdict = credence.judge(error, covariance, **innovations, time=0.01 * np.arange(self.STEPS))
+        every, (group, *_) = verdict["every"], verdict["groups"]
+        assert every == 12
+        nees = (error**2).sum(axis=1)
+        np.testing.assert_allclose(group["anees"]["ratio"], nees[::every] / 2, rtol=1e-12)
+        segment = verdict["segments"]["steps"]
+        count = verdict["segments"]["count"]
+        assert count == self.STEPS // segment
+        assert group["nees_ratio"] == pytest.approx(nees[: count * segment].mean() / 2, rel=1e-12)
+        assert verdict["pose_error"]["mean"] == pytest.approx(nees.sum(), rel=1e-12)
+        assert f"one step in {every}: their step k is step {every} (k - 1) + 1" in " ".join(verdict["not_judged"])
+        assert "one log of 120000 steps" in str(verdict)
+        assert "Errors by step" in verdict.html
+        short = credence.judge(error[:99_999], covariance[:99_999])
+        assert "every" not in short.json[0]
+        assert len(short["groups"][0]["anees"]["ratio"]) == 99_999
+
+    def test_a_run_that_does_not_decorrelate(self) -> None:
+        walk = np.cumsum(np.random.default_rng(15).normal(size=(self.STEPS, 1)), axis=0)
+        verdict = credence.judge(walk, np.full((self.STEPS, 1), 1e5), segments="off")
+        assert verdict["groups"][0]["nees_ratio"] == pytest.approx(np.mean(walk**2) / 1e5, rel=1e-12)
+
+    def test_a_failure_at_a_step_that_is_not_given(self) -> None:
+        error, covariance = self.arrays()
+        broken = covariance.copy()
+        broken[77_777] = 0
+        verdict = credence.judge(error, broken)
+        assert verdict.verdict == "failed"
+        assert verdict["troubles"][0]["step"] == 77_777
+
+    def test_as_many_numbers_as_no_memory_holds_are_refused(self) -> None:
+        steps, n = 10**7, 40
+        error, covariance = np.broadcast_to(np.ones(n), (steps, n)), np.broadcast_to(np.eye(n), (steps, n, n))
+        with pytest.raises(credence.InputError, match="and 40 components at 10000000 steps, together"):
+            credence.judge(error, covariance)
+
+
 def test_navlie_s_results() -> None:
     rng = np.random.default_rng(7)
     runs = [
@@ -492,7 +813,9 @@ class TestPage:
         write(tmp_path / "kitti.txt", np.c_[matrices.reshape(-1, 12), of.covariance.reshape(-1, 36)])
         write(tmp_path / "poses.txt", matrices.reshape(-1, 12))
         write(tmp_path / "times.txt", of.time)
-        self.frame().to_csv("table.csv")
+        turn = np.degrees(1.0)
+        frame = self.frame()
+        frame.assign(yaw=turn * frame.yaw, gyaw=turn * frame.gyaw, syaw=turn * frame.syaw).to_csv("table.csv")
         scipy.io.savemat("results.mat", {"e": np.ones((2, 30)), "P": np.tile(np.eye(2)[:, :, None], (1, 1, 30))})
         TestUlog.write(tmp_path / "flight.ulg", ("ekf2_innovations",))
 

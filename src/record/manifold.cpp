@@ -94,6 +94,7 @@ Manifold Manifold::read(const RecordSource& source) {
                               "Write a part of the state");
         quaternions = quaternions || has_quaternion(factor.coordinates, factor.dimension);
     }
+    manifold.has_units_ = source.has_attribute("component_units");
     if (manifold.factors_.empty()) throw RecordError(place, "names no manifold", manifold_example);
     if (quaternions) manifold.scalar_first_ = required_text(source, "quaternion", {"wxyz", "xyzw"}) == "wxyz";
     if (required_text(source, "chart", {"local", "global"}) == "global") manifold.chart_ = ErrorChart::global;
@@ -206,6 +207,16 @@ void Manifold::factor_error(const Factor& factor, const double* truth, const dou
             return;
         }
     }
+}
+
+std::vector<int> Manifold::doubtful_angles() const {
+    std::vector<int> angles;
+    int at = 0;
+    for (const Factor& factor : factors_) {
+        at += factor.coordinates;
+        if (!has_units_ && (factor.kind == Kind::SO2 || factor.kind == Kind::SE2)) angles.push_back(at - 1);
+    }
+    return angles;
 }
 
 int Manifold::wrong_quaternion(const double* coordinates) const {

@@ -42,6 +42,9 @@ public:
     /// The first coordinate of a quaternion that is not of length 1, by a thousandth or more; -1 where there is none.
     int wrong_quaternion(const double* coordinates) const;
 
+    /// The coordinates that are angles and components of the error; empty where the record says that they are in rad.
+    std::vector<int> doubtful_angles() const;
+
 private:
     enum class Kind { SO2, SE2, SO3, SE3, R };
     struct Factor {
@@ -57,6 +60,7 @@ private:
     bool scalar_first_ = true;  ///< quaternions are w x y z
     ErrorChart chart_ = ErrorChart::local;
     bool plain_ = false;
+    bool has_units_ = false;  ///< the record says the units of the components
 };
 
 }  // namespace credence

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <credence/text.hpp>
+#include <numbers>
 
 namespace credence {
 
@@ -164,6 +166,8 @@ void RecordReader::read_manifold(const RecordPart& part, RecordValues& values) c
     read(*layout_.data.estimate, part, values.estimate);
     const auto n = static_cast<std::size_t>(manifold.dimension()), q = static_cast<std::size_t>(manifold.coordinates());
     values.error.assign(values.truth.size() / q * n, nan);
+    const std::vector<int> angles = manifold.doubtful_angles();
+    double largest = 0, folded = 0, cosines = 0;  // of angles, of differences beyond half a turn
     std::size_t i = 0;
     for (std::int64_t trial = part.first_trial; trial < part.first_trial + part.trials; ++trial)
         for (int k = part.first_step; k < part.first_step + part.steps; ++k, ++i) {
@@ -171,7 +175,22 @@ void RecordReader::read_manifold(const RecordPart& part, RecordValues& values) c
             require_quaternions(*layout_.data.truth, trial, k, &values.truth[i * q]);
             require_quaternions(*layout_.data.estimate, trial, k, &values.estimate[i * q]);
             manifold.error(&values.truth[i * q], &values.estimate[i * q], &values.error[i * n]);
+            for (const int at : angles) {
+                const double truth = values.truth[i * q + static_cast<std::size_t>(at)],
+                             estimate = values.estimate[i * q + static_cast<std::size_t>(at)];
+                largest = std::max({largest, std::abs(truth), std::abs(estimate)});
+                if (!(std::abs(estimate - truth) > std::numbers::pi)) continue;
+                ++folded;
+                cosines += std::cos(estimate - truth);
+            }
         }
+    // Of angles in rad, differences beyond half a turn are about whole turns.
+    if (largest > 4 * std::numbers::pi && cosines < folded / 2)
+        throw RecordError(layout_.data.estimate->place(),
+                          "has angles up to " + to_text(largest) +
+                              " from 0, and differences from the truth that are no whole turns, as if in degrees",
+                          "Write angles of a manifold in rad; if they are, say it in the attribute `component_units`",
+                          "Give angles of a manifold in rad; if they are, say it in component_units");
 }
 
 void RecordReader::require_quaternions(const RecordDataset& dataset, std::int64_t trial, int step,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError, judge
-from credence.adapters.tables import existing, needed
+from credence.adapters.tables import existing, needed, one_line
 
 
 def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -34,8 +34,13 @@ def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = Non
     InputError
         If an array of `names` is not in the file, or none is that `judge` takes.
     """
-    with np.load(existing(path), allow_pickle=False) as file:
-        return _arguments(os.fspath(path), {name: file[name] for name in file.files}, names)
+    source = existing(path)
+    try:
+        with np.load(source, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except Exception as error:  # what zipfile, zlib and NumPy run into
+        raise InputError(f"{source}: it cannot be read as an .npz file ({one_line(error)}). Check the path.") from None
+    return _arguments(source, arrays, names)
 
 
 def from_mat(
@@ -74,7 +79,7 @@ def from_mat(
         why = "it is of version 7.3, which is HDF5"
         raise InputError(f"{source}: cannot be read here ({why}). Give it to credence.judge as a path.") from None
     except Exception as error:  # what its parser runs into
-        raise InputError(f"{source}: it cannot be read as a .mat file ({error}). Check the path.") from None
+        raise InputError(f"{source}: it cannot be read as a .mat file ({one_line(error)}). Check the path.") from None
     arguments = _arguments(source, {name: array for name, array in variables.items() if name[:2] != "__"}, names)
     order = order or _order(source, arguments)
     if order not in ("F", "C"):

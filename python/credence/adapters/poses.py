@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from credence import InputError
-from credence.adapters.tables import Array, needed, neighbours, normalised, note, say_matched, stacked
+from credence.adapters.tables import Array, needed, neighbours, normalised, note, require_unit, say_matched, stacked
 
 ALIGNMENTS = ("none", "first", "se3")
 COMPONENTS = ["x", "y", "z", "roll", "pitch", "yaw"]
@@ -29,6 +29,7 @@ class Poses(NamedTuple):
     pose: Array
     covariance: Array | None = None
     frame: str = ""
+    counted: bool = False  # its times are the numbers of its lines
 
     def at(self, rows: NDArray[np.intp]) -> Poses:
         covariance = None if self.covariance is None else self.covariance[rows]
@@ -48,6 +49,42 @@ def quaternions(matrices: Array) -> Array:
     """Quaternions (x, y, z, w) of the nearest rotations."""
     turned: Array = _rotations().from_matrix(matrices).as_quat()
     return turned
+
+
+def _require_times(estimate: Poses, truth: Poses) -> None:
+    """Refuse poses whose times are counted where their truth has others."""
+    if estimate.counted != truth.counted:
+        without = (estimate if estimate.counted else truth).source
+        raise InputError(f"{without}: it has no times, and the poses of the other file have. Give their times (times).")
+    if estimate.counted and len(estimate.time) != len(truth.time):
+        has = f"it has {len(truth.time)} poses, and {estimate.source} {len(estimate.time)}"
+        raise InputError(f"{truth.source}: {has}. Give the true pose of each line, or files with times.")
+
+
+def _finite(poses: Poses) -> NDArray[np.bool_]:
+    there: NDArray[np.bool_] = np.isfinite(poses.pose).all(axis=1) & np.isfinite(poses.time)
+    return there
+
+
+def _require_poses(poses: Poses) -> Poses:
+    there = _finite(poses)
+    if not there.all():
+        has = f"pose {np.argmin(there) + 1} of {len(there)}, the first of {(~there).sum()}, is not finite"
+        raise InputError(f"{poses.source}: {has}. Leave out what was written before the filter had a pose.")
+    require_unit(poses.source, poses.pose[:, 3:])
+    return poses
+
+
+def _without_gaps(truth: Poses) -> Poses:
+    """The truth where there is one."""
+    there = _finite(truth)
+    if not there.any():
+        raise InputError(f"{truth.source}: none of its poses is finite. Give the truth of this run.")
+    if not there.all():
+        note(f"{truth.source}: {(~there).sum()} of {len(there)} true poses are not finite, and are left out")
+    truth = truth.at(np.flatnonzero(there))
+    require_unit(truth.source, truth.pose[:, 3:])
+    return truth
 
 
 def in_order(poses: Poses) -> Poses:
@@ -253,7 +290,9 @@ def pose_arguments(
     for estimate, _ in pairs:
         if estimate.covariance is None:
             raise InputError(f"{estimate.source}: its poses have no covariances. Give a log that has them.")
-    ordered = [(in_order(estimate), in_order(truth)) for estimate, truth in pairs]
+    for pair in pairs:
+        _require_times(*pair)
+    ordered = [(in_order(_require_poses(estimate)), in_order(_without_gaps(truth))) for estimate, truth in pairs]
     runs = [_associated(estimate, truth, max_gap, time_offset) for estimate, truth in ordered]
     kept = _kept_components([estimate for estimate, _ in runs], planar)
     truths = [aligned(*run, align) for run in runs]

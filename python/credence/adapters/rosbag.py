@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from credence import InputError
 from credence.adapters.poses import Poses, pose_arguments
-from credence.adapters.tables import Path, needed, note, paired
+from credence.adapters.tables import Path, needed, note, one_line, paired, units_given
 from credence.adapters.trajectories import read_poses
 
 _with_covariance = ("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseWithCovarianceStamped")
@@ -96,7 +96,7 @@ def _read(bag: Path, topic: str | None, estimate_topic: str | None) -> tuple[Pos
     except InputError:
         raise
     except Exception as error:  # what its parsers run into
-        raise InputError(f"{source}: it cannot be read as a bag ({error}). Give a whole bag.") from None
+        raise InputError(f"{source}: it cannot be read as a bag ({one_line(error)}). Give a whole bag.") from None
     if not messages:
         raise InputError(f"{source}: the topic {topic} has no messages. Name another topic.")
     return _poses(messages, f"{source} {topic}"), topic
@@ -122,6 +122,7 @@ def from_rosbag(
     truth_topic: str | None = None,
     manifold: str = "R3 x SO3",
     chart: str = "global",
+    units: Mapping[str, str] | None = None,
     **options: Any,
 ) -> dict[str, Any]:
     """Poses with covariances in bags of ROS 1 (``.bag``) or ROS 2 (a folder, ``.db3``, ``.mcap``).
@@ -142,7 +143,7 @@ def from_rosbag(
         Of such messages, or ``PoseStamped``, ``TransformStamped``, or of a transform in messages of TF:
         ``"/tf:PARENT.CHILD"``; the only one that is not `topic`, by default.
     manifold, chart, **options
-        As of :func:`from_tum`.
+        As of :func:`from_tum`; `units` may have `truth_time` alone, of a text file.
 
     Returns
     -------
@@ -154,9 +155,9 @@ def from_rosbag(
     InputError
         If a bag or a topic cannot be read, or a topic must be named; or as of :func:`from_tum`.
     """
-    pairs = []
+    pairs, units = [], units_given(units, {"truth_time": ["time"]})
     for one, other in paired(bag, bag if truth is None else truth):
         estimate, name = _read(one, topic, None)
-        true = _read(other, truth_topic, name)[0] if truth is None or is_bag(other) else read_poses(other)
+        true = _read(other, truth_topic, name)[0] if truth is None or is_bag(other) else read_poses(other, None, units)
         pairs.append((estimate, true))
     return pose_arguments(pairs, manifold=manifold, chart=chart, **options)

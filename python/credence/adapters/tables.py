@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import codecs
+import contextlib
 import importlib
+import math
 import os
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,22 +20,101 @@ from credence import InputError
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
 same_time = 1e-6  # s; what doubles and the formats of files make of one time
+shortest = 1e-6  # s; between two times of a log
+
+
+# Units of columns: what each is a unit of, and how many of it are the unit in which that is judged (rad, m, s).
+UNITS = {
+    "rad": ("angle", 1.0),
+    "deg": ("angle", 180 / math.pi),
+    "mgon": ("angle", 200e3 / math.pi),
+    "arcsec": ("angle", 648e3 / math.pi),
+    "m": ("length", 1.0),
+    "mm": ("length", 1e3),
+    "cm": ("length", 1e2),
+    "km": ("length", 1e-3),
+    "s": ("time", 1.0),
+    "ms": ("time", 1e3),
+    "us": ("time", 1e6),
+    "ns": ("time", 1e9),
+}
+
+
+def units_given(units: Mapping[str, str] | None, kinds: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """The units that are asked for by their names, of which `kinds` says what each may be a unit of."""
+    given = dict(units or {})
+    for name, unit in given.items():
+        if name not in kinds:
+            raise InputError(f"units: {name} is nothing that has one here. Give some of {', '.join(kinds)}.")
+        known = [one for one, (kind, _) in UNITS.items() if kind in kinds[name]]
+        if unit not in known:
+            raise InputError(f"units: {name} cannot be in {unit}. Give one of {', '.join(known)}.")
+    return given
+
+
+def seconds(source: str, times: Array, unit: str, name: str | None = None) -> Array:
+    """Times in seconds, and a note of their unit where it was not asked for and they lie unusually; `name` is what
+    `units` calls them."""
+    scale = UNITS[unit][1]
+    rising = np.unique(times[np.isfinite(times)])
+    if len(rising) > 1:
+        apart = float(np.median(np.diff(rising))) / scale
+        usual = [one for one, (kind, of) in UNITS.items() if kind == "time" and 1e-3 <= apart * scale / of <= 1]
+        say = f"units {name or 'time'}={(usual or ['ms'])[0]}"
+        taken = f"its times are taken for {unit}, in which they are {apart:.3g} s apart"
+        if apart < shortest:
+            raise InputError(f"{source}: {taken} (must be at least 1e-06 s). Say their unit, such as {say}.")
+        if name is not None and not 2e-4 <= apart <= 10:
+            note(f"{source}: {taken}. If they are in another unit, say so, such as {say}.")
+    return times / scale
+
+
+def encoding_of(path: Path) -> str:
+    """The encoding of a text file: UTF-8, or UTF-16 where it begins with its mark."""
+    try:
+        with open(existing(path), "rb") as file:
+            start = file.read(4096)
+    except OSError as error:
+        raise InputError(f"{os.fspath(path)}: it cannot be read ({error.strerror}). Check the path.") from None
+    if start[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        return "utf-16"
+    if b"\0" in start:
+        raise InputError(f"{os.fspath(path)}: it is no text: it has zeros in it. Save it as UTF-8, or check the path.")
+    return "utf-8-sig"
+
+
+@contextlib.contextmanager
+def text_of(path: Path) -> Iterator[str]:
+    """The encoding of a text file. What is not in it, or cannot be read, is refused."""
+    try:
+        yield encoding_of(path)
+    except UnicodeError as error:
+        raise InputError(f"{os.fspath(path)}: it is no text in UTF-8 or UTF-16 ({error}). Save it as UTF-8.") from None
 
 
 def read_table(path: Path, *columns: int, delimiter: str | None = None) -> Array:
     """The numbers of a text file, a row a line, without comments; it must have one of these numbers of columns."""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), text_of(path) as encoding:
             warnings.simplefilter("ignore")  # of a file without numbers, which is refused below
-            table: Array = np.loadtxt(existing(path), comments="#", delimiter=delimiter, ndmin=2, dtype=float)
+            table: Array = np.loadtxt(path, comments="#", delimiter=delimiter, ndmin=2, dtype=float, encoding=encoding)
+    except InputError:
+        raise
     except ValueError as error:
-        raise InputError(f"{os.fspath(path)}: {error}") from None
+        raise InputError(f"{os.fspath(path)}: {one_line(error)}. Give lines of numbers.") from None
     if not table.size:
         raise InputError(f"{os.fspath(path)}: there are no numbers in it. Check the path.")
-    if columns and table.shape[1] not in columns:
-        wanted = " or ".join(map(str, columns))
-        raise InputError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be {wanted})")
+    if columns:
+        require_width(path, table, *columns)
     return table
+
+
+def require_width(path: Path, table: Array, *columns: int, least: int = 0) -> None:
+    """Refuse lines with another number of columns, or with fewer than `least`."""
+    if table.shape[1] not in columns and not 0 < least <= table.shape[1]:
+        wanted = f"at least {least}" if least else " or ".join(map(str, columns))
+        has = f"its lines have {table.shape[1]} numbers (must be {wanted})"
+        raise InputError(f"{os.fspath(path)}: {has}. Check what kind of file it is.")
 
 
 def neighbours(
@@ -70,6 +152,11 @@ def note(message: str) -> None:
     warnings.warn(message, stacklevel=level)
 
 
+def one_line(error: Exception) -> str:
+    """What a library said, fit for a message."""
+    return " ".join(str(error).split()).rstrip(".") or type(error).__name__
+
+
 def needed(module: str, package: str, what: str) -> Any:
     """A module that only some adapters need, and which is imported when they do."""
     try:
@@ -83,6 +170,23 @@ def existing(path: Path) -> str:
     if not os.path.exists(path):
         raise InputError(f"{os.fspath(path)}: the file: cannot be found. Check the path.")
     return os.fspath(path)
+
+
+def require_unit(source: str, quaternions: Array) -> None:
+    """Refuse quaternions that are no rotations; of length 1 they need not be exactly."""
+    lengths = np.linalg.norm(quaternions, axis=-1)
+    wrong = np.flatnonzero(~(np.abs(lengths - 1) < 0.1))
+    if len(wrong):
+        has = f"pose {wrong[0] + 1} of {len(lengths)} has a quaternion of length {lengths[wrong[0]]:.3g} (must be 1)"
+        raise InputError(f"{source}: {has}. Check the order of its columns, and leave out lines without a pose.")
+
+
+def require_positive(source: str, what: str, values: Array) -> None:
+    """Refuse standard deviations below 0, whose squares do not show it."""
+    rows = np.flatnonzero((values < 0).reshape(len(values), -1).any(axis=1))
+    if len(rows):
+        has = f"{what} is below 0 at row {rows[0] + 1} ({values[rows[0]].min():.3g}), and at {len(rows)} in all"
+        raise InputError(f"{source}: {has}. Give standard deviations; variances are named variance.")
 
 
 def match_times(times: Array, of: Array, max_difference: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,12 +16,20 @@ from credence.adapters.tables import (
     from_upper,
     match_times,
     normalised,
+    note,
     paired,
     read_table,
+    require_positive,
+    require_unit,
+    require_width,
+    seconds,
     stacked,
+    text_of,
+    units_given,
 )
 
 _pose_columns = 8  # time, x, y, z, and the quaternion x, y, z, w
+_like_matrices = {wide + behind: wide for wide in (12, 16) for behind in (0, 21, 36)}  # numbers of a line of KITTI
 _names: dict[str, Any] = {
     "component_names": ["x", "y", "z", "rx", "ry", "rz"],
     "component_units": ["m"] * 3 + ["rad"] * 3,
@@ -31,9 +39,10 @@ _names: dict[str, Any] = {
 def _nearest(estimate: Path, truth: Path, columns: Sequence[int], max_difference: float) -> tuple[Array, Array]:
     """Rows of the estimate's file, and the poses of the truth's at the same times."""
     estimated, true = read_table(estimate, *columns), read_table(truth)
-    if true.shape[1] < _pose_columns:
-        too_few = f"its lines have {true.shape[1]} numbers (must be at least {_pose_columns})"
-        raise InputError(f"{os.fspath(truth)}: {too_few}")
+    require_width(truth, true, least=_pose_columns)
+    for path, table in ((estimate, estimated), (truth, true)):
+        seconds(os.fspath(path), table[:, 0], "s")
+        require_unit(os.fspath(path), table[:, 4:8])
     estimated, true = (rows[np.argsort(rows[:, 0], kind="stable")] for rows in (estimated, true))
     of_estimate, of_truth = match_times(estimated[:, 0], true[:, 0], max_difference)
     if not of_estimate.size:
@@ -47,30 +56,55 @@ def _poses(rows: Sequence[Array]) -> Array:
     return stacked([np.hstack([run[:, 1:4], normalised(run[:, 4:8])]) for run in rows])
 
 
-def read_poses(path: Path, times: Path | None = None) -> Poses:
-    """Poses of a text file in the format of TUM, EuRoC or KITTI, which its separators and columns tell."""
-    source = os.fspath(path)
-    with open(path, encoding="utf-8-sig", errors="replace") as file:
+def read_poses(
+    path: Path, times: Path | None = None, units: Mapping[str, str] | None = None, name: str = "truth_time"
+) -> Poses:
+    """Poses of a text file in the format of TUM, EuRoC or KITTI, which its separators and columns tell; `units` may say
+    the unit of its times by this name."""
+    source, asked = os.fspath(path), (units or {}).get(name)
+    with text_of(path) as encoding, open(path, encoding=encoding) as file:
         euroc = "," in next((line for line in file if line.strip() and not line.startswith("#")), "")
-    if euroc:
-        table = read_table(path, delimiter=",")
-        wide, count = table.shape[1], {8 + 36: 36, 8 + 21: 21}.get(table.shape[1], 0)
-        if wide < _pose_columns:
-            raise InputError(f"{source}: its lines have {wide} numbers (must be at least {_pose_columns})")
-        return Poses(source, table[:, 0] / 1e9, table[:, [1, 2, 3, 5, 6, 7, 4]], _behind(table, 8, count))
-    table = read_table(path)
-    wide = table.shape[1]
-    if wide in (12, 12 + 36, 12 + 21):
-        matrices = table[:, :12].reshape(-1, 3, 4)
-        stamps = np.arange(float(len(table))) if times is None else read_table(times, 1)[:, 0]
-        if len(stamps) != len(table):
-            raise InputError(f"{os.fspath(times or '')}: it has {len(stamps)} times, and {source} {len(table)} poses")
-        pose = np.hstack([matrices[:, :, 3], quaternions(matrices[:, :, :3])])
-        return Poses(source, stamps, pose, _behind(table, 12, wide - 12))
-    if wide < _pose_columns:
-        raise InputError(f"{source}: its lines have {wide} numbers (must be at least {_pose_columns})")
-    count = wide - _pose_columns if wide in (44, 29) else 0
-    return Poses(source, table[:, 0], table[:, 1:8], _behind(table, 8, count))
+    table = read_table(path, delimiter="," if euroc else None)
+    require_width(path, table, least=_pose_columns)
+    if wide := 0 if euroc else _matrix_numbers(table):
+        return _of_matrices(path, table, wide, times, asked, name)
+    pose = table[:, [1, 2, 3, 5, 6, 7, 4] if euroc else range(1, 8)]
+    behind = table.shape[1] - _pose_columns
+    if not euroc and table.shape[1] in _like_matrices:
+        has = f"its lines have {table.shape[1]} numbers"
+        if not (np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1) < 0.1).all():
+            either = "begin neither with a rotation beside a position (KITTI) nor with a time and a pose (TUM)"
+            raise InputError(f"{source}: {has} and {either}. Check what kind of file it is.")
+        note(f"{source}: {has} and are no matrices of KITTI: the first 8 are taken for TUM's time and pose")
+    stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name)
+    return Poses(source, stamps, pose, _behind(table, _pose_columns, behind if behind in (36, 21) else 0))
+
+
+def _matrix_numbers(table: Array) -> int:
+    """How many numbers each line begins with that are a pose's matrix, 12 or, with its last row, 16; 0: none."""
+    wide = _like_matrices.get(table.shape[1], 0)
+    there = np.isfinite(table[:, :wide]).all(axis=1)
+    if not wide or not there.any():
+        return 0
+    matrices = table[there, :wide].reshape(-1, wide // 4, 4)
+    R, last = matrices[:, :3, :3], matrices[:, 3:]
+    turns = np.abs(R @ R.swapaxes(1, 2) - np.eye(3)).max() < 0.01 and (np.linalg.det(R) > 0).all()
+    return wide if turns and (last == [0, 0, 0, 1]).all() else 0
+
+
+def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked: str | None, name: str) -> Poses:
+    source = os.fspath(path)
+    matrices, there = table[:, :12].reshape(-1, 3, 4), np.isfinite(table[:, :12]).all(axis=1)
+    pose = np.hstack([matrices[:, :, 3], np.full((len(table), 4), np.nan)])
+    pose[there, 3:] = quaternions(matrices[there, :, :3])
+    covariance = _behind(table, wide, table.shape[1] - wide)
+    if times is None:
+        return Poses(source, np.arange(float(len(table))), pose, covariance, counted=True)
+    stamps = seconds(os.fspath(times), read_table(times, 1)[:, 0], asked or "s", name)
+    if len(stamps) != len(table):
+        has = f"it has {len(stamps)} times, and {source} {len(table)} poses"
+        raise InputError(f"{os.fspath(times)}: {has}. Give the time of each pose.")
+    return Poses(source, stamps, pose, covariance)
 
 
 def _behind(table: Array, first: int, count: int) -> Array | None:
@@ -80,10 +114,15 @@ def _behind(table: Array, first: int, count: int) -> Array | None:
 
 
 def from_files(
-    estimate: Path | Sequence[Path], truth: Path | Sequence[Path], times: Path | None = None, **options: Any
-) -> dict[str, Any]:
+    estimate: Path | Sequence[Path], truth: Path | Sequence[Path], times: Path | None = None,
+    units: Mapping[str, str] | None = None, **options: Any,
+) -> dict[str, Any]:  # fmt: skip
     """Of files in any of the three formats, with the options of from_tum."""
-    pairs = [(read_poses(e, times), read_poses(t, times)) for e, t in paired(estimate, truth)]
+    units = units_given(units, {"time": ["time"], "truth_time": ["time"]})
+    pairs = [
+        (read_poses(e, times, units, "time"), read_poses(t, times, units, "time" if times else "truth_time"))
+        for e, t in paired(estimate, truth)
+    ]
     return pose_arguments(pairs, **options)
 
 
@@ -97,6 +136,7 @@ def from_tum(
     align: str = "none",
     time_offset: float = 0.0,
     planar: bool | None = None,
+    units: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
     """Trajectories in TUM's format, with the covariance of each pose behind it.
 
@@ -127,6 +167,9 @@ def from_tum(
         Whether x, y and yaw alone are judged, on ``SE2`` or, of ``"R3 x SO3"``, on ``R2 x SO2``. By default what the
         log estimates is judged: without components whose variance is a placeholder (zero, negative, 10^6), and without
         z, roll and pitch that never change.
+    units : dict
+        Of `time` and `truth_time`, ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``, where a file has another unit than its
+        format: ``{"time": "ms"}``. Times that would be less than 1 µs apart are refused.
 
     Returns
     -------
@@ -138,10 +181,11 @@ def from_tum(
     Raises
     ------
     InputError
-        If a line has another number of columns, the estimate has no covariances, or no pose has a truth.
+        If a line has another number of columns or no pose, the estimate has no covariances, no pose has a truth, or the
+        unit of the times cannot be right.
     """
     return from_files(
-        estimate, truth,
+        estimate, truth, units=units,
         manifold=manifold, chart=chart, max_gap=max_gap, align=align, time_offset=time_offset, planar=planar,
     )  # fmt: skip
 
@@ -161,9 +205,10 @@ def from_kitti(
 ) -> dict[str, Any]:
     """Trajectories in KITTI's format, with the covariance of each pose behind it.
 
-    A line has the 12 numbers of the upper rows of the pose's matrix [R t], row by row (m), and in the estimate 36 or 21
-    further numbers, as of :func:`from_tum`. `times` is the file of their times (s); without it they are counted.
-    Options, what is returned and what is raised are those of :func:`from_tum`.
+    A line has the 12 numbers of the upper rows of the pose's matrix [R t], row by row (m), or the 16 of all rows, and
+    in the estimate 36 or 21 further numbers, as of :func:`from_tum`. `times` is the file of their times (s); without it
+    the lines of both files belong to each other, and must be as many. Options, what is returned and what is raised are
+    those of :func:`from_tum`.
     """
     return from_files(estimate, truth, times, **options)
 
@@ -229,10 +274,13 @@ def _simulated(estimate: Path, truth: Path, deviation: Path) -> tuple[Array, Arr
     """Rows of (time, quaternion, position, velocity, biases) of estimate and truth, and of (time, sigmas)."""
     tables = read_table(estimate), read_table(truth), read_table(deviation)
     for path, table, least in zip((estimate, truth, deviation), tables, (17, 17, 16)):
-        if table.shape[1] < least:
-            raise InputError(f"{os.fspath(path)}: its lines have {table.shape[1]} numbers (must be at least {least})")
+        require_width(path, table, least=least)
         if not np.array_equal(table[:, 0], tables[0][:, 0]):
-            raise InputError(f"{os.fspath(path)}: its times are not those of {os.fspath(estimate)}")
+            other = f"its times are not those of {os.fspath(estimate)}"
+            raise InputError(f"{os.fspath(path)}: {other}. Give files of one simulation.")
+    for path, table in zip((estimate, truth), tables):
+        require_unit(os.fspath(path), table[:, 1:5])
+    require_positive(os.fspath(deviation), "a standard deviation", tables[2][:, 1:16])
     return tables[0][:, :17], tables[1][:, :17], tables[2][:, :16]
 
 

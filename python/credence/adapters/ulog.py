@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
-from credence.adapters.tables import Array, Path, existing, needed, note
+from credence.adapters.tables import Array, Path, existing, needed, note, one_line
 
 _innovations, _variances, _both = "estimator_innovations", "estimator_innovation_variances", "ekf2_innovations"
 _time = "timestamp"
@@ -75,7 +75,7 @@ def from_ulog(path: Path, rows: Sequence[str] | None = None, *, instance: int = 
     try:
         log = pyulog.ULog(source)
     except Exception as error:  # pyulog raises what its parser runs into
-        raise InputError(f"{source}: it cannot be read as a log of PX4 ({error}). Check the path.") from None
+        raise InputError(f"{source}: it cannot be read as a log of PX4 ({one_line(error)}). Check the path.") from None
     innovations, variances = _series(log, source, instance)
     chosen = {}
     for name, variance in variances.items():

@@ -45,6 +45,18 @@ std::vector<Component> default_components(const RecordLayout& layout) {
     return components;
 }
 
+/// Angles of a manifold have one unit.
+void require_radians(const RecordSource& source, const RecordLayout& layout) {
+    const std::string attribute = "component_units";
+    if (!layout.data.manifold || !source.has_attribute(attribute)) return;
+    const std::vector<Component> components = layout.data.manifold->components();
+    for (std::size_t j = 0; j < components.size(); ++j)
+        if (const std::string& unit = layout.shape.components[j].unit; components[j].unit == "rad" && unit != "rad")
+            throw RecordError(record_attribute_place(attribute),
+                              "has `" + unit + "` for " + components[j].name + ", an angle of the manifold",
+                              "Give it in rad");
+}
+
 /// Of variances each component is judged by itself, whether the record names it as a group or not.
 void add_single_groups(RecordShape& shape) {
     std::vector<char> alone(static_cast<std::size_t>(shape.n), 0);
@@ -141,6 +153,7 @@ void open_states(const RecordSource& source, const PlacedExtents& error, RecordL
     set_state(error, layout);
     shape.groups = read_groups(source, shape.n);
     shape.components = read_components(source, shape.n, default_components(layout));
+    require_radians(source, layout);
     open_covariance(source, error, layout);
     if (shape.has_variances) add_single_groups(shape);
     set_sources(!layout.data.covariance ? GroupSource::nothing
