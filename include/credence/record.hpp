@@ -95,6 +95,7 @@ struct Record {
     std::vector<LargestNis> largest_nis{};
     RecordSegments segments{};
     std::vector<RunCurves> curves{};      ///< of runs fewer than `least_segments`
+    std::string log{};    ///< as words of a shell: the log that it was made of, and how that was read; may be empty
     std::string chart{};  ///< of errors that differ between charts: `local`, `global` or `plain`; else empty
     /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
     /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.
@@ -114,8 +115,8 @@ struct Record {
 ///   `innovation_covariance` [trial, step, m, m], of which the observed rows are used.
 /// - all optional: components that enter and leave the state; `covariance` [trial, step, n] of variances,
 ///   /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth` and `estimate` on a manifold
-///   in place of `error`; the attributes `groups`, `row_groups`, `component_names` and `component_units`; `time`. What
-///   such a record cannot show is in `results.not_judged`.
+///   in place of `error`; the attributes `groups`, `row_groups`, `component_names`, `component_units` and `log`;
+///   `time`. What such a record cannot show is in `results.not_judged`.
 /// A record of one trial may leave out the dimension of trials. Anything else in the file is ignored.
 ///
 /// A trial with a covariance (of the errors or the observed innovations) that is not positive definite has failed: the

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -157,8 +158,26 @@ def _of_table(
     return from_table(log, truth[0] if truth else None, units=units, **options)
 
 
-def write_record(path: str, arguments: Mapping[str, Any]) -> None:
-    """Write arguments of judge as a record."""
+def log_of(given: argparse.Namespace) -> str:
+    """The log and how it was read, as words of a shell."""
+    words = list(given.log)
+    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
+        value = getattr(given, option)
+        name = f"--{option.replace('_', '-')}"
+        if option == "names" and value:
+            words += [name, *value]
+        elif option == "units" and value:
+            words.append(f"{name}={','.join(map('='.join, value.items()))}")
+        elif value:
+            words += [f"{name}={one}" for one in (value if isinstance(value, list) else [value])]
+        elif value == 0:
+            words.append(f"{name}=0")
+    log = shlex.join(words)
+    return log if len(log.encode(errors="replace")) < 60_000 else ""  # what an attribute has room for
+
+
+def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None:
+    """Write arguments of judge as a record, which may name the log that they were read from."""
     from credence import _arrays, _names
     from credence.adapters.tables import needed
 
@@ -172,6 +191,8 @@ def write_record(path: str, arguments: Mapping[str, Any]) -> None:
     arrays = {**arguments, **{f"group/{name}/{what}": array for what in own for name, array in own[what].items()}}
     with h5py.File(path, "w") as file:
         file.attrs["record_version"] = 2
+        if log:
+            file.attrs["log"] = log.encode(errors="replace").decode()
         for name, text in plain.items():
             file.attrs[name] = text
         for name, entries in lists.items():
@@ -211,7 +232,7 @@ def main(words: Sequence[str]) -> int:
         with tempfile.TemporaryDirectory(prefix="credence-") as folder:
             name = f"{Path(given.log[0]).name}.h5"
             record = os.path.abspath(given.record) if given.record else os.path.join(folder, name)
-            write_record(record, arguments)
+            write_record(record, arguments, log_of(given))
             del arguments  # what the program reads again
             # The program, in a process of its own: the folder goes when a signal ends it, too.
             program = [sys.executable, "-m", "credence", "judge", given.record or name, "--quiet", *options]

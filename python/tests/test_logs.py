@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import shlex
 import struct
 import subprocess
@@ -790,6 +791,27 @@ class TestCommand:
         assert message in said.err
         assert len(said.err.splitlines()) == 1
         assert not said.out
+
+    def test_the_page_names_the_log_and_how_it_was_read(self, tmp_path: Path) -> None:
+        folder = tmp_path / "my logs"
+        folder.mkdir()
+        _, deg = TestDegrees.frames()
+        deg.to_csv(folder / "drive.csv")
+        words = ["my logs/drive.csv", "--names", "estimate=x,yaw", "truth=gx,gyaw", "sigma=sx,syaw", "time=t"]
+        words += ["--units=yaw=deg"]
+        assert not self.run(tmp_path, *words, "--margin=10%", "--format=html", "-o", "page.html").stderr
+        page = (tmp_path / "page.html").read_text()
+        (line,) = [line for line in html.unescape(page).splitlines() if "--format html -o page.html" in line]
+        program, judge, *again = shlex.split(line.partition("<code>")[2].partition("</code>")[0])
+        assert [program, judge, *again[: len(words)]] == ["credence", "judge", *words]
+        assert "drive.csv.h5" not in page.partition('<h2 id="provenance">')[2]
+        (tmp_path / "page.html").rename(tmp_path / "before.html")
+        assert not self.run(tmp_path, *again).stderr
+        assert (tmp_path / "page.html").read_text() == page
+        files = tum(tmp_path, log(60))
+        poses = [files[0].name, f"--truth={files[1].name}", "--chart=local", "--max-gap=0.5", "--planar=no"]
+        assert not self.run(tmp_path, *poses, "--format=html", "-o", "poses.html", "--record=kept.h5").stderr
+        assert f"credence judge {shlex.join(poses)} --margin" in html.unescape((tmp_path / "poses.html").read_text())
 
 
 class TestPage:

@@ -48,13 +48,15 @@ int judge(const Parsed& parsed) {
     const int segments = parse_segments(parsed);
     for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::record});
     std::vector<Report> reports;
+    RunFacts facts;
     for (const std::string& path : parsed.arguments) {
         ProgressLine progress(parsed.has("quiet"));
         Record record = read_record(path, [&](const Progress& now) { progress(now); }, segments);
         progress.finish();
+        if (!record.log.empty() && parsed.arguments.size() == 1) facts = {{"log", record.log}};
         reports.push_back(make_record_report(std::move(record), path, request.limits));
     }
-    return give_report(parsed, request, together(std::move(reports)), parsed.arguments.front(), {});
+    return give_report(parsed, request, together(std::move(reports)), parsed.arguments.front(), facts);
 }
 
 }  // namespace credence::cli

@@ -101,9 +101,12 @@ Record read_in_chart(const std::string& path, const std::function<void(const Pro
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
                            [&](const Handle& root) {
-                               return read_in_chart(
-                                   RecordReader(FileSource(root)), path, progress, segments, chart,
+                               const FileSource source(root);
+                               Record record = read_in_chart(
+                                   RecordReader(source), path, progress, segments, chart,
                                    [path, segments](int again) { return read_in_chart(path, {}, segments, again); });
+                               if (source.has_attribute("log", "")) record.log = source.text("log");
+                               return record;
                            });
 }
 

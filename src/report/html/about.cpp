@@ -58,7 +58,7 @@ Html scenario_part(const Part& part) {
 
 Html provenance(const Report& report, const PageOrigin& origin) {
     Table table("Where the numbers came from", {"fact", "value"});
-    add(table, "file", origin.file);
+    if (fact(origin.run, "log").empty()) add(table, "file", origin.file);
     if (report.root_seed) {
         add(table, "source", report.source);
         add(table, "root seed", std::to_string(*report.root_seed));
@@ -82,7 +82,8 @@ Html provenance(const Report& report, const PageOrigin& origin) {
 }
 
 Html reproduction(const Report& report, const PageOrigin& origin) {
-    const std::string file = shell_word(origin.file), options = options_of(report);
+    const std::string log = fact(origin.run, "log"), file = log.empty() ? shell_word(origin.file) : log,
+                      options = options_of(report);
     Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
