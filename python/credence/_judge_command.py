@@ -206,7 +206,7 @@ def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None
 def _said(message: str) -> str:
     """A message of the package with its arguments as options."""
     message = re.sub(r"\((align|topic|times)\)", r"(--\1)", message)
-    message = re.sub(r"\bunits (?=\S+=)", "--units ", message)
+    message = re.sub(r"^units(?=: )|\bunits(?= \S+=)", "--units", message)
     return re.sub(
         r"\b(?:max|time|truth)_(?:gap|offset|topic)\b", lambda name: "--" + name[0].replace("_", "-"), message
     )

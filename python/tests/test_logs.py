@@ -435,7 +435,7 @@ class TestUnitsOfTimes:
     def test_the_unit_that_was_taken_is_said(self, tmp_path: Path) -> None:
         of = log(60)
         files = self.euroc(tmp_path, of, 1e6, 1e6)
-        with pytest.warns(UserWarning, match=r"estimate.csv: its times are taken for ns, .* 5e-05 s apart. If they"):
+        with pytest.warns(UserWarning, match=r"estimate.csv: its times are taken for ns, .* 5e-05 s apart. Say"):
             adapters.from_euroc(*files)
         late = of._replace(time=1e9 * of.time)
         with (
@@ -777,6 +777,13 @@ class TestCommand:
             (["estimate.txt", "a.ulg", "--truth", "truth.txt"], "several formats"),
             (["estimate.txt", "--truth", "truth.txt", "--margin", "x"], "--margin"),
             (["table.csv", "--names", "error=x", "sd=s"], "--names: unknown sd"),
+            (["table.csv", "--names", "error=x", "error=y", "sigma=s"], "--names: error is given twice"),
+            (
+                ["table.csv", "--names", "error=x", "sigma=s", "--units", "y=deg"],
+                "judge: --units: y is nothing that has",
+            ),
+            (["table.csv", "--names", "error=a", "sigma=s", "angles=a"], "in degrees? Say --units a=deg, or a=rad"),
+            (["a.npz", "--units", "a=deg"], "--units: says nothing about a log of this kind"),
             (["estimate.txt", "--truth", "truth.txt", "--max-gap", "1e-9"], "or a larger --max-gap"),
         ],
     )
@@ -785,6 +792,7 @@ class TestCommand:
         words: list[str], message: str,
     ) -> None:  # fmt: skip
         tum(tmp_path, log(20))
+        (tmp_path / "table.csv").write_text("a,x,y,s\n" + "20,1,2,3\n-9,2,3,4\n")
         monkeypatch.chdir(tmp_path)
         assert judge_command(words) == 2
         said = capfd.readouterr()

@@ -262,7 +262,7 @@ def from_table(
     unit = units.get(time or "time", units.get("time", "s"))
     times = None
     if time is not None:
-        times = seconds(rows.source, rows.column(time), unit, None if truth_table is None else "time")
+        times = seconds(rows.source, rows.column(time), unit, "time", noted=truth_table is not None and not units)
     kept: Any = slice(None)
     most = 4 * np.pi
     own = rows.array(names)
@@ -283,11 +283,12 @@ def from_table(
             )
         else:
             other = _Table(truth_table)
-            stamps = seconds(other.source, other.column(time), units.get("truth_time", unit), "truth_time")
-            of, values, of_truth = _interpolated(other, true, stamps, components)
+            of_truth = units.get("truth_time", unit)
+            stamps = seconds(other.source, other.column(time), of_truth, "truth_time", noted=not units)
+            of, values, largest_truth = _interpolated(other, true, stamps, components)
             kept, before, after, share = neighbours(of, times, max_gap)
             say_matched(rows.source, times, kept, other.source, of, max_gap)
-            largest = np.maximum(largest, of_truth)
+            largest = np.maximum(largest, largest_truth)
             own = own[kept] / components.scale - (values[before] + share[:, None] * (values[after] - values[before]))
     else:
         own = own / components.scale

@@ -52,20 +52,20 @@ def units_given(units: Mapping[str, str] | None, kinds: Mapping[str, Sequence[st
     return given
 
 
-def seconds(source: str, times: Array, unit: str, name: str | None = None) -> Array:
-    """Times in seconds, and a note of their unit where it was not asked for and they lie unusually; `name` is what
-    `units` calls them."""
+def seconds(source: str, times: Array, unit: str, name: str = "", *, noted: bool = True) -> Array:
+    """Times in seconds, and a note of their unit where they lie unusually; `name` is what `units` calls them, if it
+    does."""
     scale = UNITS[unit][1]
     rising = np.unique(times[np.isfinite(times)])
     if len(rising) > 1:
         apart = float(np.median(np.diff(rising))) / scale
         usual = [one for one, (kind, of) in UNITS.items() if kind == "time" and 1e-3 <= apart * scale / of <= 1]
-        say = f"units {name or 'time'}={(usual or ['ms'])[0]}"
+        say = f"Say their unit, such as units {name}={(usual or ['ms'])[0]}" if name else "Give them in s"
         taken = f"its times are taken for {unit}, in which they are {apart:.3g} s apart"
         if apart < shortest:
-            raise InputError(f"{source}: {taken} (must be at least 1e-06 s). Say their unit, such as {say}.")
-        if name is not None and not 2e-4 <= apart <= 10:
-            note(f"{source}: {taken}. If they are in another unit, say so, such as {say}.")
+            raise InputError(f"{source}: {taken} (must be at least 1e-06 s). {say}.")
+        if noted and not 9e-4 <= apart <= 10:
+            note(f"{source}: {taken}. {say}, if that is not right.")
     return times / scale
 
 

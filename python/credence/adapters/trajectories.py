@@ -76,7 +76,7 @@ def read_poses(
             either = "begin neither with a rotation beside a position (KITTI) nor with a time and a pose (TUM)"
             raise InputError(f"{source}: {has} and {either}. Check what kind of file it is.")
         note(f"{source}: {has} and are no matrices of KITTI: the first 8 are taken for TUM's time and pose")
-    stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name)
+    stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name, noted=not asked)
     return Poses(source, stamps, pose, _behind(table, _pose_columns, behind if behind in (36, 21) else 0))
 
 
@@ -100,7 +100,7 @@ def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked:
     covariance = _behind(table, wide, table.shape[1] - wide)
     if times is None:
         return Poses(source, np.arange(float(len(table))), pose, covariance, counted=True)
-    stamps = seconds(os.fspath(times), read_table(times, 1)[:, 0], asked or "s", name)
+    stamps = seconds(os.fspath(times), read_table(times, 1)[:, 0], asked or "s", name, noted=not asked)
     if len(stamps) != len(table):
         has = f"it has {len(stamps)} times, and {source} {len(table)} poses"
         raise InputError(f"{os.fspath(times)}: {has}. Give the time of each pose.")
