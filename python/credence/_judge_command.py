@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from credence import Failure, InputError
+from credence._doors import output
 
 _columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
@@ -222,6 +223,8 @@ def main(words: Sequence[str]) -> int:
     try:
         if given.record and Path(given.record).suffix != ".h5":
             raise InputError(f"invalid record {given.record} (must end in .h5). Give another name.")
+        if given.record:
+            output("record", given.record)
         if given.record and os.path.exists(given.record) and not given.overwrite:
             raise InputError(f"cannot write {given.record} (it exists). Give --overwrite, or another name.")
         with warnings.catch_warnings(record=True) as notes:

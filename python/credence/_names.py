@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 from typing import Any
@@ -18,6 +19,11 @@ def printable(given: object) -> str:
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)[:100]
 
 
+def not_utf8(text: str) -> bool:
+    """Whether a text has halves of characters, which UTF-8 cannot write."""
+    return re.search("[\ud800-\udfff]", text) is not None
+
+
 def _whole(given: object) -> int | None:
     if isinstance(given, bool) or not isinstance(given, Real):
         return None
@@ -25,8 +31,8 @@ def _whole(given: object) -> int | None:
 
 
 def _name(argument: str, given: object) -> str:
-    if not isinstance(given, str):
-        raise InputError(f"invalid {argument} ({printable(given)} is not a text). Give one.")
+    if not isinstance(given, str) or not_utf8(given):
+        raise InputError(f"invalid {argument} ({printable(given)} is not a text in UTF-8). Give one.")
     return given
 
 

@@ -7,14 +7,17 @@ import ast
 import contextlib
 import importlib
 import os
-import signal
 import sys
+import traceback
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from credence import Failure, InputError
+from credence import InputError
+from credence._calls import say
+from credence._doors import needed
 from credence.judging import NOT_REFUTED
 from credence.program import STOPPED, Interrupted
+from credence.simulating import simulate
 
 CONSISTENT = ("consistent",)
 
@@ -29,6 +32,10 @@ def _function(name: str) -> Any:
         found = importlib.import_module(module)
     except ModuleNotFoundError as error:
         raise InputError(f"{name}: cannot be imported ({error}). Call this in the folder of the module.") from error
+    except Exception as error:
+        where = traceback.extract_tb(error.__traceback__)[-1]
+        said = f"{type(error).__name__}: {error}; {where.filename}, line {where.lineno}"
+        raise InputError(f"{name}: cannot be imported ({said}). Mend the module.") from error
     if not hasattr(found, attribute):
         raise InputError(f"{name}: the module has no {attribute}. Name a function of {found.__file__}.")
     return getattr(found, attribute)
@@ -56,10 +63,10 @@ def _executor(name: str | None) -> Iterator[Any]:
     if name is None or name.isdigit():
         yield None if name is None else int(name)
     elif name == "mpi":
-        with importlib.import_module("mpi4py.futures").MPIPoolExecutor() as executor:
+        with needed("mpi4py.futures", "mpi4py", "run on MPI").MPIPoolExecutor() as executor:
             yield executor
     elif name.split(":")[0] == "dask":
-        client_of = importlib.import_module("distributed").Client
+        client_of = needed("distributed", "distributed", "run on Dask").Client
         address = name.partition(":")[2]
         file = os.environ.get("DASK_SCHEDULER_FILE")
         with client_of(address or None) if address or not file else client_of(scheduler_file=file) as client:
@@ -92,17 +99,10 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
-def _stop(*_: object) -> None:
-    raise KeyboardInterrupt
-
-
 def main(words: Sequence[str]) -> int:
     """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
     given = parser().parse_args(words)
-    signal.signal(signal.SIGTERM, _stop)
     try:
-        from credence.simulating import simulate
-
         function, arms = _function(given.function), _arms(given.arm)
         with _executor(given.executor) as executor:
             study = simulate(
@@ -110,12 +110,9 @@ def main(words: Sequence[str]) -> int:
                 output=given.output, resume=given.resume, until=given.until, timeout=given.timeout, failed=given.failed,
                 progress=False if given.quiet else None,
             )  # fmt: skip
-        print(study, end="")
     except Interrupted as stopped:
-        print(f"credence simulate: {stopped}. To resume it: --resume.", file=sys.stderr)
+        print(f"credence simulate: {stopped}.{' To resume it: --resume.' * bool(given.output)}", file=sys.stderr)
         return STOPPED
-    except (InputError, Failure) as error:
-        print(f"credence simulate: {error}", file=sys.stderr)
-        return 2 if isinstance(error, InputError) else 1
+    say(str(study))
     passes = {"consistent": CONSISTENT, "no-finding": NOT_REFUTED}.get(given.require or "")
     return 1 if passes and any(verdict.verdict not in passes for verdict in study.verdicts.values()) else 0

@@ -115,8 +115,12 @@ class Trials:
 
     def _write(self, frame: bytes) -> None:
         left = memoryview(frame)
-        while left:
-            left = left[self._file.write(left) :]
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError as error:
+            error.filename = str(self.path)
+            raise
 
     def append(self, frame: Frame) -> None:
         """Add a chunk. It is safe from the end of the process at once, and from that of the machine within a second."""

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import signal
-import sys
-import warnings
 from collections.abc import Sequence
 
-from credence import Failure, InputError
+from credence import InputError
+from credence._calls import say
+from credence._doors import needed, output
 from credence._names import printable
-from credence._simulate_command import CONSISTENT, _executor, _function, _stop
+from credence._simulate_command import CONSISTENT, _executor, _function
 from credence.judging import NOT_REFUTED
-
-STOPPED = 130
+from credence.tuning import tune
 
 
 def _free(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
@@ -71,29 +69,21 @@ def parser() -> argparse.ArgumentParser:
 def main(words: Sequence[str]) -> int:
     """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
     given = parser().parse_args(words)
-    signal.signal(signal.SIGTERM, _stop)
-    warnings.showwarning = lambda message, *_: print(f"credence tune: {message}", file=sys.stderr)
-    try:
-        from credence.tuning import tune
-
-        if given.picture is not None and not given.picture.lower().endswith((".png", ".pdf", ".svg")):
+    if given.picture is not None:
+        if not given.picture.lower().endswith((".png", ".pdf", ".svg")):
             raise InputError(f"invalid --picture {printable(given.picture)} (must be a .png, .pdf or .svg). Name one.")
-        is_function = ":" in given.what and not given.what.endswith(".ini")
-        with _executor(given.executor) as executor:
-            tuned = tune(
-                _function(given.what) if is_function else given.what, free=_free(given.free), trials=given.trials,
-                seed=given.seed, objective=given.objective, start=_start(given.start), executor=executor,
-                batch=given.batch, held_out=given.held_out, arm=given.arm, program=given.program,
-                progress=False if given.quiet else None,
-            )  # fmt: skip
-            print(tuned, end="")
-            if given.picture is not None:
-                tuned.plot().save(given.picture)
-    except KeyboardInterrupt:
-        print("credence tune: it was stopped.", file=sys.stderr)
-        return STOPPED
-    except (InputError, Failure) as error:
-        print(f"credence tune: {error}", file=sys.stderr)
-        return 2 if isinstance(error, InputError) else 1
+        output("picture", given.picture)
+        needed("matplotlib", "matplotlib", "draw a picture")
+    is_function = ":" in given.what and not given.what.endswith(".ini")
+    with _executor(given.executor) as executor:
+        tuned = tune(
+            _function(given.what) if is_function else given.what, free=_free(given.free), trials=given.trials,
+            seed=given.seed, objective=given.objective, start=_start(given.start), executor=executor,
+            batch=given.batch, held_out=given.held_out, arm=given.arm, program=given.program,
+            progress=False if given.quiet else None,
+        )  # fmt: skip
+    say(str(tuned))
+    if given.picture is not None:
+        tuned.plot().save(given.picture)
     passes = {"consistent": CONSISTENT, "no-finding": NOT_REFUTED}.get(given.require or "")
     return 1 if passes and tuned.verdict.verdict not in passes else 0

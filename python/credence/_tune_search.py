@@ -6,13 +6,15 @@ between its bounds.
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from credence import Failure
+from credence._calls import progress_bar
 from credence._trials import Array
 from credence._tune_sources import Source
 
@@ -66,12 +68,21 @@ class Space:
 class Objective:
     """The number that is minimised, with the scores of all points that were asked for."""
 
-    def __init__(self, source: Source, space: Space, trials: int, show: Callable[[int, float], None]) -> None:
-        self.source, self.space, self.trials, self._show = source, space, trials, show
+    def __init__(self, source: Source, space: Space, trials: int) -> None:
+        self.source, self.space, self.trials = source, space, trials
+        self._draw: Callable[..., object] | None = None
         self.evaluations = 0  # points, those on fewer trials counted by their share
         self.failing = 0  # points without a result
         self._known: dict[tuple[bytes, int], Array] = {}
+        self._searched: list[tuple[Array, int]] = []  # points, and their trials
         self._runs = 0
+
+    @contextlib.contextmanager
+    def shown(self, progress: bool | None) -> Iterator[None]:
+        """Show the progress of evaluations."""
+        with progress_bar(progress) as self._draw:
+            yield
+        self._draw = None
 
     def scores(self, w: Array, count: int | None = None) -> Array:
         """The score of each trial at w; that of one without a result is the worst of the others. NaN throughout where
@@ -82,13 +93,15 @@ class Objective:
             scores = self.source.scores(self.space.values(w), count)
             self._runs += len(scores)
             self.evaluations = round(self._runs / max(self.trials, 1))
+            self._searched.append((np.array(w, dtype=float), count))
             there = np.isfinite(scores)
             is_failing = np.mean(~there) > FAILED
             self.failing += int(is_failing)
             self._known[key] = np.full(len(scores), np.nan) if is_failing else np.where(
                 there, scores, np.max(scores[there])
             )  # fmt: skip
-            self._show(self._runs, self.of(self._known[key]))
+            if self._draw is not None:
+                self._draw(self._runs, 0, f"{self.evaluations} evaluations, score {self.of(self._known[key]):.5g}")
         return self._known[key]
 
     def of(self, scores: Array) -> float:
@@ -98,6 +111,18 @@ class Objective:
 
     def value(self, w: Array, count: int | None = None) -> float:
         return self.of(self.scores(w, count))
+
+    def searched(self) -> tuple[Array, Array]:
+        """All points that were asked for [point, p], and by how much their score is above the lowest of all points on
+        the same trials [point]: NaN for those without a result."""
+        places = np.array([w for w, _ in self._searched])
+        counts = np.array([count for _, count in self._searched])
+        rises = np.array([self.value(w, count) for w, count in self._searched])
+        for count in np.unique(counts):
+            of = counts == count
+            if np.isfinite(rises[of]).any():
+                rises[of] -= np.nanmin(rises[of])
+        return places, rises
 
 
 def _local(objective: Objective, w: Array, count: int, radius: float, end: float) -> Array:

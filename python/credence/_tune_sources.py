@@ -36,6 +36,7 @@ class Source(Protocol):
 
     objective: str
     trouble: str  # why the first trial without a result has none; empty if there was none
+    progress: bool | None  # whether a bar is drawn of what is judged
 
     def scores(self, values: Values, count: int) -> Array:
         """The score of each of the first `count` trials [count], NaN of those without a result."""
@@ -77,6 +78,7 @@ class FunctionSource:
 
     def __init__(self, work: Work, objective: str, executor: Any) -> None:
         self.work, self.objective, self.executor, self.trouble = work, objective, executor, ""
+        self.progress: bool | None = False
         self._workers: Workers[list[int]] | None = None
         self._seconds = 0.0  # of one trial; 0 before any is done
 
@@ -114,7 +116,7 @@ class FunctionSource:
 
         study = simulate(
             self.work.run, trials=count, seed=held_out_seed(self.work.seed), arms={"tuned": dict(values)},
-            executor=self.executor, batch=self.work.batch or False,
+            executor=self.executor, batch=self.work.batch or False, progress=self.progress,
         )  # fmt: skip
         verdict = study.arm("tuned").verdict
         if self.objective != "innovations":
@@ -142,6 +144,7 @@ class ScenarioSource:
         if program is not None and executor is not None:
             raise InputError("cannot run a program of your own on an executor (it has threads). Leave executor out.")
         self.scenario, self.objective, self.seed, self.trouble = scenario, objective, seed, ""
+        self.progress: bool | None = False
         self.executor, self.arm, self.own_program = executor, arm, program
 
     def shown(self, values: Values) -> dict[str, str]:
@@ -169,13 +172,13 @@ class ScenarioSource:
             raise kind(" ".join(done.stderr.split()).removeprefix("credence ") or f"exit code {done.returncode}")
         return done.stdout
 
-    def _study(self, values: Values, count: int, seed: int) -> Any:
+    def _study(self, values: Values, count: int, seed: int, progress: bool | None = False) -> Any:
         """A study that was run, which goes with its object."""
         from credence.program import run
         from credence.study import open as open_study
 
         if self.own_program is None:
-            return run(self.scenario, trials=count, seed=seed, set=values, executor=self.executor, progress=False)
+            return run(self.scenario, trials=count, seed=seed, set=values, executor=self.executor, progress=progress)
         folder = tempfile.TemporaryDirectory(prefix="credence-")
         path = os.path.join(folder.name, "study.h5")
         self._own("run", [f"--trials={count}", f"--seed={seed}", f"--output={path}", "--quiet"], values)
@@ -204,7 +207,7 @@ class ScenarioSource:
     def judged(self, values: Values, count: int) -> tuple[Verdict, float]:
         from credence.program import report
 
-        study = self._study(values, count, held_out_seed(self.seed))
+        study = self._study(values, count, held_out_seed(self.seed), self.progress)
         said = report(study)
         entry = [one for one in said.json if one["arm"] == self.arm]
         verdict = Verdict(_Printed(str(said), json.dumps(entry), said.html))
@@ -226,6 +229,7 @@ class LogSource:
 
     def __init__(self, run: Callable[..., Any], objective: str, start: Values, held_out: int | None) -> None:
         self.run, self.objective, self.trouble = run, objective, ""
+        self.progress: bool | None = False
         arrays, texts = self._arrays(start)
         steps = len(step_scores(objective, arrays))
         self.first = steps // 2 if held_out is None else steps - held_out
@@ -237,7 +241,14 @@ class LogSource:
         self.segments = max(2, self.first // max(1, int(each)))
 
     def _arrays(self, values: Values) -> tuple[dict[str, Array], dict[str, Any]]:
-        run = self.run(**values)
+        try:
+            run = self.run(**values)
+        except InputError:
+            raise
+        except Exception as error:
+            told = ", ".join(f"{name}={value:g}" for name, value in values.items())
+            said = f"the function failed with {told} ({type(error).__name__}: {error})"
+            raise Failure(f"{said}. Mend it, or give another start.") from error
         if not isinstance(run, Run):
             raise InputError(f"the function returned {type(run).__name__}, not a credence.Run. Return one.")
         return arrays_of(run), run.texts
@@ -260,7 +271,7 @@ class LogSource:
         except InputError:
             raise
         except Exception as error:
-            self.trouble = self.trouble or f"{type(error).__name__}: {error}"
+            self.trouble = self.trouble or str(error)
             return np.full(self.segments, np.nan)
         there = ~np.isnan(each)
         if not there.any() or not np.isfinite(each[there]).all():

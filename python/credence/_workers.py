@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any, Generic, TypeVar
 
 from credence import Failure, InputError
@@ -88,6 +89,24 @@ def _workers_of(executor: Any) -> int:
     return os.cpu_count() or 1
 
 
+@contextlib.contextmanager
+def _refusals(own: bool, executor: Any) -> Iterator[None]:
+    """Say why an executor takes no tasks."""
+    try:
+        yield
+    except (BrokenExecutor, InputError, Failure):
+        raise
+    except OSError as error:
+        if not own:
+            raise
+        why = "Let processes and memory in /dev/shm be made, or leave executor out"
+        raise Failure(f"cannot start processes ({error.strerror or error}). {why}.") from error
+    except RuntimeError as error:
+        if isinstance(executor, _Here):
+            raise
+        raise InputError(f"invalid executor of {type(executor).__name__} ({error}). Give one that is open.") from error
+
+
 @dataclass
 class Task(Generic[Payload]):
     """What a worker has to do, whether nothing is done beside it, and how often it was lost so."""
@@ -117,13 +136,15 @@ class Workers(Generic[Payload]):
         if executor is not None and not self.own and not callable(getattr(executor, "submit", None)):
             what = f"invalid executor of {type(executor).__name__} (it has no submit)"
             raise InputError(f"{what}. Give a number of processes, or an executor of concurrent.futures.")
-        self._is_at_work = multiprocessing.RawValue("q", 0)
+        with _refusals(self.own, executor):
+            self._is_at_work: Any = multiprocessing.RawValue("q", 0) if self.own else SimpleNamespace(value=0)
         self.replaced = False  # whether the executor in use is one of ours in place of a broken one
         self.executor: Any = _Here() if executor is None else executor
         self.count = 1 if executor is None else executor if self.own else _workers_of(executor)
         self.window = 1 if executor is None else 2 * self.count + 1  # tasks that wait or run
         if self.own:
-            self.executor = _own_processes(self.count, shared, self._is_at_work)
+            with _refusals(self.own, executor):
+                self.executor = _own_processes(self.count, shared, self._is_at_work)
 
     def submit(self, arguments: tuple[Any, ...]) -> Future[Any]:
         if self.own:
@@ -132,7 +153,8 @@ class Workers(Generic[Payload]):
 
     def _sent(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         try:
-            future: Future[Any] = self.executor.submit(function, *arguments)
+            with _refusals(self.own, self.executor):
+                future: Future[Any] = self.executor.submit(function, *arguments)
         except BrokenExecutor as error:
             future = Future()
             future.set_exception(error)

@@ -7,7 +7,8 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from credence import _core
+from credence import InputError, _core
+from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
 
 if TYPE_CHECKING:
@@ -116,9 +117,32 @@ def _refuse_what_is_not_used(given: Mapping[str, object]) -> None:
     for names, other in ((("row_groups",), "innovation"), (("manifold", "chart", "quaternion"), "estimate")):
         for name in names:
             if name in given and other not in given:
-                raise _core.InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
+                raise InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
 
 
+def _judged(name: str, value: Any) -> Any:
+    """Refuse what has verdicts of its own."""
+    remedies = {
+        "Study": "credence.report(study)",
+        "Simulation": "its verdicts",
+        "SimulatedArm": "its verdict",
+        "Verdict": "it as it is",
+        "Run": "credence.simulate, which runs a function many times",
+    }
+    kind = type(value).__name__
+    if kind in remedies and type(value).__module__.startswith("credence."):
+        raise InputError(f"invalid {name} (a {kind} is no array of errors). Take {remedies[kind]}.")
+    return doors.path(name, value) if isinstance(value, (str, os.PathLike)) else value
+
+
+@doors.door(
+    error=_judged, covariance=_judged, group_covariance=doors.mapping('{"pose": P}'), name=doors.text,
+    group_nees=doors.mapping('{"pose": nees}'), progress=doors.flag,
+    **dict.fromkeys(
+        ("margin", "margin_direction", "bias", "failed", "segments", "groups", "component_names", "component_units"),
+        doors.plain,
+    ),
+)  # fmt: skip
 def judge(
     error: object = None,
     covariance: object = None,
@@ -258,6 +282,7 @@ def judge(
         return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 
 
+@doors.door(strict=doors.flag)
 def assert_consistent(
     *arguments: Any, within: float | str | None = None, strict: bool = False, **named: Any
 ) -> Verdict:
@@ -277,7 +302,8 @@ def assert_consistent(
     __tracebackhide__ = True  # pytest then shows the line that asserts
     if within is not None:
         named["margin"] = within
-    verdict = judge(*arguments, **named)
+    with errors_of_arguments(lambda said: said if within is None else said.replace("margin=", "within=", 1)):
+        verdict = judge(*arguments, **named)
     if verdict.verdict not in NOT_REFUTED:
         raise AssertionError(f"the filter is not consistent\n\n{verdict}")
     if within is not None and not verdict.is_consistent:

@@ -7,14 +7,15 @@ import json
 import os
 import shutil
 import tempfile
-import warnings
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from credence import _core
-from credence._calls import errors_of_arguments, framed, progress_bar, said
+from credence import _doors as doors
+from credence._calls import errors_of_arguments, framed, note, progress_bar, said
+from credence._names import not_utf8, printable
 
 if TYPE_CHECKING:
     from credence.simulating import Simulation
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     Settings = Mapping[str, object]
     Sweep = Mapping[str, str | Iterable[object]]
     Goals = str | Sequence[str] | Mapping[str, object]
+
+SEED = doors.whole(0, 2**64 - 1)
+SETTINGS = doors.mapping('{"noise.heading": 0.01}')
+FILE = doors.file_or("Study")
 
 STOPPED = 3  # the exit code of a run that a signal stopped, with everything kept
 
@@ -46,8 +51,15 @@ class Interrupted(KeyboardInterrupt):
 
 def _command(words: Sequence[str], progress: bool | None = False) -> tuple[int, str, str]:
     """Run a command of the program; return its exit code and what it said on both streams."""
+    _refuse_what_is_not_utf8(words)
     with errors_of_arguments(), progress_bar(progress) as bar:
         return _core.command(words, bar)
+
+
+def _refuse_what_is_not_utf8(words: Sequence[str]) -> None:
+    for word in words:
+        if not_utf8(word):
+            raise _core.InputError(f"invalid {said(printable(word))} (it is not UTF-8). Give another name.")
 
 
 def _value_text(value: object) -> str:
@@ -147,7 +159,7 @@ def _finish(words: list[str], output: str, progress: bool | None, folder: str | 
     if code == STOPPED:
         raise Interrupted(said(err.split(" To resume it:")[0].strip()), study)
     if err:
-        warnings.warn(said(err.strip()), stacklevel=3)
+        note(said(err.strip()))
     return study
 
 
@@ -155,6 +167,11 @@ def _release(_: object) -> None:
     """Let go of what has been kept until now."""
 
 
+@doors.door(
+    path_or_text=doors.paths, trials=doors.whole(1), seed=SEED, threads=doors.whole(1), set=SETTINGS, sweep=doors.sweep,
+    until=doors.goals, output=doors.output, overwrite=doors.flag, keep=doors.text, force=doors.flag,
+    executor=doors.executor, shards=doors.whole(1), progress=doors.flag,
+)  # fmt: skip
 def run(
     path_or_text: File | Sequence[File],
     *,
@@ -240,6 +257,7 @@ def run(
         return _written(["run", *paths, *options, *settings, *_goal_words(until)], output, progress)
 
 
+@doors.door(paths=doors.paths, output=doors.output, overwrite=doors.flag, progress=doors.flag)
 def merge(
     paths: Sequence[File], output: File | None = None, *, overwrite: bool = False, progress: bool | None = None
 ) -> Study:
@@ -273,6 +291,7 @@ def _written(words: list[str], output: File | None, progress: bool | None) -> St
     return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
 
 
+@doors.door(study=FILE, trials=doors.whole(1), threads=doors.whole(1), until=doors.goals, progress=doors.flag)
 def resume(
     study: Study | File,
     *,
@@ -303,6 +322,10 @@ def resume(
     return resumed
 
 
+@doors.door(
+    study=FILE, scenario=doors.text, arm=doors.text, trial=doors.whole(), noise=doors.path, set=SETTINGS,
+    output=doors.output, overwrite=doors.flag,
+)  # fmt: skip
 def replay(
     study: Study | File,
     *,
@@ -364,8 +387,10 @@ class Printed:
     """
 
     def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
+        whole = [command, *map(_path_of, studies), *words]
+        _refuse_what_is_not_utf8(whole)
         with errors_of_arguments():
-            self._said = _core.Said([command, *map(_path_of, studies), *words])
+            self._said = _core.Said(whole)
         self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
 
     def __str__(self) -> str:
@@ -388,6 +413,7 @@ class Comparison(Printed):
     """Arms or runs compared trial by trial, A - B; `json` has an entry for each scenario and pair."""
 
 
+@doors.door(study=FILE)
 def report(
     study: Study | File,
     *,
@@ -416,6 +442,7 @@ def report(
     )
 
 
+@doors.door(arms=doors.texts)
 def compare(
     *studies: Study | Simulation | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
 ) -> Comparison:
@@ -446,6 +473,7 @@ def compare(
     return Comparison("compare", files, _option_words(arms=both, failed=failed))
 
 
+@doors.door(path_or_text=doors.paths, set=SETTINGS, sweep=doors.sweep)
 def show(
     path_or_text: File | None = None,
     *,

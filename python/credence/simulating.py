@@ -30,13 +30,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from credence import _core
-from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
+from credence import _doors as doors
+from credence._calls import errors_of_arguments, framed, note, progress_bar, said_of_arrays
 from credence._names import printable
 from credence._trial_files import Trials, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, run_chunk, same
 from credence._workers import TRIES, Workers
 from credence.judging import REFUTED, Verdict, judge, tune_hint
-from credence.program import Interrupted
+from credence.program import SEED, Interrupted
 
 if TYPE_CHECKING:
     from credence.program import Comparison
@@ -61,6 +62,10 @@ class Goal(NamedTuple):
     arms: tuple[str, str] | None
     width: float
     is_relative: bool
+
+    def __str__(self) -> str:
+        pair = f"[{self.arms[0]}-{self.arms[1]}]" if self.arms else ""
+        return f"{self.metric}{pair}=" + (f"{100 * self.width:g}%" if self.is_relative else f"{self.width:g}")
 
     def is_met(self, values: Array, alpha: float) -> bool:
         """Whether Student's interval of this level is narrow enough."""
@@ -104,19 +109,11 @@ def _goals(until: Goals | None, arms: Arms) -> list[Goal]:
     return [_goal(name, width, arms) for name, _, width in (text.rpartition("=") for text in texts)]
 
 
-def _whole(name: str, value: object, least: int, most: int) -> int:
-    is_whole = isinstance(value, (int, np.integer, float)) and not isinstance(value, bool) and value == value // 1
-    if not is_whole or not least <= value <= most:  # type: ignore[operator]
-        limits = f"must be a whole number from {least} to {most}"
-        raise _core.InputError(f"invalid {name}={printable(value)} ({limits}). Give one in that range.")
-    return int(value)  # type: ignore[call-overload,no-any-return]
-
-
 def _arms(given: Mapping[str, Mapping[str, Any]] | None) -> Arms:
     if given is None:
         return {ONLY_ARM: {}}
     arms = {}
-    for name, options in given.items():
+    for name, options in doors.mapping("{'kf': {'q': 0.2}}")("arms", given).items():
         if not isinstance(name, str) or not re.fullmatch(r"\w[\w.+-]*", name):
             why = f"{printable(name)} is no name of letters, digits and . + -"
             raise _core.InputError(f"invalid arms ({why}). Give one that can be a part of a file's name.")
@@ -365,6 +362,7 @@ class _Engine:
         self._seconds = 0.0  # of one trial; 0 before any is done
         self._bytes = 1
         self._checked = False
+        self._unmet: Goal | None = None  # a mean that is not yet as precise as asked
         self._failed_first: dict[str, set[int]] = {arm: set() for arm in work.arms}
         self._count_failures(trials.failures())
 
@@ -378,7 +376,11 @@ class _Engine:
         analysis, count = 1, min(FIRST_ANALYSIS, self.ceiling)
         while True:
             self._run_to(workers, count)
-            if count == self.ceiling or self._are_met(count, ALPHA / 2**analysis):
+            is_met = self._are_met(count, ALPHA / 2**analysis)
+            if count == self.ceiling and not is_met:
+                note(f"not as precise as asked at the ceiling of {count} trials ({self._unmet}). "
+                     "Give more trials, or a wider half-width.")  # fmt: skip
+            if count == self.ceiling or is_met:
                 return count
             analysis, count = analysis + 1, min(2 * count, self.ceiling)
 
@@ -508,6 +510,7 @@ class _Engine:
                 _, in_a, in_b = np.intersect1d(trials_a, trials_b, return_indices=True)
                 samples = [a[in_a] - b[in_b]]
             if not all(goal.is_met(sample, alpha) for sample in samples):
+                self._unmet = goal
                 return False
         return True
 
@@ -546,10 +549,19 @@ def _refuse_bad_limit(failed: float | str) -> None:
         )
 
 
+def batch_size(name: str, value: Any) -> int:
+    """How many generators a function takes at once; 0 where it takes one."""
+    return int(value) * BATCH if isinstance(value, bool) else doors.whole(1, 2**20)(name, value)
+
+
+@doors.door(
+    trials=doors.whole(1), seed=SEED, batch=batch_size, output=doors.output, resume=doors.flag, until=doors.goals,
+    timeout=doors.above_zero, failed=doors.plain, executor=doors.executor, progress=doors.flag,
+)  # fmt: skip
 def simulate(
     run: Callable[..., Any],
-    *,
     trials: int,
+    *,
     seed: int = 1,
     arms: Mapping[str, Mapping[str, Any]] | None = None,
     executor: Any = None,
@@ -617,11 +629,7 @@ def simulate(
         raise _core.InputError(
             f"invalid run (a {type(run).__name__} cannot be called). Give a function of a generator."
         )
-    plan, root = _arms(arms), _whole("seed", seed, 0, 2**64 - 1)
-    ceiling = _whole("trials", trials, 1, 2**53)
-    size = 0 if batch is False else BATCH if batch is True else _whole("batch", batch, 1, 2**20)
-    if timeout is not None and not timeout > 0:
-        raise _core.InputError(f"invalid timeout={timeout} (must be above 0). Give seconds, or None.")
+    plan = _arms(arms)
     goals = _goals(until, plan)
     _refuse_bad_limit(failed)
     _refuse_missing("h5py", "trials are kept in HDF5 files")
@@ -633,10 +641,13 @@ def simulate(
     try:
         if not resume:
             files.refuse_what_exists()
-        return _simulated(Work(run, plan, root, size, timeout), executor, ceiling, goals, failed, progress, files)
+        return _simulated(Work(run, plan, seed, int(batch), timeout), executor, trials, goals, failed, progress, files)
     except BaseException as error:
         if getattr(error, "study", None) is None:
             files.remove_temporary()
+        if isinstance(error, KeyboardInterrupt) and not isinstance(error, Interrupted):
+            kept = "" if output is None else f"; {files.trials} has the trials that were done"
+            raise Interrupted(f"the simulation was stopped{kept}", None) from None
         raise
 
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import h5py
 
+from . import _doors as doors
 from ._file import TRAJECTORIES, Identity, Source, open_hdf5, stem, still_open, text
 from .arm import Arm
 from .means import Means
@@ -211,6 +212,7 @@ def _row(arm: Arm) -> tuple[str, ...]:
     return stem(arm.group.parent), arm.name, trials, f"{arm.failed_trials:,}", shown
 
 
+@doors.door(source=doors.source)
 def open(source: Source) -> Study:
     """Opens a results file; nothing but its header is read.
 

@@ -10,6 +10,7 @@ import re
 
 import numpy as np
 
+from . import _doors as doors
 from ._file import RESULTS, Array, FloatArray, Source, Variables, open_hdf5, stem, text
 from .study import Scenario
 
@@ -80,6 +81,7 @@ class Trajectory(Variables):
         return f"<credence.Trajectory {self.group.name[1:]}, {self.source}: {self.status}>"
 
 
+@doors.door(source=doors.source)
 def open_trajectories(source: Source) -> list[Trajectory]:
     """Opens a trajectory file; nothing but its header is read.
 

@@ -14,7 +14,6 @@ import contextlib
 import inspect
 import math
 import os
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,14 +21,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from credence import Failure, InputError
-from credence._calls import progress_bar
+from credence import _doors as doors
+from credence._calls import note
 from credence._names import printable
 from credence._scores import OBJECTIVES
-from credence._trials import BATCH, Array, Work
+from credence._trials import Array, Work
 from credence._tune_search import Known, Objective, Space, known, search
 from credence._tune_sources import FunctionSource, LogSource, ScenarioSource, Source, held_out_seed
 from credence.judging import NOT_REFUTED, Verdict
-from credence.simulating import _refuse_missing, _whole
+from credence.program import SEED
+from credence.simulating import _refuse_missing, batch_size
 
 if TYPE_CHECKING:
     from credence.pictures.style import Picture
@@ -140,19 +141,14 @@ class Tuned:
             Values of the parameter, and the score on the trials that were tuned on: NaN where there is none.
         """
         space = self._objective.space
-        if name not in space.names:
-            raise KeyError(f"{name} was not tuned. Those are {', '.join(space.names)}")
-        j = space.names.index(name)
+        j, path = self._path(name)
         error = self._facts.error[j]
         low, high = 0.0, float(space.range[j])
         if math.isfinite(error) and error > 0:
             low, high = max(low, self._w[j] - reach * error), min(high, self._w[j] + reach * error)
-        others = [i for i in range(len(self._w)) if i != j and math.isfinite(self._facts.error[i])]
-        H = self._facts.hessian
-        path = -np.linalg.solve(H[np.ix_(others, others)], H[others, j])
-        places = np.tile(self._w, (points, 1))
-        places[:, j] = np.linspace(low, high, points)
-        places[:, others] += (places[:, j] - self._w[j])[:, None] * path
+        along = np.linspace(low, high, points)
+        places = self._w + (along - self._w[j])[:, None] * path
+        places[:, j] = along
         places = np.clip(places, 0, space.range)
         scores = self._values(places)
         return np.array([space.values(place)[name] for place in places]), scores
@@ -184,15 +180,58 @@ class Tuned:
         """Whether a parameter was searched by its logarithm."""
         return bool(self._objective.space.is_log[self._objective.space.names.index(name)])
 
+    def searched(self) -> tuple[dict[str, Array], Array]:
+        """What the search evaluated, without evaluating anything again.
+
+        Returns
+        -------
+        dict of arrays [point], and array [point]
+            Values of each parameter; and by how much the score is above the lowest of those on the same trials, NaN
+            where there is no result.
+        """
+        space = self._objective.space
+        places, rises = self._objective.searched()
+        values = [space.values(np.clip(place, 0, space.range)) for place in places]
+        return {name: np.array([one[name] for one in values]) for name in space.names}, rises
+
+    def parabola(self, name: str, points: int = 61, reach: float = 4) -> tuple[Array, Array]:
+        """The rise of the score over a parameter to second order, with all others at their best: as `profile`, from
+        what is known at the best point. Empty where the score does not see the parameter, or it is at a bound."""
+        space = self._objective.space
+        j, path = self._path(name)
+        error = self._facts.error[j]
+        if not (math.isfinite(error) and error > 0):
+            return np.empty(0), np.empty(0)
+        H = self._facts.hessian
+        curvature = float(path @ H @ path)
+        ends = max(0.0, self._w[j] - reach * error), min(float(space.range[j]), self._w[j] + reach * error)
+        along = np.linspace(*ends, points)
+        values = np.array([space.values(self._w + (one - self._w[j]) * path)[name] for one in along])
+        return values, curvature * (along - self._w[j]) ** 2 / 2
+
+    def _path(self, name: str) -> tuple[int, Array]:
+        """The place of a parameter, and how w moves with its coordinate where all others stay at their best."""
+        names = self._objective.space.names
+        if name not in names:
+            raise KeyError(f"{name} was not tuned. Those are {', '.join(names)}")
+        j = names.index(name)
+        others = [i for i in range(len(self._w)) if i != j and math.isfinite(self._facts.error[i])]
+        H = self._facts.hessian
+        path = np.zeros(len(self._w))
+        path[j] = 1
+        path[others] = -np.linalg.solve(H[np.ix_(others, others)], H[others, j])
+        return j, path
+
     def _values(self, places: Array) -> Array:
         try:
-            return np.array([self._objective.value(place) for place in places])
+            with self._objective.shown(None):
+                return np.array([self._objective.value(place) for place in places])
         finally:
             self._objective.source.close()
 
     def plot(self) -> Picture:
-        """The profile over each parameter; of two parameters the contours of the score as well, from the start to the
-        best. It evaluates the score anew, nine times a parameter and 169 times for contours. Needs matplotlib."""
+        """The score over each parameter, and of two parameters where the search was. It shows what was evaluated, and
+        evaluates nothing again. Needs matplotlib."""
         from credence.pictures.tuning import picture
 
         return picture(self)
@@ -302,11 +341,7 @@ def _number(name: str, given: object) -> float:
 
 def _box(free: Any, start: Mapping[str, float], defaults: Mapping[str, Any], is_scenario: bool) -> tuple[Space, Any]:
     """The bounds and the start of each parameter; what is not given is the default, or the middle of the bounds."""
-    if isinstance(free, str) or not isinstance(free, Iterable):
-        raise InputError(f"invalid free={printable(free)} (must be a dict of bounds). Give one: {{'q': (0.01, 10)}}.")
     given = dict(free) if isinstance(free, Mapping) else dict.fromkeys(free)
-    if not given:
-        raise InputError("invalid free (it has no parameter). Name one with its bounds: {'q': (0.01, 10)}.")
     for name in start:
         if name not in given:
             raise InputError(f"invalid start ({printable(name)} is not free). Free are {', '.join(map(str, given))}.")
@@ -360,10 +395,25 @@ def _options_of(run: Callable[..., Any], free: Any) -> tuple[dict[str, Any], boo
     return defaults, is_rng
 
 
+def _named(name: str, value: Any) -> Any:
+    """Parameters as a dict of their bounds, or as a list of their names."""
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        raise doors.invalid(name, value, "must be a dict of bounds", "Give one: {'q': (0.01, 10)}")
+    given = value if isinstance(value, Mapping) else list(value)
+    if not given:
+        raise InputError("invalid free (it has no parameter). Name one with its bounds: {'q': (0.01, 10)}.")
+    return doors.mapping("{'q': (0.01, 10)}")(name, given) if isinstance(given, Mapping) else doors.texts(name, given)
+
+
+@doors.door(
+    free=_named, trials=doors.whole(2, 2**40), seed=SEED, objective=doors.text, start=doors.mapping('{"q": 1}'),
+    executor=doors.executor, batch=batch_size, held_out=doors.whole(0, 2**40), arm=doors.text, program=doors.path,
+    progress=doors.flag,
+)  # fmt: skip
 def tune(
     what: Any,
-    *,
     free: Free,
+    *,
     trials: int = 200,
     seed: int = 1,
     objective: str = "errors",
@@ -429,12 +479,11 @@ def tune(
     is_scenario = isinstance(what, (str, os.PathLike))
     if not is_scenario and not callable(what):
         raise InputError(f"invalid what (a {type(what).__name__} cannot be called). Give a function, or a scenario.")
-    count, root = _whole("trials", trials, 2, 2**40), _whole("seed", seed, 0, 2**64 - 1)
-    others = max(count, HELD_OUT) if held_out is None else _whole("held_out", held_out, 0, 2**40)
-    size = 0 if batch is False else BATCH if batch is True else _whole("batch", batch, 1, 2**20)
+    count, root = trials, seed
+    others = max(count, HELD_OUT) if held_out is None else held_out
     if not is_scenario and (arm is not None or program is not None):
         raise InputError("arm and program: say nothing of a function. Leave them out.")
-    if is_scenario and batch is not False:
+    if is_scenario and batch:
         raise InputError("batch: says nothing of a scenario. Leave it out.")
     _refuse_old_scipy()
     begins = {name: _number(f"start[{name}]", value) for name, value in (start or {}).items()}
@@ -448,12 +497,12 @@ def tune(
         space, first = _box(free, begins, defaults, False)
         name = getattr(what, "__qualname__", type(what).__name__)
         source = (
-            FunctionSource(Work(what, {}, root, size, None), objective, executor)
+            FunctionSource(Work(what, {}, root, int(batch), None), objective, executor)
             if takes_generator
             else LogSource(what, objective, first, None if held_out is None else others)
         )
     if objective == "nees":
-        warnings.warn(CUSTOM, stacklevel=2)
+        note(CUSTOM)
     if others == 0 and not isinstance(source, LogSource):
         raise InputError("invalid held_out=0 (only a log can be judged on what it was tuned on). Give some trials.")
     if isinstance(source, LogSource):
@@ -464,13 +513,7 @@ def tune(
     else:
         said = (f"{count:,} trials (seed {root})", f"{others:,} other trials (seed {held_out_seed(root)})")
     try:
-        with progress_bar(progress) as draw:
-
-            def show(done: int, value: float) -> None:
-                if draw is not None:
-                    draw(done, 0, f"score {value:.5g}")
-
-            return _tuned((name, *said), source, space, first, count, others, show)
+        return _tuned((name, *said), source, space, first, count, others, progress)
     finally:
         source.close()
 
@@ -499,17 +542,19 @@ def _tuned(
     first: dict[str, float],
     count: int,
     others: int,
-    show: Callable[[int, float], None],
+    progress: bool | None,
 ) -> Tuned:
-    objective = Objective(source, space, count, show)
+    objective = Objective(source, space, count)
     begin = space.coordinates(first)
-    w = search(objective, begin)
-    facts = known(objective, w)
-    gains = {}
-    for j, each in enumerate(space.names):
-        back = w.copy()
-        back[j] = begin[j]
-        gains[each] = objective.value(back) - objective.value(w)
+    with objective.shown(progress):
+        w = search(objective, begin)
+        facts = known(objective, w)
+        gains = {}
+        for j, each in enumerate(space.names):
+            back = w.copy()
+            back[j] = begin[j]
+            gains[each] = objective.value(back) - objective.value(w)
+    source.progress = progress
     after, score_after = source.judged(space.values(w), others)
     before, score_before = None, math.nan
     with contextlib.suppress(Failure):  # the start may be where the filter fails

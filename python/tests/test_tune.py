@@ -174,7 +174,7 @@ def test_trials_without_a_result_count_as_the_worst_of_the_others():
             return np.where(np.arange(count) < values["failed"], np.nan, np.arange(count, dtype=float))
 
     space = Space(("failed",), np.array([0.0]), np.array([200.0]))
-    objective = Objective(Given(), space, 200, lambda *_: None)
+    objective = Objective(Given(), space, 200)
     assert objective.scores(np.array([200 * FAILED / 200])).tolist() == [199, 199, *range(2, 200)]
     assert np.isnan(objective.scores(np.array([0.1]))).all()
 
@@ -275,12 +275,22 @@ def test_the_profile_has_its_least_at_the_best(tmp_path):
     assert "cannot make a grid of 1 parameters" in refusal(best.grid)
 
 
-def test_the_picture_of_two_has_contours():
+def test_the_picture_shows_what_was_evaluated_and_evaluates_nothing():
     found = tuned(free=("s", "bias"), start={"bias": 1.0}, trials=10)
+    evaluations = found._objective.evaluations
+    assert len(found.plot().axes) == 4  # with the scale of colours
+    assert found._objective.evaluations == evaluations
+    points, rises = found.searched()
+    assert points["s"].shape == rises.shape
+    assert min(rises) == 0
+    values, rise = found.parabola("s", points=3)
+    assert values[1] == pytest.approx(found.parameters["s"].value)
+    at, scores = found.profile("s", points=3)
+    assert at == pytest.approx(values)
+    assert rise == pytest.approx(scores - scores[1], rel=0.2)
     x, y, scores = found.grid(4)
     assert scores.shape == (len(x), len(y))
     assert np.nanmin(scores) == pytest.approx(found._objective.value(found._w), abs=1e-9)
-    assert len(found.plot().axes) == 3
 
 
 # What is refused.

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import codecs
 import contextlib
-import importlib
 import math
 import os
-import sys
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -16,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from credence import InputError
+from credence._calls import note as note
+from credence._doors import needed as needed
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -144,25 +144,9 @@ def say_matched(source: str, times: Array, found: NDArray[np.intp], truth: str, 
         note(f"{source}: {left}, and are left out")
 
 
-def note(message: str) -> None:
-    """Say something beside the verdict, at the line that called the package."""
-    level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("credence."):
-        level, frame = level + 1, frame.f_back
-    warnings.warn(message, stacklevel=level)
-
-
 def one_line(error: Exception) -> str:
     """What a library said, fit for a message."""
     return " ".join(str(error).split()).rstrip(".") or type(error).__name__
-
-
-def needed(module: str, package: str, what: str) -> Any:
-    """A module that only some adapters need, and which is imported when they do."""
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        raise InputError(f"cannot {what} ({error}). Install it: pip install {package}.") from None
 
 
 def existing(path: Path) -> str:

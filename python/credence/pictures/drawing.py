@@ -10,6 +10,7 @@ from typing import Any
 
 import matplotlib
 
+from .. import _doors as doors
 from .._file import RESULTS, open_hdf5
 from ..grid import Grid
 from ..study import Scenario, Study
@@ -29,6 +30,10 @@ OF_TRIAL: dict[str, Callable[..., Picture]] = {
     "path": trajectory.path, "errors": trajectory.errors, "nees": trajectory.nees}
 
 
+@doors.door(
+    what=doors.file_or("Study", "Scenario", "Grid", "Trajectory"), kind=doors.text, scenario=doors.text,
+    arms=doors.texts, width=doors.above_zero, path=doors.output, title=doors.flag,
+)  # fmt: skip
 def plot(
     what: Study | Scenario | Grid | Trajectory | str | os.PathLike[str],
     kind: str | None = None,
@@ -140,6 +145,11 @@ def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[...,
     return kinds[kind]
 
 
+@doors.door(
+    what=doors.file_or("Study", "Trajectory"), path=doors.output, trial=doors.whole(), scenario=doors.text,
+    arm=doors.text, ellipse=doors.text, frames_per_second=doors.whole(1, 1000), credence=doors.path,
+    progress=doors.flag,
+)  # fmt: skip
 def animate(
     what: Study | Trajectory | str | os.PathLike[str],
     *,
