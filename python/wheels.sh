@@ -5,7 +5,7 @@
 # from Debian's source package without drivers for networks and without szip, which would bring some forty libraries.
 # The wheel for x86-64 has all targets of the engine. With aarch64 it is that processor's, made by g++'s cross compiler
 # and Debian's libraries for it, which are unpacked and not installed. At the end it tries the wheel, in an emulator if
-# it must.
+# it must, else under Debian's Python, under one that loads no zlib, and under every other one that it finds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source experiments/setup.sh
@@ -80,8 +80,9 @@ fi
 
 # The licences of what the wheel contains.
 licences=$work/LICENCES-OF-LIBRARIES
+boost=$(dpkg-query -S /usr/include/boost/version.hpp | cut -d: -f1)
 for library in "$work"/sources/hdf5-*/debian \
-    /usr/share/doc/{zlib1g,libdeflate-dev,libboost-dev,libeigen3-dev,nlohmann-json3-dev,libgomp1}; do
+    /usr/share/doc/{zlib1g,libdeflate-dev,"$boost",libeigen3-dev,nlohmann-json3-dev,libgomp1}; do
   printf '\n== %s ==\n' "$(sed -E 's|/debian$||; s|.*/||' <<<"$library")"
   cat "$library/copyright"
 done >"$licences"
@@ -101,6 +102,16 @@ python -c 'import sys; from scikit_build_core.build import build_sdist; build_sd
 # It works without anything else but NumPy, and all of its targets say the same, as does the program of a build here.
 try=$(mktemp -d)
 trap 'rm -rf "$try"' EXIT
+# with_own_zlib PYTHON: makes an interpreter of Debian's static library with a zlib of its own, which no module sees, as
+# in builds of Python that do not come from a distribution.
+with_own_zlib() {
+  local library includes
+  library=$(/usr/bin/python3 -c 'import sysconfig; print("/".join(map(sysconfig.get_config_var, ("LIBPL", "LIBRARY"))))')
+  includes=$(/usr/bin/python3 -c 'import sysconfig; print(sysconfig.get_path("include"))')
+  echo 'int Py_BytesMain(int, char**); int main(int count, char** words) { return Py_BytesMain(count, words); }' |
+    gcc -no-pie -x c - -x none -o "$1" -I"$includes" -Wl,--export-dynamic,--exclude-libs,libz.a:libexpat.a \
+      -Wl,--whole-archive "$library" -Wl,--no-whole-archive -l:libz.a -l:libexpat.a -lm
+}
 said() { "$@" run experiments/seed/ekf-circle-ranged.ini --trials 512 --quiet --overwrite -o "$try/study.h5" &&
   "$@" report "$try/study.h5" --format $format; }
 if [ -n "$cross" ]; then
@@ -113,7 +124,24 @@ else
   format=json
   /usr/bin/python3 -m venv "$try/venv"
   "$try/venv/bin/python" -m pip install -q --disable-pip-version-check "$wheel"
+  packages=$(echo "$try"/venv/lib/python3*/site-packages)
+  if ldd -r "$packages"/credence/_core*.so 2>&1 | grep 'undefined symbol' | grep -v 'undefined symbol: _\?Py'; then
+    echo "the wheel is not linked to the libraries that have these"
+    exit 1
+  fi
   said "$try/venv/bin/python" -m credence >"$try/here"
+  with_own_zlib "$try/python"
+  said env PYTHONHOME=/usr PYTHONPATH="$packages" "$try/python" -m credence | cmp - "$try/here"
+  tried="Debian's Python and one that loads no zlib"
+  for python in "$HOME"/.pyenv/versions/3.1[0-9]*/bin/python3 /opt/hostedtoolcache/Python/3.1[0-9]*/x64/bin/python3 \
+      "$HOME"/.local/share/uv/python/cpython-3.1[0-9]*/bin/python3; do
+    if [ ! -x "$python" ]; then continue; fi
+    "$python" -m venv --clear "$try/other"
+    "$try/other/bin/python" -m pip install -q --disable-pip-version-check "$wheel"
+    said "$try/other/bin/python" -m credence | cmp - "$try/here"
+    tried+=", $("$python" -c 'import platform; print(platform.python_version())')"
+  done
+  echo "tried under $tried"
   for target in portable v3; do
     CREDENCE_FORCE_TARGET=$target said "$try/venv/bin/python" -m credence | cmp - "$try/here"
   done
