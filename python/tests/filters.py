@@ -31,6 +31,11 @@ def slow(rng, seconds=0.002):
     return drawn(rng)
 
 
+def large(rng, steps=20, n=80):
+    """A trial of 1 MB."""
+    return credence.Run(rng.standard_normal((steps, n)), np.broadcast_to(np.eye(n), (steps, n, n)))
+
+
 def first_of(rng):
     """The first number of a trial, by which the function can tell which trial it is."""
     return rng.standard_normal()

@@ -1,6 +1,7 @@
 """`credence.simulate` on executors: the same bits on all of them, and after workers were lost.
 
-With CREDENCE_KILLS=50 that many workers are killed at random times, in place of 5.
+With CREDENCE_KILLS=500 that many workers are killed at random times, in place of 5, and that many times 2/5 studies are
+stopped by a signal.
 """
 
 from __future__ import annotations
@@ -170,6 +171,100 @@ def test_workers_that_are_killed_at_random_times(tmp_path):
     assert multiprocessing.active_children() == []
     credence.simulate(filters.slow, trials=trials, arms={"right": {"seconds": 0}}, output=tmp_path / "b.h5")
     assert filecmp.cmp(tmp_path / "a.right.h5", tmp_path / "b.right.h5", shallow=False)
+
+
+KILLED = """
+import contextlib, multiprocessing, os, random, signal, sys, threading, time
+import credence, filters
+
+seed, kills, path, kind = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4]
+chance, killed, running = random.Random(seed), [], True
+
+def kill():
+    while running and len(killed) < kills:
+        time.sleep(chance.uniform(0.02, 0.2))
+        processes = multiprocessing.active_children()
+        if processes:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(chance.choice(processes).pid, signal.SIGKILL)
+                killed.append(1)
+
+thread = threading.Thread(target=kill)
+thread.start()
+if kind == "own":
+    study = credence.simulate(filters.large, trials=40 * kills, executor=2, output=path)
+else:
+    from concurrent.futures import ProcessPoolExecutor
+    with ProcessPoolExecutor(2, multiprocessing.get_context("fork")) as pool:
+        study = credence.simulate(filters.large, trials=40 * kills, executor=pool, output=path)
+running = False
+thread.join()
+print(len(killed), len(study.failures), len(multiprocessing.active_children()))
+"""
+
+
+STOPPED = """
+import pathlib, sys
+import credence.simulating
+from credence._simulate_command import main
+
+pathlib.Path("begun").touch()
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def in_a_process(words, **given):
+    given["env"] = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
+    return subprocess.Popen([sys.executable, *map(str, words)], start_new_session=True, **given)
+
+
+@pytest.mark.parametrize("kind", ["own", "standard"])
+def test_workers_that_are_killed_while_they_send(tmp_path, kind):
+    """Trials of 1 MB, so that a worker is often killed in the middle of one; the same record, and an end."""
+    left = KILLS if kind == "own" else 5
+    for seed in range(-(-left // 10)):
+        kills, path = min(10, left - 10 * seed), tmp_path / "a.h5"
+        words = ["-c", KILLED, seed, kills, path, kind]
+        with in_a_process(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            said, complaint = process.communicate(timeout=120)
+        assert process.returncode == 0, complaint
+        killed, failures, alive = map(int, said.split())
+        assert (failures, alive) == (0, 0)
+        assert killed > 0
+        credence.simulate(filters.large, trials=40 * kills, output=tmp_path / "b.h5")
+        assert filecmp.cmp(path, tmp_path / "b.h5", shallow=False)
+        for made in tmp_path.iterdir():
+            made.unlink()
+
+
+def test_studies_that_are_stopped_at_random_times(tmp_path):
+    """Ctrl-C, SIGTERM, and the end of the process: each of them ends it, and it goes on to the same record."""
+    chance, path, begun, trials = random.Random(3), tmp_path / "a.h5", tmp_path / "begun", 150
+    counts = {signal.SIGINT: 0, signal.SIGTERM: 0, signal.SIGKILL: 0}
+    words = ["-c", STOPPED, "filters:large", "--trials", trials, "--executor", 2, "-o", path, "--resume", "--quiet"]
+    while counts[signal.SIGINT] < max(3, KILLS * 2 // 5):
+        with in_a_process(words, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as one:
+            while one.poll() is None and not begun.exists():
+                time.sleep(0.01)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                one.wait(chance.uniform(0, 0.7))
+            number = chance.choice([signal.SIGINT, signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+            if one.poll() is None:
+                to_all = number == signal.SIGINT and chance.random() < 0.5  # as on a terminal
+                (os.killpg if to_all else os.kill)(one.pid, number)
+                counts[number] += 1
+            try:
+                complaint = one.communicate(timeout=60)[1].decode()
+            except subprocess.TimeoutExpired:
+                pytest.fail(f"it did not end after signal {number}, or something of it did not: {one.poll()}")
+            assert one.returncode in (0, 3, -number) and "Traceback" not in complaint, complaint
+        begun.unlink()
+        if one.returncode == 0:
+            credence.simulate(filters.large, trials=trials, output=tmp_path / "b.h5")
+            assert filecmp.cmp(path, tmp_path / "b.h5", shallow=False)
+            for made in tmp_path.iterdir():
+                made.unlink()
+    print(counts)
 
 
 def test_what_cannot_be_sent_is_refused():
