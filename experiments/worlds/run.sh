@@ -18,7 +18,7 @@ for scenario in "$here"/*.ini; do
   "$GALLERY" run "$scenario" --trials "${1:-4000}" $quiet --overwrite -o "results/$name.h5" >/dev/null
   "$GALLERY" report "results/$name.h5" | awk -v RS= '/verdict +NEES/ { print $0 "\n" }'
   [ -n "${PICTURES:-}" ] || continue
-  PYTHONPATH=$here/../../python "${PYTHON:-python3}" -m credence.pictures "results/$name.h5" --kind nees -o build/pictures
+  PYTHONPATH=$here/../../python "${PYTHON:-python3}" -m credence.pictures "results/$name.h5" --kind nees --overwrite -o build/pictures
   mkdir -p "$PICTURES"
   cp "build/pictures/$name-nees.png" "$PICTURES/$name.png"
 done

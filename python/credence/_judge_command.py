@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from credence import Failure, InputError
-from credence._doors import output
+from credence._outputs import check_output, whole
 
 _columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
@@ -190,7 +190,7 @@ def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None
     plain, lists = _names.texts_and_lists({name: arguments.pop(name) for name in texts_of if name in arguments})
     dimensions = _names.dimensions(arguments.pop("dimension", None), groups, "nees" in arguments, own["nees"])
     arrays = {**arguments, **{f"group/{name}/{what}": array for what in own for name, array in own[what].items()}}
-    with h5py.File(path, "w") as file:
+    with whole(path) as part, h5py.File(part, "w") as file:
         file.attrs["record_version"] = 2
         if log:
             file.attrs["log"] = log.encode(errors="replace").decode()
@@ -223,10 +223,12 @@ def main(words: Sequence[str]) -> int:
     try:
         if given.record and Path(given.record).suffix != ".h5":
             raise InputError(f"invalid record {given.record} (must end in .h5). Give another name.")
-        if given.record:
-            output("record", given.record)
-        if given.record and os.path.exists(given.record) and not given.overwrite:
-            raise InputError(f"cannot write {given.record} (it exists). Give --overwrite, or another name.")
+        inputs = [*given.log, *(given.truth or ()), *([given.times] if given.times else [])]
+        for output in (given.record, given.output):
+            if output:
+                check_output(output, given.overwrite, inputs=inputs)
+        if given.record and given.output and os.path.realpath(given.record) == os.path.realpath(given.output):
+            raise InputError(f"invalid record {given.record} (-o writes it, too). Give another name.")
         with warnings.catch_warnings(record=True) as notes:
             warnings.simplefilter("always", UserWarning)
             arguments = arguments_of(given)

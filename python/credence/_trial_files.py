@@ -6,13 +6,16 @@ of the trials, so that it has the same bytes whoever computed them and when.
 
 from __future__ import annotations
 
-import contextlib
 import fcntl
+import hashlib
 import json
+import math
+import mmap
 import os
 import time
 import warnings
-from collections.abc import Iterator, Mapping
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +23,53 @@ import numpy as np
 
 from credence import InputError
 from credence._names import printable
-from credence._trials import START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
+from credence._outputs import whole
+from credence._trials import MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
 
-FORMAT = "credence trials 1"
+FORMAT = "credence trials 2"
+BLOCK = 2**20  # bytes that are searched at once
+CHUNK = 2**17  # numbers of a dataset that are stored together, at most
+BLOCK_OF_TRIALS = 2**25  # bytes of a dataset that are written at once
+LEVEL = 1  # of compression: others take longer, and save little
+
+
+def _sum(data: bytes) -> str:
+    return hashlib.blake2b(data, digest_size=8).hexdigest()
+
+
+def _told(value: Any) -> Any:
+    """A value of an option in JSON, so that two are the same where their values are: of arrays their bytes' checksum.
+
+    Of an object it is what its class and its attributes say, or else how it is written.
+    """
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, (bool, int, str)) or (isinstance(value, float) and math.isfinite(value)):
+        return value
+    if isinstance(value, Mapping):
+        return [[_told(key), _told(one)] for key, one in value.items()]
+    if isinstance(value, (list, tuple)):
+        return [_told(one) for one in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted(json.dumps(_told(one)) for one in value)
+    kind = f"{type(value).__module__}.{type(value).__qualname__}"
+    if hasattr(value, "__array__"):
+        array = np.asarray(value)
+        what = _told(array.ravel().tolist()) if array.dtype.hasobject else _sum(array.tobytes())
+        return [kind, array.dtype.str, list(array.shape), what]
+    if not isinstance(value, type) and getattr(value, "__dict__", None):
+        return [kind, _told(vars(value))]
+    said = getattr(value, "__qualname__", None) or repr(value)
+    return [kind] if " at 0x" in said else [kind, said]
 
 
 def _description(seed: int, arms: Arms, batch: int) -> dict[str, Any]:
-    """What decides the trials, apart from the function. Of an option that is no plain number or text, its type."""
-    told = json.dumps(arms, default=lambda option: f"<{type(option).__name__}>")
-    return {"format": FORMAT, "seed": seed, "arms": json.loads(told), "batch": batch}
+    """What decides the trials, apart from the function."""
+    try:
+        told = {arm: {name: _told(value) for name, value in options.items()} for arm, options in arms.items()}
+    except RecursionError:
+        raise InputError("invalid arms (an option contains itself). Give plain values, or arrays.") from None
+    return {"format": FORMAT, "seed": seed, "arms": told, "batch": batch}
 
 
 class Trials:
@@ -38,15 +79,17 @@ class Trials:
     ----------
     done : set of int
         The trials that are there, under every arm.
+    study : str
+        A checksum of what decides them, which their records have as well.
     """
 
     def __init__(self, path: Path, seed: int, arms: Arms, batch: int) -> None:
-        self.path, self.done = path, set[int]()
+        description = _description(seed, arms, batch)
+        self.path, self.done, self.study = path, set[int](), _sum(json.dumps(description).encode())
         self._places: list[tuple[int, int]] = []  # where each chunk's frame begins, and its length
         is_new = not path.exists()
         self._file = open(path, "x+b" if is_new else "r+b", buffering=0)  # noqa: SIM115
         self._synced = time.monotonic()
-        description = _description(seed, arms, batch)
         try:
             self._lock()
             if is_new:
@@ -68,34 +111,47 @@ class Trials:
     def _read(self, description: dict[str, Any]) -> None:
         """Find the frames that are there, and cut off one that was not written to its end."""
         size = os.fstat(self._file.fileno()).st_size
-        if size == 0:  # it was created and nothing else
-            self._write(framed(description, []))
+        first = framed(description, [])
+        if size < len(first) and first.startswith(self._file.read()):  # it was created and nothing else
+            self._file.seek(0)
+            self._write(first)
             return
-        at = 0
+        if self._length_at(0, size) == 0:
+            why = "is no file of simulated trials, or its beginning is damaged"
+            raise InputError(f"{self.path}: {why}. Remove it, or choose another output.")
+        self._refuse_another(self._header(0), description)
+        at = end = self._length_at(0, size)
         while at < size:
             length = self._length_at(at, size)
-            if length == 0:
-                break
-            header = self._header(at)
-            if at == 0:
-                self._refuse_another(header, description)
-            else:
+            if length:
+                if at > end:
+                    self._warn_of(f"{at - end} bytes in the middle of it are damaged")
                 self._places.append((at, length))
-                self.done.update(header["numbers"])
-            at += length
-        if at == 0:
-            raise InputError(f"{self.path}: is no file of simulated trials. Remove it, or choose another output.")
-        if at < size:
-            warnings.warn(
-                f"{self.path}: its last {size - at} bytes are no whole chunk; its trials run again.", stacklevel=6
-            )
-            self._file.truncate(at)
-        self._file.seek(at)
+                self.done.update(self._header(at)["numbers"])
+                end = at + length
+            at = at + length if length else self._next_frame(at + 1, size)
+        if end < size:
+            self._warn_of(f"its last {size - end} bytes are no whole chunk")
+            self._file.truncate(end)
+
+    def _warn_of(self, what: str) -> None:
+        warnings.warn(f"{self.path}: {what}; the trials that were there run again.", stacklevel=7)
+
+    def _next_frame(self, at: int, size: int) -> int:
+        """Where the next frame may begin; the end of the file where none does."""
+        while at < size:
+            self._file.seek(at)
+            found = self._file.read(BLOCK).find(MAGIC)
+            if found >= 0:
+                return at + found
+            at += BLOCK - len(MAGIC) + 1
+        return size
 
     def _length_at(self, at: int, size: int) -> int:
+        """The length of the whole frame that begins there; 0 where none does."""
         self._file.seek(at)
         start = self._file.read(START)
-        if len(start) < START or at + frame_size(start) > size:
+        if not start.startswith(MAGIC) or len(start) < START or at + frame_size(start) > size:
             return 0
         return frame_at(memoryview(start + self._file.read(frame_size(start) - START)))
 
@@ -113,7 +169,7 @@ class Trials:
                 why = f"its trials have {name}={was}, not {now}"
                 raise InputError(f"{self.path}: {why}. Give the same, or choose another output.")
 
-    def _write(self, frame: bytes) -> None:
+    def _write(self, frame: bytes | memoryview) -> None:
         left = memoryview(frame)
         try:
             while left:
@@ -140,9 +196,10 @@ class Trials:
         return (self._header(at) for at, _ in self._places)
 
     def frames(self) -> Iterator[Frame]:
-        for at, length in self._places:
-            self._file.seek(at)
-            yield Frame(self._file.read(length))
+        """Every chunk; its arrays are read from the file when they are used."""
+        if self._places:
+            data = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
+            yield from (Frame(data[at : at + length]) for at, length in self._places)
 
     def failures(self) -> list[Failure]:
         """The trials that failed, by trial and arm."""
@@ -187,112 +244,154 @@ def _difference(layout: dict[str, Any], segment: dict[str, Any]) -> str:
     return "" if segment["texts"] == layout["texts"] else f"its groups or names are not those of trial {first}"
 
 
-def _pieces(rows: Array) -> Iterator[tuple[slice, slice]]:
-    """Stretches of consecutive rows: where they are in the array, and in the file."""
-    cuts = np.flatnonzero(np.diff(rows) != 1) + 1
-    for start, end in zip([0, *cuts], [*cuts, len(rows)]):
-        if end > start:
-            yield slice(start, end), slice(int(rows[start]), int(rows[end - 1]) + 1)
+def _chunk(shape: tuple[int, ...], trials: int) -> tuple[int, ...]:
+    """The chunk of a dataset: of so many trials and at most CHUNK numbers, in parts that are about equally long."""
+    room, parts = max(1, CHUNK // trials), []
+    for size in shape[:0:-1]:
+        parts.append(-(-size // -(-size // min(size, room))))
+        room = max(1, room // parts[-1])
+    return (trials, *parts[::-1])
+
+
+def _is_compressible(array: Array) -> bool:
+    """Whether compression halves these numbers: those that are missing, and those that are the same in all trials."""
+    planes = np.ascontiguousarray(array).view(np.uint8).reshape(-1, array.itemsize).T.tobytes()
+    return 2 * len(zlib.compress(planes, LEVEL)) < len(planes)
+
+
+def _set_text(attributes: Any, name: str, text: str) -> None:
+    """Texts have a fixed length, because HDF5 keeps others where there are no checksums."""
+    import h5py
+
+    data = text.encode() or b" "
+    attributes.create(name, data, dtype=h5py.string_dtype("utf-8", len(data)))
+
+
+def get_text(attributes: Any, name: str) -> str:
+    value = attributes[name]
+    return value.decode().strip() if isinstance(value, bytes) else str(value)
 
 
 class _Record:
-    """A record that is being written: of one arm, in the order of the trials, NaN where a trial has no result."""
+    """The record of one arm, in the order of the trials, NaN where a trial has no result.
 
-    def __init__(self, path: Path, layout: dict[str, Any], steps: int, trials: Array, seed: int, arm: str) -> None:
-        import h5py
+    Every dataset has the checksums of HDF5, and the format of HDF5 1.10 has them for everything else in the file.
+    """
 
-        self.file, self.trials = h5py.File(path, "w"), trials
-        attributes = self.file.attrs
-        attributes["record_version"] = 2
-        attributes["seed"] = np.uint64(seed)
-        attributes["arm"] = arm
+    def __init__(self, group: Any, layout: dict[str, Any], steps: int, trials: Array) -> None:
+        self.group, self.trials = group, trials
         texts = layout["texts"]
         for name in sorted(texts["texts"]):
-            attributes[name] = texts["texts"][name]
+            _set_text(group.attrs, name, texts["texts"][name])
         for name in sorted(texts["lists"]):
-            attributes[name] = ", ".join(" ".join(entry) for entry in texts["lists"][name])
-        self.file.create_dataset("trial", data=trials, track_times=False)
-        for name, dtype, shape in layout["form"]:
-            whole = (len(trials), *([steps] if shape else []), *shape[1:])
-            fill, kind = (steps, "i8") if name == "steps" else (np.nan, dtype)
-            self.file.create_dataset(name, whole, kind, fillvalue=fill, track_times=False)
-        for place, dimension in texts["dimensions"].items():
-            self.file[place].attrs["dimension"] = dimension
+            _set_text(group.attrs, name, ", ".join(" ".join(entry) for entry in texts["lists"][name]))
+        self._dimensions = texts["dimensions"]
+        self._forms = [
+            (name, np.dtype(dtype), ((steps, *shape[1:]) if shape else ()), steps if name == "steps" else np.nan)
+            for name, dtype, shape in layout["form"]
+        ]
+        largest = max(dtype.itemsize * math.prod(shape) for _, dtype, shape, _ in self._forms)
+        self._block = max(1, min(len(trials), CHUNK, BLOCK_OF_TRIALS // max(1, largest)))
+        self._block = -(-len(trials) // -(-len(trials) // self._block))  # in parts that are about equally long
 
-    def add(self, segment: dict[str, Any], arrays: Mapping[str, Array]) -> None:
-        kept = np.isin(segment["trials"], self.trials)
-        rows = np.searchsorted(self.trials, np.array(segment["trials"])[kept])
-        for name, array in arrays.items():
-            dataset, chosen = self.file[name], array[kept]
-            for here, there in _pieces(rows):
-                if array.ndim == 1:
-                    dataset[there] = chosen[here]
+    def write(self, segments: list[tuple[dict[str, Any], dict[str, Array]]]) -> None:
+        """Write what the segments of its arm have, a block of trials at a time."""
+        self._create("trial", self.trials)
+        places = [np.searchsorted(self.trials, segment["trials"]) for segment, _ in segments]
+        for start in range(0, len(self.trials), self._block):
+            end = min(start + self._block, len(self.trials))
+            there = [
+                (rows[inside] - start, arrays, inside)
+                for rows, (_, arrays) in zip(places, segments)
+                if rows[0] < end and rows[-1] >= start
+                for inside in [np.flatnonzero((rows >= start) & (rows < end))]
+            ]
+            for name, dtype, shape, fill in self._forms:
+                block = np.full((end - start, *shape), fill, np.int64 if name == "steps" else dtype)
+                for rows, arrays, inside in there:
+                    array = arrays[name]
+                    block[(rows, *(slice(size) for size in array.shape[1:]))] = array[inside]
+                if start == 0:
+                    self._create(name, block)
                 else:
-                    dataset[there, : array.shape[1]] = chosen[here]
+                    self.group[name].resize(end, axis=0)
+                    self.group[name][start:end] = block
+        for place, dimension in self._dimensions.items():
+            self.group[place].attrs["dimension"] = dimension
 
-    def finish(self, failures: Mapping[int, Failure]) -> None:
+    def _create(self, name: str, first: Array) -> None:
+        """Make a dataset, which grows, of its first block."""
+        chunk = _chunk(first.shape, min(len(first), self._block))
+        packed = {"compression": "gzip", "compression_opts": LEVEL, "shuffle": True} if _is_compressible(first) else {}
+        self.group.create_dataset(
+            name, data=first, chunks=chunk, maxshape=(len(self.trials), *first.shape[1:]), fletcher32=True,
+            track_times=False, **packed,
+        )  # fmt: skip
+
+    def write_failures(self, failures: Mapping[int, Failure]) -> None:
         import h5py
 
         if failures:
-            said = [failures[trial].reason if trial in failures else "" for trial in self.trials.tolist()]
-            self.file.create_dataset("failure", data=said, dtype=h5py.string_dtype(), track_times=False)
-        self.file.close()
+            said = [failures[trial].reason.encode() if trial in failures else b"" for trial in self.trials.tolist()]
+            kind = h5py.string_dtype("utf-8", max(map(len, said)))
+            self._create("failure", np.array(said, dtype=kind))
 
 
 def write_records(
-    trials: Trials, paths: Mapping[str, Path], numbers: Array, seed: int, lost: list[Failure]
+    trials: Trials, path: Path, arms: Sequence[str] | None, numbers: Array, seed: int, lost: list[Failure]
 ) -> list[Failure]:
     """Write the record of each arm, and return the trials that failed.
 
     Parameters
     ----------
     trials : Trials
-    paths : dict of Path
-        The file of each arm. One that is there is replaced at once.
+    path : path
+        The file, which is replaced at once where it is there.
+    arms : list of str
+        The arms, each of which gets a group; None if there is one without a name, whose record is the file itself.
     numbers : array [trial]
         The trials that the records have, in increasing order.
     seed : int
     lost : list of Failure
         Trials that no worker could finish.
     """
+    import h5py
+
     layouts: dict[str, dict[str, Any]] = {}
-    segments: dict[str, list[dict[str, Any]]] = {arm: [] for arm in paths}
+    segments: dict[str, list[tuple[dict[str, Any], dict[str, Array]]]] = {}
     wanted = set(numbers.tolist())
-    for header in trials.headers():
-        for segment in header["segments"]:
-            if wanted.isdisjoint(segment["trials"]):
+    for frame in trials.frames():
+        for segment, arrays in frame.segments():
+            kept = np.isin(segment["trials"], numbers)
+            if not kept.any():
                 continue
+            if not kept.all():
+                segment = {**segment, "trials": np.array(segment["trials"])[kept].tolist()}
+                arrays = {name: array[kept] for name, array in arrays.items()}
             arm = segment["arm"]
-            segments[arm].append(segment)
+            segments.setdefault(arm, []).append((segment, arrays))
             if arm not in layouts or segment["trials"][0] < layouts[arm]["trials"][0]:
                 layouts[arm] = segment
     failures = {(one.arm, one.trial): one for one in [*trials.failures(), *lost] if one.trial in wanted}
-    steps, misfits = {}, set()
+    fitting: dict[str, list[tuple[dict[str, Any], dict[str, Array]]]] = {}
     for arm, layout in layouts.items():
-        lengths = [0]
-        for segment in segments[arm]:
+        for segment, arrays in segments[arm]:
             why = _difference(layout, segment)
-            if why:
-                misfits.add((arm, segment["trials"][0]))
-                for trial in wanted.intersection(segment["trials"]):
-                    failures[arm, trial] = Failure(arm, trial, f"it is of another form than the first run: {why}")
-            else:
-                lengths += [shape[0] for _, _, shape in segment["form"] if shape]
-        steps[arm] = max(lengths)
-    temporary = {arm: path.with_name(f".{path.name}.part") for arm, path in paths.items()}
-    try:
-        records = {
-            arm: _Record(temporary[arm], layout, steps[arm], numbers, seed, arm) for arm, layout in layouts.items()
-        }
-        for frame in trials.frames():
-            for segment, arrays in frame.segments():
-                if (segment["arm"], segment["trials"][0]) not in misfits and segment["arm"] in records:
-                    records[segment["arm"]].add(segment, arrays)
-        for arm, record in records.items():
-            record.finish({trial: one for (of, trial), one in failures.items() if of == arm})
-            os.replace(temporary[arm], paths[arm])
-    finally:
-        for path in temporary.values():
-            with contextlib.suppress(FileNotFoundError):
-                path.unlink()
+            for trial in segment["trials"] if why else ():
+                failures[arm, trial] = Failure(arm, trial, f"it is of another form than the first run: {why}")
+            if not why:
+                fitting.setdefault(arm, []).append((segment, arrays))
+    if not layouts:
+        return sorted(failures.values(), key=lambda one: (one.trial, one.arm))
+    with whole(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
+        file.attrs["record_version"] = 2
+        file.attrs["seed"] = np.uint64(seed)
+        _set_text(file.attrs, "study", trials.study)
+        if arms is not None:
+            _set_text(file.attrs, "arms", ", ".join(arm for arm in arms if arm in layouts))
+        for arm, layout in layouts.items():
+            lengths = [shape[0] for segment, _ in fitting[arm] for _, _, shape in segment["form"] if shape]
+            record = _Record(file if arms is None else file.create_group(arm), layout, max(lengths, default=0), numbers)
+            record.write(fitting[arm])
+            record.write_failures({trial: one for (of, trial), one in failures.items() if of == arm})
     return sorted(failures.values(), key=lambda one: (one.trial, one.arm))

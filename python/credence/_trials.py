@@ -30,9 +30,9 @@ Array = npt.NDArray[Any]
 Arms = dict[str, dict[str, Any]]
 
 BATCH = 256  # trials that a function of many generators gets at once
-_MAGIC = b"crtrial1"
+MAGIC = b"crtrial1"
 _SUM = 16  # bytes of a frame's checksum
-START = len(_MAGIC) + 16  # bytes of a frame before its parts: its mark, and two lengths
+START = len(MAGIC) + 16  # bytes of a frame before its parts: its mark, and two lengths
 # Dimensions of an array of one run, that of its steps among them.
 _ranks = {
     "error": (2,),
@@ -434,7 +434,7 @@ def run_chunk(work: Work, numbers: Sequence[int], keep: Sequence[int], twice: bo
 def framed(header: Mapping[str, Any], body: Sequence[bytes]) -> bytes:
     """A frame: its mark, the lengths of both parts, both parts, and the BLAKE2b checksum of all of that."""
     text = json.dumps(header).encode()
-    parts = [_MAGIC, struct.pack("<QQ", len(text), sum(map(len, body))), text, *body]
+    parts = [MAGIC, struct.pack("<QQ", len(text), sum(map(len, body))), text, *body]
     total = hashlib.blake2b(digest_size=_SUM)
     for part in parts:
         total.update(part)
@@ -443,17 +443,17 @@ def framed(header: Mapping[str, Any], body: Sequence[bytes]) -> bytes:
 
 def frame_size(start: bytes) -> int:
     """The length of the frame that begins with these START bytes, whether it is whole or not."""
-    head, body = struct.unpack_from("<QQ", start, len(_MAGIC))
+    head, body = struct.unpack_from("<QQ", start, len(MAGIC))
     return START + int(head) + int(body) + _SUM
 
 
 class Frame:
     """A frame that was read: its header, and its arrays when they are asked for."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes | memoryview) -> None:
         self.data = data
-        length, self._body = struct.unpack_from("<Q", data, len(_MAGIC))[0], START
-        self.header: dict[str, Any] = json.loads(data[self._body : self._body + length])
+        length, self._body = struct.unpack_from("<Q", data, len(MAGIC))[0], START
+        self.header: dict[str, Any] = json.loads(bytes(data[self._body : self._body + length]))
         self._body += length
 
     def segments(self) -> Iterator[tuple[dict[str, Any], dict[str, Array]]]:
@@ -473,7 +473,7 @@ class Frame:
 
 def frame_at(data: memoryview) -> int:
     """The length of the whole frame with which the bytes begin; 0 where there is none."""
-    if len(data) < START + _SUM or bytes(data[: len(_MAGIC)]) != _MAGIC:
+    if len(data) < START + _SUM or bytes(data[: len(MAGIC)]) != MAGIC:
         return 0
     size = frame_size(bytes(data[:START]))
     if len(data) < size:
@@ -483,10 +483,15 @@ def frame_at(data: memoryview) -> int:
     return size if is_whole else 0
 
 
-def same(first: bytes, second: bytes, arm: str, trials: Sequence[int] | None = None) -> bool:
+def is_frame(data: object) -> bool:
+    """Whether this is a whole frame and nothing else: what came from a worker as it was sent."""
+    return isinstance(data, bytes) and len(data) > 0 and frame_at(memoryview(data)) == len(data)
+
+
+def same(first: bytes | memoryview, second: bytes | memoryview, arm: str, trials: Sequence[int] | None = None) -> bool:
     """Whether two frames say the same of an arm's trials, bit for bit; of failures only that they are failures."""
 
-    def told(data: bytes) -> dict[int, Any]:
+    def told(data: bytes | memoryview) -> dict[int, Any]:
         frame = Frame(data)
         found: dict[int, Any] = {one.trial: "failed" for one in frame.failures() if one.arm == arm}
         for segment, arrays in frame.segments():

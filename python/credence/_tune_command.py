@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 from credence import InputError
 from credence._calls import say
-from credence._doors import needed, output
+from credence._doors import needed
 from credence._names import printable
+from credence._outputs import check_output
 from credence._simulate_command import CONSISTENT, _executor, _function
 from credence.judging import NOT_REFUTED
 from credence.tuning import tune
@@ -61,6 +62,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--arm", help="that of the scenario which is tuned (its first)")
     made.add_argument("--program", metavar="PATH", help="the program of a world of your own")
     made.add_argument("--picture", metavar="FILE", help="draw the score over the parameters: .png, .pdf or .svg")
+    made.add_argument("--overwrite", action="store_true", help="replace the file of --picture where it exists")
     made.add_argument("--require", choices=["consistent", "no-finding"], help="exit code 1 where the filter is not")
     made.add_argument("--quiet", action="store_true", help="no progress")
     return made
@@ -72,7 +74,7 @@ def main(words: Sequence[str]) -> int:
     if given.picture is not None:
         if not given.picture.lower().endswith((".png", ".pdf", ".svg")):
             raise InputError(f"invalid --picture {printable(given.picture)} (must be a .png, .pdf or .svg). Name one.")
-        output("picture", given.picture)
+        check_output(given.picture, given.overwrite, inputs=[given.what])
         needed("matplotlib", "matplotlib", "draw a picture")
     is_function = ":" in given.what and not given.what.endswith(".ini")
     with _executor(given.executor) as executor:

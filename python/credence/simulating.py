@@ -33,8 +33,9 @@ from credence import _core
 from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, note, progress_bar, said_of_arrays
 from credence._names import printable
-from credence._trial_files import Trials, write_records
-from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, run_chunk, same
+from credence._outputs import check_output
+from credence._trial_files import Trials, get_text, write_records
+from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
 from credence.judging import REFUTED, Verdict, judge, tune_hint
 from credence.program import SEED, Interrupted
@@ -128,24 +129,46 @@ def _arms(given: Mapping[str, Mapping[str, Any]] | None) -> Arms:
 
 
 class _Files:
-    """The files of a study: the record of each arm, mine.h5 or mine.kf.h5 of the arm kf, and the trials.
+    """The files of a study: its record, which has a group for each arm if there are arms, and its trials.
 
     Temporary ones are removed with this object, which whoever reads them has.
     """
 
-    def __init__(self, output: File | None, arms: Mapping[str, Any] | None) -> None:
+    def __init__(self, output: File | None, arms: Mapping[str, Any] | None, resume: bool) -> None:
+        self.arms = None if arms is None else list(arms)
         folder = tempfile.mkdtemp(prefix="credence-") if output is None else None
-        whole = Path(folder, f"{ONLY_ARM}.h5") if folder else Path(os.path.abspath(os.fspath(output or "")))
-        self.trials = whole.with_name(f"{whole.name}.trials")
-        self.records = {ONLY_ARM: whole}
-        if arms is not None:
-            self.records = {name: whole.with_name(f"{whole.stem}.{name}{whole.suffix}") for name in arms}
+        self.record = Path(folder, f"{ONLY_ARM}.h5") if folder else self._checked(output, resume)
+        self.trials = self._trials_of(self.record)
         self._remove = weakref.finalize(self, _remove, folder, os.getpid()) if folder else None
 
-    def refuse_what_exists(self) -> None:
-        for path in (self.trials, *self.records.values()):
-            if path.exists():
-                raise _core.InputError(f"cannot write {path} (it exists). Remove it, say resume=True, or name another.")
+    @staticmethod
+    def _trials_of(record: Path) -> Path:
+        return record.with_name(f"{record.name}.trials")
+
+    def _checked(self, output: Any, resume: bool) -> Path:
+        """Where the record goes. What is there is replaced only by a study that resumes from the trials beside it."""
+        trials = self._trials_of(Path(os.path.realpath(output)))
+        is_kept = trials.exists()
+        if resume and not is_kept and os.path.lexists(output):
+            why = f"cannot resume {os.fspath(output)} (its trials are not beside it, in {trials.name})"
+            raise _core.InputError(f"{why}. Name another output.")
+        remedy = "Name another, or say resume=True to resume from the trials beside it" if is_kept else "Name another"
+        if is_kept:
+            check_output(trials, resume, remedy)
+        return check_output(output, resume, remedy)
+
+    def refuse_another_study(self, study: str) -> None:
+        """Refuse to replace a file that is no record of the trials that are kept."""
+        import h5py
+
+        if not self.record.exists():
+            return
+        found = ""
+        with contextlib.suppress(OSError, KeyError), h5py.File(self.record, "r") as file:
+            found = get_text(file.attrs, "study")
+        if found != study:
+            why = f"cannot write {self.record} (it is no record of the trials in {self.trials.name})"
+            raise _core.InputError(f"{why}. Move it away, or name another output.")
 
     def remove_temporary(self) -> None:
         if self._remove is not None:
@@ -179,13 +202,14 @@ class SimulatedArm:
     ----------
     name : str
     path : str
-        The record [docs/judge.md], which ``credence judge`` reads.
+        The record [docs/judge.md] as ``credence judge`` takes it: the file, or ``FILE:ARM`` of a file with arms.
     failures : list of Failure
         Its trials without a result. Those whose numbers are not finite are counted by the verdict.
     """
 
-    def __init__(self, name: str, path: str, failures: list[Failure], limit: float | str, folder: object) -> None:
-        self.name, self.path, self.failures, self._limit, self._folder = name, path, failures, limit, folder
+    def __init__(self, name: str, files: _Files, failures: list[Failure], limit: float | str) -> None:
+        self.name, self.failures, self._limit, self._files = name, failures, limit, files
+        self.path = str(files.record) if files.arms is None else f"{files.record}:{name}"
         self._verdict: Verdict | None = None
 
     def judge(self, **options: Any) -> Verdict:
@@ -199,11 +223,19 @@ class SimulatedArm:
             self._verdict = self.judge()
         return self._verdict
 
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[Any]:
+        """The HDF5 group of the record."""
+        import h5py
+
+        with h5py.File(self._files.record, "r") as file:
+            yield file if self._files.arms is None else file[self.name]
+
     def read(self, name: str) -> Array:
         """An array of the record, such as ``"error"`` [trial, step, n] or ``"trial"`` [trial]."""
         import h5py
 
-        with h5py.File(self.path, "r") as file:
+        with self._opened() as file:
             if name not in file:
                 found: list[str] = []
                 file.visititems(lambda place, what: found.append(place) if isinstance(what, h5py.Dataset) else None)
@@ -213,9 +245,7 @@ class SimulatedArm:
     @property
     def columns(self) -> dict[str, Array]:
         """{column: its values [trial]}, NaN for trials without a result."""
-        import h5py
-
-        with h5py.File(self.path, "r") as file:
+        with self._opened() as file:
             return {name: np.asarray(column[()]) for name, column in file.get("column", {}).items()}
 
     def record(self) -> dict[str, Any]:
@@ -224,7 +254,7 @@ class SimulatedArm:
 
         named = ("manifold", "chart", "quaternion", "groups", "row_groups", "component_names", "component_units")
         arguments: dict[str, Any] = {}
-        with h5py.File(self.path, "r") as file:
+        with self._opened() as file:
             for name, dataset in file.items():
                 if isinstance(dataset, h5py.Dataset) and name not in ("trial", "failure"):
                     arguments[name] = np.asarray(dataset[()])
@@ -237,7 +267,7 @@ class SimulatedArm:
             }
             for name in named:
                 if name in file.attrs:
-                    arguments[name] = _entries(name, str(file.attrs[name]))
+                    arguments[name] = _entries(name, get_text(file.attrs, name))
         return arguments | ({"dimension": sizes} if sizes else {})
 
     def __repr__(self) -> str:
@@ -262,10 +292,9 @@ class Simulation:
         self, files: _Files, work: Work, trials: int, failures: list[Failure], limit: float | str, is_repeatable: bool
     ) -> None:
         self.trials, self.seed, self.failures, self.is_repeatable = trials, work.seed, failures, is_repeatable
-        self._work, self._limit = work, limit
+        self._work, self._limit, self._path = work, limit, str(files.record)
         self._arms = {
-            name: SimulatedArm(name, str(path), [one for one in failures if one.arm == name], limit, files)
-            for name, path in files.records.items()
+            name: SimulatedArm(name, files, [one for one in failures if one.arm == name], limit) for name in work.arms
         }
 
     def arm(self, name: str) -> SimulatedArm:
@@ -300,13 +329,11 @@ class Simulation:
         names = list(self._arms) if arms is None else list(arms.split(",") if isinstance(arms, str) else arms)[::-1]
         if len(names) < 2 or (arms is not None and len(names) != 2):
             raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
-        return compare(
-            *(self.arm(name.strip()).path for name in names), failed=self._limit if failed is None else failed
-        )
+        chosen = None if arms is None else ",".join(self.arm(name.strip()).name for name in names[::-1])
+        return compare(self._path, arms=chosen, failed=self._limit if failed is None else failed)
 
     def _said(self, form: str) -> str:
-        paths = [arm.path for arm in self._arms.values()]
-        words = ["judge", *paths, f"--failed={self._limit}", f"--format={form}", "--quiet"]
+        words = ["judge", self._path, f"--failed={self._limit}", f"--format={form}", "--quiet"]
         with errors_of_arguments():
             return _core.command(words, None)[1]
 
@@ -368,7 +395,7 @@ class _Engine:
 
     def run(self, workers: Workers[Payload]) -> int:
         """Run what is missing; return how many trials the study has."""
-        if 0 in self.trials.done:
+        if self.trials.done:
             self._compare_with_what_is_kept(workers)
         if not self.goals:
             self._run_to(workers, self.ceiling)
@@ -415,7 +442,8 @@ class _Engine:
 
         for (_, keep, _), data in workers.results(take, lambda payload: payload, parts):
             if data is None:
-                reason = f"its worker was lost {TRIES} times (it crashed, was killed, or had no memory left)"
+                causes = "it crashed, was killed, had no memory left, or what it sent was damaged"
+                reason = f"its worker was lost {TRIES} times ({causes})"
                 found = [Failure(arm, one, reason) for one in keep for arm in self.work.arms]
                 self.lost += found
                 self._count_failures(found)
@@ -471,15 +499,21 @@ class _Engine:
                 warnings.warn(f"{why} (a global generator, the time, or a state that is kept). {remedy}.", stacklevel=5)
 
     def _compare_with_what_is_kept(self, workers: Workers[Payload]) -> None:
-        """Run trial 0 once more, and refuse to add to trials that another function or another library made."""
-        kept = next(frame for frame in self.trials.frames() if 0 in frame.header["numbers"])
-        self._check_first(kept)
-        numbers = list(range(self.work.batch)) if self.work.batch else [0]
-        payloads: list[Payload] = [(numbers, [0], False)]
+        """Run a trial once more, and refuse to add to trials that another function or another library made.
+
+        It is the first that has a result under every arm, if any has: failures say less of the function.
+        """
+        done = self.trials.done
+        number = min(done - {one.trial for one in self.trials.failures()}, default=min(done))
+        kept = next(frame for frame in self.trials.frames() if number in frame.header["numbers"])
+        if number == 0:
+            self._check_first(kept)
+        first = number - number % (self.work.batch or 1)
+        payloads: list[Payload] = [(list(range(first, first + (self.work.batch or 1))), [number], False)]
         for _, data in workers.results(lambda: payloads.pop() if payloads else None, lambda payload: payload):
             for arm in self.work.arms:
-                if data is not None and not same(kept.data, data, arm, [0]):
-                    why = f"trial 0 of {arm} gives other numbers than those that are kept"
+                if data is not None and not same(kept.data, data, arm, [number]):
+                    why = f"trial {number} of {arm} gives other numbers than those that are kept"
                     remedy = "Take the function and the libraries that made them, or another output"
                     raise _core.InputError(f"{self.trials.path}: {why}. {remedy}.")
 
@@ -598,10 +632,11 @@ def simulate(
         Whether `run` takes a list of generators, 256 or as many as are given here, and returns a `Run` of arrays with a
         leading dimension of runs. It always gets a whole batch, whose first trial is a multiple of its size.
     output : path
-        The record; with arms, one a record of each: of ``mine.h5`` and the arm ``calm`` it is ``mine.calm.h5``. The
-        trials are kept beside it, in ``mine.h5.trials``. Without it all files are temporary and go with the simulation.
+        The record, ``mine.h5``; with arms, a record of each in a group of its name. The trials are kept beside it, in
+        ``mine.h5.trials``. Without it all files are temporary and go with the simulation.
     resume : bool
-        Whether trials that are kept beside `output` are taken; what is missing of `trials` is run.
+        Whether trials that are kept beside `output` are taken; what is missing of `trials` is run. Their record is
+        replaced; no other file is.
     until : dict, str or list of str
         Stop as soon as means are known to these half-widths under every arm: ``{"nees_ratio": "1%"}``, a column of
         `Run`, or the difference of two arms, ``{"rmse[calm-right]": 0.01}``. Needs SciPy.
@@ -637,10 +672,8 @@ def simulate(
         _refuse_missing("scipy", "until needs its quantiles")
     if output is None and resume:
         raise _core.InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
-    files = _Files(output, arms)
+    files = _Files(output, arms, resume)
     try:
-        if not resume:
-            files.refuse_what_exists()
         return _simulated(Work(run, plan, seed, int(batch), timeout), executor, trials, goals, failed, progress, files)
     except BaseException as error:
         if getattr(error, "study", None) is None:
@@ -663,7 +696,7 @@ def _simulated(
     """Run the trials, write the records, and return them; of an interrupted study those that are done."""
 
     def written(numbers: Array, lost: list[Failure]) -> Simulation:
-        failures = write_records(file, files.records, numbers, work.seed, lost)
+        failures = write_records(file, files.record, files.arms, numbers, work.seed, lost)
         return Simulation(files, work, len(numbers), failures, failed, engine.is_repeatable)
 
     with (
@@ -674,8 +707,9 @@ def _simulated(
         metrics = {goal.metric for goal in goals} | ({"nees_ratio"} if bar.is_shown else set())
         work = replace(work, metrics=tuple(sorted(metrics)), ends_hung_process=isinstance(executor, int))
         engine = _Engine(work, file, ceiling, goals, bar)
+        files.refuse_another_study(file.study)
         bar.show(len(file.done))
-        workers: Workers[Payload] = Workers(executor, run_chunk, work)
+        workers: Workers[Payload] = Workers(executor, run_chunk, work, is_frame)
         try:
             count = engine.run(workers)
         except KeyboardInterrupt:

@@ -768,6 +768,35 @@ class TestCommand:
         names = ["estimate=x,y,a", "truth=gx,gy,ga", "sigma=s,s,s", "angles=a", "time=t"]
         assert "one log of 200 steps" in self.run(tmp_path, "table.csv", "--names", *names).stdout
 
+    @pytest.mark.parametrize("option", ["-o", "--record"])
+    @pytest.mark.parametrize("read", ["estimate.h5", "truth.h5", "linked.h5", "bag/run.db3"])
+    def test_what_is_read_is_not_replaced(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], option: str, read: str
+    ) -> None:
+        tum(tmp_path, log(20))
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "bag").mkdir()
+        for name, link in (("truth.txt", "truth.h5"), ("estimate.txt", "estimate.h5"), ("estimate.h5", "linked.h5")):
+            (tmp_path / link).symlink_to(name)
+        (tmp_path / "bag" / "run.db3").write_text("a bag")
+        logs = ["bag"] if read.startswith("bag") else ["estimate.txt", "--truth", "truth.txt"]
+        output = "bag/../bag/run.db3" if read.startswith("bag") else read
+        if option == "--record" and read.startswith("bag"):
+            (tmp_path / "bag" / "run.db3").rename(tmp_path / "bag" / "run.h5")
+            output = "bag/run.h5"
+        before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+        assert judge_command([*logs, option, output, "--overwrite"]) == 2
+        assert f"cannot write {output} (it would replace " in capfd.readouterr().err
+        assert judge_command([*logs, option, "nowhere/new.h5"]) == 2
+        assert "there is no folder" in capfd.readouterr().err
+        assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+    def test_one_file_is_not_written_twice(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+        tum(tmp_path, log(20))
+        words = [tmp_path / "estimate.txt", "--truth", tmp_path / "truth.txt", "-o", tmp_path / "a.h5"]
+        assert judge_command([*map(str, words), "--record", str(tmp_path / "a.h5")]) == 2
+        assert "(-o writes it, too)" in capfd.readouterr().err
+
     @pytest.mark.parametrize(
         ("words", "message"),
         [

@@ -430,6 +430,19 @@ def test_the_command_films_a_trial(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["ekf-circle-ranged-animation-greedy.ekf.gif"]
 
 
+def test_the_command_replaces_pictures_only_if_it_is_told_to(tmp_path, capsys):
+    words = given(studies.single_arm(), "-o", tmp_path, "--kind", "nees")
+    assert main(words) == 0
+    made = sorted(tmp_path.iterdir())
+    made[0].write_bytes(b"somebody's own")
+    capsys.readouterr()
+    assert main(words) == 2
+    assert "(it is there already). Give --overwrite, or another folder." in capsys.readouterr().err
+    assert made[0].read_bytes() == b"somebody's own"
+    assert main([*words, "--overwrite"]) == 0
+    assert made[0].read_bytes() != b"somebody's own"
+
+
 @pytest.mark.parametrize(("make", "words", "said"), [
     (studies.single_arm, ["--kind", "paired"], "no picture of paired (no arm has that of a simpler controller and the "
                                                "same estimator beside it). Choose two by --arms A,B."),

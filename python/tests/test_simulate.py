@@ -1,7 +1,12 @@
-"""`credence.simulate`: what its numbers are a function of, what is kept, and what becomes of trials that go wrong."""
+"""`credence.simulate`: what its numbers are a function of, what is kept, and what becomes of trials that go wrong.
+
+With CREDENCE_FLIPS=700 that many bytes of a record are changed, one at a time, in place of 60.
+"""
 
 from __future__ import annotations
 
+import concurrent.futures
+import copy
 import filecmp
 import math
 import os
@@ -26,6 +31,8 @@ from credence import _trials
 
 PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
 ARMS = {"right": {}, "calm": {"scale": 0.5}}
+ARMS_OF_SLOW = {"right": {}, "calm": {}}
+FLIPS = int(os.environ.get("CREDENCE_FLIPS", "60"))
 PATIENCE = 60  # s, after which a process that should have ended is hung
 
 
@@ -34,10 +41,9 @@ def _in_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def is_same(first, second, arms=tuple(ARMS)):
+def is_same(first, second):
     """Whether the records of two outputs are the same, byte for byte."""
-    names = [(f"{first}.{arm}.h5", f"{second}.{arm}.h5") for arm in arms]
-    return all(filecmp.cmp(*pair, shallow=False) for pair in names)
+    return filecmp.cmp(f"{first}.h5", f"{second}.h5", shallow=False)
 
 
 def refusal(call, kind=credence.InputError):
@@ -177,9 +183,199 @@ def test_a_torn_tail_is_cut():
     changed = bytearray(kept)
     changed[len(kept) // 2] ^= 1
     pathlib.Path("torn.h5.trials").write_bytes(changed)
-    with pytest.warns(UserWarning, match=r"its last \d+ bytes are no whole chunk; its trials run again"):
+    with pytest.warns(
+        UserWarning, match=r"\d+ bytes in the middle of it are damaged; the trials that were there run again"
+    ):
         credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="torn.h5", resume=True)
     assert is_same("whole", "torn")
+
+
+@pytest.mark.parametrize("place", [0, 8, 16, 30, 400])
+def test_a_damaged_chunk_costs_its_own_trials(place):
+    """In the middle of the kept trials, at its mark, its length, its header and its numbers."""
+    calls = []
+
+    def run(rng):
+        calls.append(filters.number_of(copy.deepcopy(rng), trials=120))
+        return filters.drawn(rng)
+
+    credence.simulate(filters.slow, trials=120, output="whole.h5", executor=2)
+    kept = bytearray(pathlib.Path("whole.h5.trials").read_bytes())
+    starts = [at for at in range(len(kept)) if kept[at : at + 8] == _trials.MAGIC]
+    assert len(starts) > 5
+    numbers = _trials.Frame(bytes(kept[starts[3] : starts[4]])).header["numbers"]
+    kept[starts[3] + place] ^= 1
+    pathlib.Path("whole.h5.trials").write_bytes(kept)
+    with pytest.warns(UserWarning, match="in the middle of it are damaged; the trials that were there run again"):
+        credence.simulate(run, trials=120, output="whole.h5", resume=True)
+    assert set(numbers) <= set(calls) <= {0, 1, *numbers}  # and one that is compared
+    credence.simulate(filters.drawn, trials=120, output="again.h5")
+    assert is_same("whole", "again")
+
+
+def test_a_frame_that_was_damaged_on_its_way_runs_again():
+    class Damaging(concurrent.futures.ThreadPoolExecutor):
+        count = 0
+
+        def submit(self, function, /, *arguments):
+            def damaged():
+                data = bytearray(function(*arguments))
+                Damaging.count += 1
+                data[-40] ^= Damaging.count % 5 == 0
+                return bytes(data)
+
+            return super().submit(damaged)
+
+    with Damaging(2) as executor:
+        study = credence.simulate(filters.slow, trials=200, arms=ARMS_OF_SLOW, output="a.h5", executor=executor)
+    assert study.failures == []
+    assert Damaging.count > 10
+    credence.simulate(filters.slow, trials=200, arms=ARMS_OF_SLOW, output="b.h5")
+    assert is_same("a", "b")
+
+
+@pytest.mark.parametrize("arms", [None, ARMS])
+def test_a_byte_that_changed_gives_no_wrong_number(arms, program):
+    """Of the whole record, its metadata too: what it says is the same, or it is refused."""
+
+    def run(rng, scale=1.0):
+        made = filters.drawn(
+            rng,
+            scale,
+            innovation=rng.standard_normal((4, 2)),
+            groups={"a": [0]},
+            innovation_covariance=np.broadcast_to(np.eye(2), (4, 2, 2)),
+        )
+        if made.columns["rmse"] > 1.4:
+            raise ValueError("x")
+        return made
+
+    credence.simulate(run, trials=40, arms=arms, output="record.h5", failed=1)
+    whole = pathlib.Path("record.h5").read_bytes()
+    words = ("judge", "damaged.h5", "--quiet", "--format=json", "--failed=1")
+    pathlib.Path("damaged.h5").write_bytes(whole)
+    right = program(*words)
+    assert right[0] == 0
+    chance, refused = np.random.default_rng(4), 0
+    for at in chance.choice(len(whole), FLIPS, replace=False):
+        damaged = bytearray(whole)
+        damaged[at] ^= 1 << int(chance.integers(8))
+        pathlib.Path("damaged.h5").write_bytes(damaged)
+        code, said, _ = program(*words)
+        assert (code, said) == right[:2] or code == 2, at
+        refused += code == 2
+    assert refused > FLIPS / 10
+
+
+def test_a_study_that_was_killed_before_trial_0_was_kept_is_of_one_function():
+    credence.simulate(filters.slow, trials=60, arms={"right": {}}, output="kept.h5")
+    kept = pathlib.Path("kept.h5.trials").read_bytes()
+    starts = [at for at in range(len(kept)) if kept[at : at + 8] == _trials.MAGIC]
+    without = kept[: starts[1]] + kept[starts[2] :]  # the frame of trial 0 is the first
+    assert _trials.Frame(kept[starts[1] : starts[2]]).header["numbers"] == [0]
+    for name in ("other.h5", "same.h5"):
+        pathlib.Path(f"{name}.trials").write_bytes(without)
+    given = {"trials": 60, "arms": {"right": {}}, "resume": True}
+    said = refusal(lambda: credence.simulate(lambda rng: filters.drawn(rng, 2), output="other.h5", **given))
+    assert "trial 1 of right gives other numbers than those that are kept" in said
+    assert not pathlib.Path("other.h5").exists()
+    credence.simulate(filters.slow, output="same.h5", **given)
+    assert is_same("same", "kept")
+
+
+def test_options_are_compared_by_their_values():
+    class Noise:
+        def __init__(self, q):
+            self.q = q
+
+    def run(rng, **_):
+        return filters.drawn(rng)
+
+    def study(resume=False, **option):
+        return credence.simulate(run, trials=30, arms={"kf": option}, output="kept.h5", resume=resume)
+
+    options = [
+        ({"Q": np.eye(2)}, {"Q": 2 * np.eye(2)}),
+        ({"Q": np.eye(2)}, {"Q": np.eye(2, dtype=np.float32)}),
+        ({"Q": [np.eye(2), None]}, {"Q": [np.eye(2), 1]}),
+        ({"Q": Noise(1.0)}, {"Q": Noise(2.0)}),
+        ({"Q": Noise(np.eye(2))}, {"Q": Noise(2 * np.eye(2))}),
+        ({"Q": np.nan}, {"Q": 1.0}),
+        ({"Q": {"a": 1, 2: 3}}, {"Q": {"a": 1, 2: 4}}),
+        ({"Q": {1, 2}}, {"Q": {1, 3}}),
+        ({"Q": pathlib.Path("a")}, {"Q": pathlib.Path("b")}),
+        ({"Q": filters.drawn}, {"Q": filters.slow}),
+    ]
+    for one, other in options:
+        study(**one)
+        study(resume=True, **copy.deepcopy(one))
+        assert "kept.h5.trials: its trials have arms=" in refusal(lambda other=other: study(resume=True, **other))
+        for path in pathlib.Path().iterdir():
+            path.unlink()
+    within = []
+    within.append(within)
+    assert "an option contains itself" in refusal(lambda: study(Q=within))
+
+
+def test_resuming_replaces_the_record_of_its_own_trials_alone():
+    def study(output="mine.h5", **more):
+        return lambda: credence.simulate(filters.drawn, trials=30, **{"output": output, "resume": True, **more})
+
+    pathlib.Path("mine.h5").write_bytes(b"results of a week")
+    assert re.search(r"cannot resume mine.h5 \(its trials are not beside it, in mine.h5.trials\)", refusal(study()))
+    assert re.search(r"mine.h5 \(it is there already\). Name another\.$", refusal(study(resume=False)))
+    assert [path.name for path in pathlib.Path().iterdir()] == ["mine.h5"]
+    pathlib.Path("mine.h5").rename("week.h5")
+    study()()
+    assert re.search(r"Name another, or say resume=True", refusal(study(resume=False)))
+    for other in (b"results of a week", pathlib.Path("mine.h5").read_bytes()):
+        credence.simulate(filters.drawn, trials=30, seed=2, output="two.h5")
+        pathlib.Path("two.h5").write_bytes(other)
+        said = refusal(study("two.h5", seed=2))
+        assert re.search(r"two.h5 \(it is no record of the trials in two.h5.trials\)", said)
+        assert pathlib.Path("two.h5").read_bytes() == other
+        for name in ("two.h5", "two.h5.trials"):
+            pathlib.Path(name).unlink()
+    assert pathlib.Path("week.h5").read_bytes() == b"results of a week"
+
+
+@pytest.mark.parametrize("output", ["mine", "mine.h5"])
+def test_an_arm_may_have_any_name_of_a_file(output):
+    arms = {name: {} for name in ("trials", "h5", "error", "h5.trials", "part")}
+    study = credence.simulate(filters.drawn, trials=300, arms=arms, output=output)
+    assert sorted(path.name for path in pathlib.Path().iterdir()) == [output, f"{output}.trials"]
+    assert {verdict["trials"] for verdict in study.verdicts.values()} == {300}
+    assert credence.simulate(filters.drawn, trials=400, arms=arms, output=output, resume=True).trials == 400
+
+
+def test_a_link_is_followed():
+    pathlib.Path("far").mkdir()
+    pathlib.Path("near.h5").symlink_to("far/away.h5")
+    study = credence.simulate(filters.drawn, trials=30, output="near.h5")
+    grown = credence.simulate(filters.drawn, trials=60, output="near.h5", resume=True)
+    assert pathlib.Path("near.h5").is_symlink()
+    assert sorted(path.name for path in pathlib.Path("far").iterdir()) == ["away.h5", "away.h5.trials"]
+    assert (study.arm("run").read("trial").size, grown.trials) == (60, 60)
+
+
+def test_covariances_that_are_the_same_in_all_trials_take_little_room():
+    """500 trials, whose S is the same in all or NaN where nothing is seen: 188 MB of numbers."""
+    steps, m = 60, 28
+
+    def run(rng):
+        return filters.drawn(
+            rng,
+            steps=steps,
+            innovation=rng.standard_normal((steps, m)),
+            innovation_covariance=np.broadcast_to(S, (steps, m, m)),
+        )
+
+    root = np.random.default_rng(1).standard_normal((m, m))
+    S = root @ root.T + np.eye(m)
+    study = credence.simulate(run, trials=500, output="mine.h5")
+    assert study.arm("run").read("innovation_covariance").nbytes > 188e6
+    assert pathlib.Path("mine.h5").stat().st_size < 15e6
+    assert study.verdicts["run"]["trials"] == 500
 
 
 @pytest.mark.parametrize("executor", [None, 2])
@@ -228,7 +424,8 @@ def test_only_the_same_trials_are_taken():
     changed = refusal(again(lambda rng, scale=1: filters.drawn(rng, scale * 1.0000001)))
     assert re.search(r"trial 0 of right gives other numbers than those that are kept. Take the function", changed)
     assert re.search(
-        r"cannot write .*kept.h5.trials \(it exists\). Remove it, say resume=True", refusal(again(resume=False))
+        r"cannot write .*kept.h5.trials \(it is there already\). Name another, or say resume=True",
+        refusal(again(resume=False)),
     )
     pathlib.Path("kept.h5.trials").write_bytes(b"something else, and longer than a header")
     assert "is no file of simulated trials" in refusal(again())
@@ -292,8 +489,7 @@ def test_trials_that_go_wrong_are_failed_and_nothing_is_lost(executor, hang):
     good = [trial for trial in range(40) if trial not in (*reasons, 7)]
     assert np.isfinite(error[good]).all()
     assert np.isnan(error[[*reasons, 7]]).all()
-    with h5py.File(study.arm("kf").path) as file:
-        assert file["failure"].asstr()[5] == reasons[5]
+    assert study.arm("kf").read("failure")[5].decode() == reasons[5]
 
 
 def test_a_share_of_failures_may_be_allowed():
@@ -507,18 +703,31 @@ def test_a_simulation_says_its_verdicts_and_compares_its_arms(program):
         "right": "consistent",
         "calm": "optimistic",
     }
-    code, said, _ = program("judge", "mine.right.h5", "mine.calm.h5", "--quiet")
+    assert sorted(path.name for path in pathlib.Path().iterdir()) == ["mine.h5", "mine.h5.trials"]
+    code, said, _ = program("judge", "mine.h5", "--quiet")
     assert code == 0
     *lines, hint = str(study).splitlines()
     assert said.splitlines()[1:] == lines[1:]
     assert hint == 'hint: what to change in it: credence.tune(drawn, free={"scale": (0.05, 5)}, start={"scale": 0.5})'
-    with h5py.File("mine.calm.h5") as file:
-        assert file["trial"][:].tolist() == list(range(2000))
+    with h5py.File("mine.h5") as file:
+        assert file["calm/trial"][:].tolist() == list(range(2000))
         assert int(file.attrs["seed"]) == 1
-        assert file.attrs["arm"] == "calm"
+        assert file.attrs["arms"] == b"right, calm"
     difference = credence.compare(study, arms=("calm", "right"))
-    assert "mine.calm:record - mine.right:record" in str(difference)
+    assert str(difference).startswith("calm - right, trial by trial")
     assert str(credence.compare(study)) == str(difference)
+    record = os.path.abspath("mine.h5")
+    assert program("compare", record)[1] == str(difference)
+    assert program("compare", record, "--arms=calm,right")[1] == str(difference)
+    code, said, _ = program("judge", "mine.h5:calm", "--quiet")
+    assert said.splitlines()[1:] == program("judge", study.arm("calm").path, "--quiet")[1].splitlines()[1:]
+    assert "mine/calm" in said
+    assert credence.judge("mine.h5:calm")["verdict"] == study.verdicts["calm"].verdict
+    several = refusal(lambda: credence.judge("mine.h5"))
+    assert several == "mine.h5: /: holds several arms. Name one as mine.h5:right or mine.h5:calm."
+    assert "has no arm fast" in refusal(lambda: credence.judge("mine.h5:fast"))
+    code, _, said = program("judge", "mine.h5:calm", "-o", "mine.h5", "--overwrite")
+    assert (code, "which is read" in said) == (2, True)
     with pytest.raises(KeyError, match=r"no arm fast\. It has right, calm"):
         study.arm("fast")
     with pytest.raises(KeyError, match=r"calm has no nothing\. It has column/rmse, covariance, error, trial"):

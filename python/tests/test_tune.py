@@ -346,7 +346,13 @@ def test_the_command_says_what_the_function_says(tmp_path):
     words = ["test_tune:normal", "--trials", f"{FEW}", "--held-out=40", "--quiet"]
     code, said, err = command(*words, "--free", "s=0.05:50", "--picture=s.png", "--require=no-finding", folder=tmp_path)
     assert (code, said, err) == (0, str(tuned()), "")
-    assert (tmp_path / "s.png").exists()
+    picture = (tmp_path / "s.png").read_bytes()
+    code, said, err = command(*words, "--free", "s=0.05:50", "--picture=s.png", folder=tmp_path)
+    assert (code, said) == (2, "")
+    assert "cannot write s.png (it is there already). Give another name or --overwrite." in err
+    (tmp_path / "s.png").write_bytes(b"")
+    assert command(*words, "--free", "s=0.05:50", "--picture=s.png", "--overwrite", folder=tmp_path)[0] == 0
+    assert (tmp_path / "s.png").read_bytes() == picture
     assert command(*words, "--free", "s=a:b", folder=tmp_path)[::2] == (
         2,
         "credence tune: invalid --free s=a:b (must be NAME=LOW:HIGH). Give two numbers.\n",

@@ -2,6 +2,7 @@
 
 #include "base/choice.hpp"
 #include "base/program_name.hpp"
+#include "files/record.hpp"
 #include "files/system/durable_file.hpp"
 #include "worlds/notes.hpp"
 
@@ -246,6 +247,7 @@ int parse_segments(const Parsed& parsed) {
 
 std::vector<std::string> inputs_of(const Parsed& parsed) {
     std::vector<std::string> inputs = parsed.arguments;
+    for (const std::string& path : parsed.arguments) inputs.push_back(record_file(path));
     if (const std::optional<std::string> noise = parsed.text("noise")) inputs.push_back(*noise);
     return inputs;
 }

@@ -1,9 +1,12 @@
 #include "report/compare/compare.hpp"
 #include <credence/error.hpp>
 #include <credence/record.hpp>
+#include <credence/text.hpp>
 #include <credence/detail/store.hpp>
+#include <algorithm>
 #include <set>
 
+#include "files/record.hpp"
 #include "base/program_name.hpp"
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
@@ -42,15 +45,36 @@ void check_paths(const std::vector<std::string>& paths) {
         if (!seen.insert(path).second) throw InputError("repeated file " + path + ". Name each once.");
 }
 
+/// Adds the records of a path as arms of one scenario; `first` is the first record of all.
+void add_records(const std::string& path, std::string& first, Study& study) {
+    for (const std::string& record : record_file(path) == path ? records_in(path) : std::vector{path}) {
+        if (first.empty()) first = record;
+        else require_same_runs(first, record);
+        Study one = study_of(read_record(record, {}, segments_off));
+        if (study.scenarios.empty()) {
+            study = std::move(one);
+            study.scenarios.front().scenario.title = "record " + printable(path);
+            continue;
+        }
+        ScenarioResults &all = study.scenarios.front(), &other = one.scenarios.front();
+        if (!std::ranges::equal(all.columns, other.columns, {}, &Column::unit, &Column::unit))
+            throw InputError("cannot compare " + record + " with " + first + " (their components have other units). "
+                             "Give records of the same runs.");
+        all.arms.push_back(std::move(other.arms.front()));
+    }
+}
+
 /// Results files, or records of the same runs.
 std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
     const bool records = kind_of(paths.front()) == FileKind::record;
     for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
-    if (records && paths.size() == 1) throw InputError("compare takes several records of the same runs. Give another.");
     std::vector<StudyFile> files;
+    std::string first;  // record
     for (const std::string& path : paths) {
-        if (records && path != paths.front()) require_same_runs(paths.front(), path);
-        files.push_back({path, records ? study_of(read_record(path, {}, segments_off)) : read_results(path, 0).study});
+        files.push_back({path, records ? Study() : read_results(path, 0).study, records});
+        if (records) add_records(path, first, files.back().study);
+        if (records && paths.size() == 1 && files.front().study.scenarios.front().arms.size() == 1)
+            throw InputError("compare takes several records of the same runs. Give another.");
         if (records && files.back().study.trials != files.front().study.trials)
             throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +
                              std::to_string(files.back().study.trials) + " trials, not " +
@@ -70,7 +94,7 @@ Rendering compared(const Parsed& parsed) {
     const std::vector<StudyFile> files = read_files(parsed.arguments);
     CompareReport report = compare_studies(files, choice);
     report.failed_limit = failed_limit;
-    report.of_records = kind_of(parsed.arguments.front()) == FileKind::record;
+    report.of_records = files.front().is_record;
     return [report = std::move(report)](const std::string& format) {
         return format == "json"   ? compare_json(report)
                : format == "csv"  ? compare_csv(report)

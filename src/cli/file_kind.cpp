@@ -23,7 +23,8 @@ FileKind kind_of_contents(const std::string& path) {
         const std::string format = hdf5::has_attribute(root, "format") ? hdf5::read_text(root, "format") : "";
         if (format == results_format) return FileKind::results;
         if (format == trajectories_format) return FileKind::trajectories;
-        if (hdf5::has_link(root, "error") || hdf5::has_link(root, "covariance")) return FileKind::record;
+        if (hdf5::has_link(root, "error") || hdf5::has_link(root, "covariance") || hdf5::has_attribute(root, "arms"))
+            return FileKind::record;
         if (hdf5::has_link(root, "odometry") && hdf5::has_link(root, "measurement")) return FileKind::noise;
     } catch (const hdf5::Error&) {
     }

@@ -1,10 +1,14 @@
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
 #include "cli/process/progress.hpp"
+#include "files/record.hpp"
 
 #include <credence/error.hpp>
 #include <credence/record.hpp>
 #include <credence/report.hpp>
+
+#include <algorithm>
+#include <iterator>
 
 namespace credence::cli {
 
@@ -46,14 +50,18 @@ int judge(const Parsed& parsed) {
     if (parsed.arguments.empty()) throw InputError("judge takes one record or several. Give RECORD.h5.");
     const ReportRequest request = read_report_request(parsed);
     const int segments = parse_segments(parsed);
-    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::record});
+    std::vector<std::string> records;
+    for (const std::string& path : parsed.arguments) {
+        check_kind(path, {FileKind::record});
+        std::ranges::copy(record_file(path) == path ? records_in(path) : std::vector{path}, std::back_inserter(records));
+    }
     std::vector<Report> reports;
     RunFacts facts;
-    for (const std::string& path : parsed.arguments) {
+    for (const std::string& path : records) {
         ProgressLine progress(parsed.has("quiet"));
         Record record = read_record(path, [&](const Progress& now) { progress(now); }, segments);
         progress.finish();
-        if (!record.log.empty() && parsed.arguments.size() == 1) facts = {{"log", record.log}};
+        if (!record.log.empty() && records.size() == 1) facts = {{"log", record.log}};
         reports.push_back(make_record_report(std::move(record), path, request.limits));
     }
     return give_report(parsed, request, together(std::move(reports)), parsed.arguments.front(), facts);

@@ -2,9 +2,14 @@
 
 #include "files/record.hpp"
 
+#include <credence/detail/store.hpp>
+#include <credence/text.hpp>
+
 #include "files/hdf5/slab.hpp"
 #include "record/read.hpp"
 #include "record/same_runs.hpp"
+
+#include <algorithm>
 
 namespace credence {
 
@@ -94,36 +99,76 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
 
 namespace {
 
+/// A path FILE:ARM as both; the arm is empty where the path is that of a file.
+std::pair<std::string, std::string> parted(const std::string& path) {
+    const std::size_t colon = path.rfind(':');
+    if (colon == std::string::npos || identity_of(path) || !identity_of(path.substr(0, colon))) return {path, ""};
+    return {path.substr(0, colon), path.substr(colon + 1)};
+}
+
+std::vector<std::string> arms_of(const Handle& root) {
+    return hdf5::has_attribute(root, "arms") ? split_list(hdf5::read_any_text(root, "arms"))
+                                             : std::vector<std::string>();
+}
+
+/// Calls `use` with the record of one arm, which is the file's root where it has no arms.
+template <class Use>
+auto of_arm(const Handle& root, const std::string& path, const std::string& arm, const Use& use) {
+    const std::vector<std::string> arms = arms_of(root);
+    if (arms.empty() && arm.empty()) return use(root);
+    const std::string& name = arms.size() == 1 && arm.empty() ? arms.front() : arm;
+    if (std::ranges::find(arms, name) == arms.end())
+        throw RecordError("/", name.empty() ? "holds several arms" : "has no arm " + printable(name),
+                          arms.empty() ? "It is one record" : "Name one as " + path + ":" + joined(arms, " or :"));
+    return use(hdf5::open_group(root, name));
+}
+
 Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
                      int chart) {
-    return hdf5::read_file(path,
+    const auto [file, arm] = parted(path);
+    return hdf5::read_file(file,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const Handle& root) {
-                               const FileSource source(root);
-                               Record record = read_in_chart(
-                                   RecordReader(source), path, progress, segments, chart,
-                                   [path, segments](int again) { return read_in_chart(path, {}, segments, again); });
-                               if (source.has_attribute("log", "")) record.log = source.text("log");
-                               return record;
+                           [&, arm = arm](const Handle& root) {
+                               return of_arm(root, path, arm, [&](const Handle& group) {
+                                   const FileSource source(group);
+                                   Record record = read_in_chart(
+                                       RecordReader(source), path, progress, segments, chart,
+                                       [path, segments](int again) { return read_in_chart(path, {}, segments, again); });
+                                   if (source.has_attribute("log", "")) record.log = source.text("log");
+                                   return record;
+                               });
                            });
 }
 
 }  // namespace
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
-    return read_in_chart(path, progress, segments, 0);
+    Record record = read_in_chart(path, progress, segments, 0);
+    if (const std::string arm = parted(path).second; !arm.empty()) record.results.arms.front().name = arm;
+    return record;
+}
+
+std::string record_file(const std::string& path) { return parted(path).first; }
+
+std::vector<std::string> records_in(const std::string& path) {
+    std::vector<std::string> records = hdf5::read_file(path, "A record", arms_of);
+    for (std::string& record : records) record = path + ":" + record;
+    return records.empty() ? std::vector{path} : records;
 }
 
 void require_same_runs(const std::string& first, const std::string& path) {
     const std::string what = "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n]";
-    hdf5::read_file(first, what, [&](const Handle& root) {
-        hdf5::read_file(path, what, [&](const Handle& other) {
-            require_same_runs(FileSource(root), FileSource(other));
+    const auto read = [&](const std::string& one, const std::function<bool(const Handle&)>& use) {
+        const auto [file, arm] = parted(one);
+        return hdf5::read_file(file, what, [&, arm = arm](const Handle& root) { return of_arm(root, one, arm, use); });
+    };
+    read(first, [&](const Handle& one) {
+        return read(path, [&](const Handle& other) {
+            require_same_runs(FileSource(one), FileSource(other));
             return true;
         });
-        return true;
     });
 }
 

@@ -125,8 +125,8 @@ Report together(std::vector<Report> reports) {
     name_troubles(all);
     for (std::size_t i = 1; i < reports.size(); ++i) {
         Report& one = reports[i];
-        const bool again = std::any_of(all.scenarios.begin(), all.scenarios.end(), [&](const Scenario& scenario) {
-            return scenario.name == one.scenarios.front().name;
+        const bool again = std::any_of(all.arms.begin(), all.arms.end(), [&](const ArmReport& arm) {
+            return arm.scenario == one.arms.front().scenario && arm.arm == one.arms.front().arm;
         });
         if (again) one.scenarios.front().name = one.arms.front().scenario += "_" + std::to_string(i + 1);
         name_troubles(one);

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Sequence
 
 try:
+    from .._outputs import check_output
     from . import program, style
     from .drawing import animate, plot
     from .jobs import FILM, KINDS, Job, jobs_of
@@ -30,6 +31,7 @@ def _parser() -> argparse.ArgumentParser:
                                      description="Pictures of a results file or a trajectory file of credence.")
     parser.add_argument("file", metavar="FILE.h5")
     parser.add_argument("-o", "--output", metavar="DIR", default="pictures", help="folder for them (default: pictures)")
+    parser.add_argument("--overwrite", action="store_true", help="replace pictures that are there")
     parser.add_argument("--scenario", metavar="NAME", action="append", help="only this scenario; may be repeated")
     parser.add_argument("--arms", metavar="A,B,...", type=lambda text: [name.strip() for name in text.split(",")],
                         help="only these arms; of two, paired is A - B")
@@ -48,16 +50,20 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _files_of(job: Job, options: argparse.Namespace) -> list[pathlib.Path]:
+    endings = ("gif",) if job[2] == FILM else (options.vector, "png")
+    return [pathlib.Path(options.output, f"{job[0]}.{ending}") for ending in endings]
+
+
 def _write(job: Job, options: argparse.Namespace) -> list[pathlib.Path]:
     """Draws a picture and returns its files."""
-    stem, what, kind, given = job
-    folder = pathlib.Path(options.output)
+    _, what, kind, given = job
+    paths = _files_of(job, options)
     if kind == FILM:
-        folder.mkdir(parents=True, exist_ok=True)
-        return [animate(what, path=folder / f"{stem}.gif", **given)]
+        paths[0].parent.mkdir(parents=True, exist_ok=True)
+        return [animate(what, path=paths[0], **given)]
     picture = plot(what, kind, width=options.width, title=options.title, **given)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"{stem}.{ending}" for ending in (options.vector, "png")]
+    paths[0].parent.mkdir(parents=True, exist_ok=True)
     for path in paths:
         picture.save(path)
     return paths
@@ -68,6 +74,9 @@ def main(arguments: Sequence[str]) -> int:
     written = 0
     try:
         jobs, left_out = jobs_of(options)
+        for job in jobs if pathlib.Path(options.output).is_dir() else ():
+            for path in _files_of(job, options):
+                check_output(path, options.overwrite, "Give --overwrite, or another folder", inputs=[options.file])
         for job in jobs:
             try:
                 for path in _write(job, options):

@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.lines import Line2D
 
+from .._outputs import whole
 from ..trajectory import Trajectory
 from . import style, trajectory
 
@@ -37,7 +38,7 @@ def animate(trial: Trajectory, path: str, *, ellipse: str = "95", frames_per_sec
     writer = _writer(path, frames_per_second)
     poses = np.unique(np.linspace(0, len(trial["pose"]) - 1, min(len(trial["pose"]), MOST_FRAMES)).astype(int))
     poses = np.r_[poses, np.repeat(poses[-1], frames_per_second)]  # the end is held for a second
-    with matplotlib.rc_context(style.PRINT), style.whole(path) as part, _said(path, progress) as said:
+    with matplotlib.rc_context(style.PRINT), whole(path) as part, _said(path, progress) as said:
         frame = _Frame(trial, trajectory.ELLIPSES[ellipse][0], trajectory.ELLIPSES[ellipse][1])
         writer.setup(frame.picture, str(part), dpi=130)
         try:

@@ -3,14 +3,12 @@ thinned curves, and files that come out the same each time."""
 
 from __future__ import annotations
 
-import contextlib
 import io
 import itertools
 import os
-import pathlib
 import re
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import matplotlib
@@ -24,6 +22,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocat
 from PIL import Image
 
 from .._file import FloatArray
+from .._outputs import whole
 
 COLUMN, PAGE = 85.0, 175.0  # widths in millimetres: one column of a paper, and the whole page
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
@@ -100,18 +99,6 @@ class Picture(Figure):
         with matplotlib.rc_context(PRINT):
             self.savefig(picture, format="png", metadata={"Software": None})
         return picture.getvalue()
-
-
-@contextlib.contextmanager
-def whole(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
-    """A name to write to, which becomes `path` once all is written: what is interrupted leaves nothing behind."""
-    target = pathlib.Path(os.path.realpath(path))
-    part = target.with_name(f".{target.stem}.part{target.suffix}")
-    try:
-        yield part
-        part.replace(target)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def one_panel(width: float, height: float = 82) -> tuple[Picture, Axes]:

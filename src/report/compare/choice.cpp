@@ -58,8 +58,11 @@ public:
     void planned_against_baselines() {
         for (const ScenarioResults& results : files_[0].study.scenarios) {
             const std::size_t before = pairs_.size();
-            for (const ArmResults& arm : results.arms)
-                if (const ArmResults* baseline = baseline_of(results, arm)) add(0, results, arm, 0, results, *baseline);
+            for (const ArmResults& arm : results.arms) {
+                const ArmResults* first = &results.arms.front();
+                const ArmResults* baseline = files_[0].is_record ? first : baseline_of(results, arm);
+                if (baseline != nullptr && baseline != &arm) add(0, results, arm, 0, results, *baseline);
+            }
             if (pairs_.size() == before) leave_out(results, "no planned arm has one to compare with");
         }
         if (pairs_.empty())

@@ -16,6 +16,7 @@ namespace credence {
 struct StudyFile {
     std::string path;
     Study study;
+    bool is_record = false;  ///< or records, as arms of one scenario
 };
 
 /// An arm as requested: its name, or that of its controller alone.
