@@ -818,7 +818,7 @@ def test_the_example_of_the_page_comes_to_its_verdicts():
     assert block is not None
     pathlib.Path("tracker.py").write_text(block[1])
     done = subprocess.run([sys.executable, "tracker.py"], capture_output=True, text=True, check=True, timeout=PATIENCE)
-    said = dict(re.findall(r"^ +tracker_(\w+)/record +(\w+)", done.stdout, re.MULTILINE))
+    said = dict(re.findall(r"^ +tracker/(\w+) +(\w+)", done.stdout, re.MULTILINE))
     assert said == {"right": "consistent", "calm": "optimistic"}
     assert "tracker.calm:record - tracker.right:record" in done.stdout
     words = re.search(r"`python -m credence (simulate tracker:run [^`]+)`", " ".join(PAGE.read_text().split()))

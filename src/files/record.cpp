@@ -119,7 +119,7 @@ auto of_arm(const Handle& root, const std::string& path, const std::string& arm,
     const std::string& name = arms.size() == 1 && arm.empty() ? arms.front() : arm;
     if (std::ranges::find(arms, name) == arms.end())
         throw RecordError("/", name.empty() ? "holds several arms" : "has no arm " + printable(name),
-                          arms.empty() ? "It is one record" : "Name one as " + path + ":" + joined(arms, " or :"));
+                          arms.empty() ? "It is one record" : "Name one as " + path + ":" + joined(arms, " or " + path + ":"));
     return use(hdf5::open_group(root, name));
 }
 
