@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.io
 from evo.core import metrics, sync
 from evo.tools import file_interface
 
@@ -220,6 +221,29 @@ class TestNpz:
         arguments = adapters.from_npz(tmp_path / "a.npz")
         assert list(arguments["group_covariance"]) == ["pose"]
         np.testing.assert_array_equal(arguments["group_covariance"]["pose"], own)
+
+    @pytest.mark.parametrize("suffix", ["npz", "mat"])
+    def test_options_do_not_come_from_data(self, tmp_path: Path, suffix: str) -> None:
+        rng = np.random.default_rng(9)
+        arrays: dict[str, Any] = {"error": rng.normal(size=(40, 3, 2)), "covariance": np.tile(np.eye(2), (40, 3, 1, 1))}
+        options = {"bias": 2.0, "failed": 0.7, "margin": 0.5, "margin_direction": 0.9, "name": "x", "segments": 2.0}
+        path = tmp_path / f"a.{suffix}"
+        if suffix == "npz":
+            np.savez(path, **arrays, **options)
+        else:
+            scipy.io.savemat(path, {**arrays, **options})
+        read: Any = adapters.from_npz if suffix == "npz" else adapters.from_mat
+        with pytest.warns(UserWarning, match=f"a.{suffix}: {', '.join(options)} in it are left out, because options"):
+            arguments = read(path)
+        assert set(arguments) == {"error", "covariance"}
+        assert credence.judge(**arguments).json == credence.judge(**arrays).json
+        for name in ("margin", "eror"):
+            with pytest.raises(credence.InputError, match=rf"invalid names \({name} is no data of judge\)\. Name"):
+                read(path, {name: "error"})
+
+    def test_only_what_is_used_is_read(self, tmp_path: Path) -> None:
+        np.savez(tmp_path / "a.npz", error=np.zeros((2, 3, 1)), covariance=np.ones((2, 3, 1)), notes=np.array([{}]))
+        assert set(adapters.from_npz(tmp_path / "a.npz")) == {"error", "covariance"}
 
     def test_refusals(self, tmp_path: Path) -> None:
         np.savez(tmp_path / "a.npz", e=np.zeros(3))

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from credence import InputError, judge
-from credence.adapters.tables import existing, needed, one_line
+from credence import InputError, Run, judge
+from credence._names import printable
+from credence.adapters.tables import existing, needed, note, one_line
 
 
 def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = None) -> dict[str, Any]:
@@ -27,20 +28,22 @@ def from_npz(path: str | os.PathLike[str], names: Mapping[str, str] | None = Non
     Returns
     -------
     dict
-        The arguments that are there, in their shapes. Other arrays are ignored.
+        The arguments that are there, in their shapes. Other arrays are ignored, and so are those that are called as an
+        option of `judge`, such as `margin`, with a note.
 
     Raises
     ------
     InputError
-        If an array of `names` is not in the file, or none is that `judge` takes.
+        If an array of `names` is not in the file or is to be an option, or none is that `judge` takes.
     """
     source = existing(path)
     try:
         with np.load(source, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+            return _arguments(source, file, names)
+    except InputError:
+        raise
     except Exception as error:  # what zipfile, zlib and NumPy run into
         raise InputError(f"{source}: it cannot be read as an .npz file ({one_line(error)}). Check the path.") from None
-    return _arguments(source, arrays, names)
 
 
 def from_mat(
@@ -63,7 +66,7 @@ def from_mat(
     Returns
     -------
     dict
-        The arguments that are there, in their shapes. Other variables are ignored.
+        The arguments that are there, in their shapes. Other variables are ignored, as in :func:`from_npz`.
 
     Raises
     ------
@@ -115,21 +118,35 @@ def _order(source: str, arguments: Mapping[str, Any]) -> str:
 
 
 def _arguments(source: str, file: Mapping[str, Any], names: Mapping[str, str] | None) -> dict[str, Any]:
-    """The arrays of a file that are arguments of judge."""
-    known = [name for name in inspect.signature(judge).parameters if name not in ("progress", "name")]
-    called = {name: name for name in known} | dict(names or {})
-    missing = [array for array in (names or {}).values() if array not in file]
-    if missing:
-        raise InputError(f"{source}: there is no array {missing[0]} in it (it has {', '.join(file)})")
-    arguments: dict[str, Any] = {name: file[array] for name, array in called.items() if array in file}
+    """The arrays of a file that are arguments of judge: those that are data, which are those of a Run, and `runs`."""
+    data = [*(name for name in inspect.signature(Run).parameters if name != "columns"), "runs"]
+    for name, array in (names or {}).items():
+        if name not in data:
+            raise InputError(f"invalid names ({printable(name)} is no data of judge). Name some of {', '.join(data)}.")
+        if array not in file:
+            raise InputError(f"{source}: there is no array {printable(array)} in it (it has {', '.join(file)})")
+    called = {name: name for name in data} | dict(names or {})
+    arguments = {name: _read(source, file, array) for name, array in called.items() if array in file}
     for what in ("covariance", "nees"):
-        found = {name.split("/")[1]: file[name] for name in file if _is_group(name, what)}
+        found = {name.split("/")[1]: _read(source, file, name) for name in file if _is_group(name, what)}
         if found:
             arguments[f"group_{what}"] = found
     if not arguments:
         raise InputError(f"{source}: no array in it is an argument of judge. Give their names.")
+    options = {*inspect.signature(judge).parameters} & {*file} - {*data, *called.values()}
+    if options:
+        note(f"{source}: {', '.join(sorted(options))} in it are left out, because options do not come from data")
     single = {name: value for name, value in arguments.items() if isinstance(value, np.ndarray) and not value.ndim}
     return arguments | {name: value.item() for name, value in single.items()}
+
+
+def _read(source: str, file: Mapping[str, Any], name: str) -> Any:
+    """One array of a file; the others, which may be anything, are not read."""
+    try:
+        return file[name]
+    except Exception as error:  # what its parser runs into
+        why = f"its array {printable(name)} cannot be read ({printable(str(error))})"
+        raise InputError(f"{source}: {why}. Give arrays of numbers.") from None
 
 
 def _is_group(name: str, what: str) -> bool:
