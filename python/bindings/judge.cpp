@@ -6,6 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/file_kind.hpp"
 #include "cli/version.hpp"
+#include "record/read.hpp"
 
 #include <credence/error.hpp>
 #include <credence/record.hpp>
@@ -79,13 +80,25 @@ Judgement judgement(const std::string& name, const Options& options, const Liste
     return alone([&] { return Judgement{make_record_report(read(progress, segments), name, limits), name}; });
 }
 
-Judgement judge(const std::map<std::string, std::pair<Array, double>>& arrays,
-                const std::map<std::string, std::string>& texts, const Lists& lists,
-                const std::map<std::string, int>& dimensions, const Options& options, const nb::bytes& called,
-                const Listener& listener) {
-    const std::string name = bytes_of(called);
+using Arrays = std::map<std::string, std::pair<Array, double>>;
+using Texts = std::map<std::string, std::string>;
+using Dimensions = std::map<std::string, int>;
+
+RecordArrays record_of(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions) {
     RecordArrays record{{}, texts, dimensions, lists};
     for (const auto& [path, array] : arrays) record.arrays.push_back(described(path, array.first, array.second));
+    return record;
+}
+
+void check(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions) {
+    const RecordArrays record = record_of(arrays, texts, lists, dimensions);
+    alone([&] { check_record(record); });
+}
+
+Judgement judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions,
+                const Options& options, const nb::bytes& called, const Listener& listener) {
+    const std::string name = bytes_of(called);
+    const RecordArrays record = record_of(arrays, texts, lists, dimensions);
     return judgement(name, options, listener,
                      [&](const auto& progress, int segments) { return read_record(record, name, progress, segments); });
 }
@@ -111,6 +124,7 @@ void bind_judge(nb::module_& module) {
         .def_prop_ro("html", [](const Judgement& judgement) { return alone([&] { return judgement.html(); }); });
     module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"),
                nb::arg("options"), nb::arg("name"), nb::arg("progress").none());
+    module.def("check", check, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"));
     module.def("judge_file", judge_file, nb::arg("path"), nb::arg("options"), nb::arg("progress").none());
 }
 

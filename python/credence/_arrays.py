@@ -1,7 +1,8 @@
 """What callers give as arrays, as NumPy's own: [trial, step, ...], and NaN where there is no number.
 
-Nothing that such an object says beside its numbers is dropped without a word: a mask, units, the names of dimensions,
-which rows belong to a run, and where a run ends.
+Every array that comes in goes through `numbers`: those of `judge`, of a Run, and columns of tables. Nothing that such
+an object says beside its numbers is dropped without a word: a mask, units, the names of dimensions, which rows belong
+to a run, and where a run ends.
 """
 
 from __future__ import annotations
@@ -27,52 +28,67 @@ def invalid(name: str, why: str, remedy: str) -> InputError:
     return InputError(f"{printable(name)}: {why}. {remedy}.")
 
 
-def _behind_steps(name: str) -> tuple[int, ...]:
+def behind_steps(name: str) -> tuple[int, ...]:
     """How many dimensions an array may have behind those of trials and steps."""
     last = name.split("/")[-1]
     return {"nees": (0,), "time": (0,), "covariance": (1, 2), "innovation_covariance": (2,)}.get(last, (1,))
 
 
-def _in_order(name: str, array: Any) -> Any:
+def _in_order(name: str, array: Any, single: bool) -> Any:
     """An array of xarray with its trials first and its steps second, if its dimensions are called so."""
     trials = [dim for dim in array.dims if str(dim).lower() in _trial_names]
     steps = [dim for dim in array.dims if str(dim).lower() in _step_names]
     others = [dim for dim in array.dims if dim not in trials + steps]
-    if name == "steps" or not trials + steps:
+    if name == "steps" or name.startswith("column") or not trials + steps:
         return array
-    if len(trials) > 1 or len(steps) != 1 or len(others) not in _behind_steps(name):
+    if len(trials) > (0 if single else 1) or len(steps) != 1 or len(others) not in behind_steps(name):
         dims = ", ".join(map(printable, array.dims))
-        remedy = "Call its dimensions trial and step, and put those of the components behind them"
-        raise invalid(name, f"its dimensions, {dims}, are not those of trials, steps and components", remedy)
+        leading = "step" if single else "trial and step"
+        why = f"its dimensions, {dims}, are not those of {'' if single else 'trials, '}steps and components"
+        raise invalid(name, why, f"Call its dimensions {leading}, and put those of the components behind them")
     return array.transpose(*trials, *steps, *others)
 
 
 def _has_units(given: object) -> bool:
     """Whether it is a quantity, such as those of pint, astropy and unyt, or a table of them."""
-    holders = (type(given), type(getattr(given, "dtype", None)))
-    return any(hasattr(holder, "units") or hasattr(holder, "unit") for holder in holders)
+    holders = [given, *([given.dtype] if hasattr(given, "dtype") else [])]
+    units = [(holder, name) for holder in holders for name in ("units", "unit") if hasattr(type(holder), name)]
+    return any(getattr(holder, name) is not None for holder, name in units)
 
 
 def _is_nested(given: Any) -> bool:
     return isinstance(given, (list, tuple)) and not all(isinstance(one, (int, float)) for one in given)
 
 
-def _numbers(name: str, given: Any) -> Array:
+def numbers(name: str, given: Any, single: bool = False) -> Array:
+    """An array of numbers, and NaN where there is none; `single` is that of one run, without a dimension of trials.
+
+    Raises
+    ------
+    InputError
+        It has units, parts of different shapes, or dimensions whose names contradict its place.
+    TypeError
+        It does not hold numbers.
+    """
+    if type(given) is np.ndarray and given.dtype.kind in "fiub":
+        return given
     if _is_nested(given):
-        parts = [_numbers(name, one) for one in given]
+        parts = [numbers(name, one, single) for one in given]
         if len({part.shape for part in parts}) > 1:
             raise _differing(name, parts)
         return np.array(parts)
     if hasattr(given, "dims") and hasattr(given, "coords"):
-        return _numbers(name, _in_order(name, given).data)
+        return numbers(name, _in_order(name, given, single).data)
     if _has_units(given):
         remedy = "Give its numbers alone, the covariance in the square of the units of the error"
         raise invalid(name, f"has units ({type(given).__name__})", remedy)
     if hasattr(given, "mask") and callable(getattr(given, "filled", None)) and given.dtype.kind in "fiub":
         return np.asarray((given if given.dtype.kind == "f" else given.astype(float)).filled(np.nan))
+    if type(given).__name__ == "NAType":
+        return np.array(np.nan)
     array = np.asanyarray(given)
     if array is not given and type(array) is not np.ndarray:  # what a file's variable gives, with a mask
-        return _numbers(name, array)
+        return numbers(name, array)
     if array.dtype.kind == "O" and hasattr(given, "dtypes"):  # pandas, whose missing numbers are objects of their own
         kinds = {getattr(dtype, "kind", "O") for dtype in np.ravel(np.asarray(given.dtypes, dtype=object))}
         array = given.to_numpy(dtype=float, na_value=np.nan) if kinds <= set("fiub") else array
@@ -80,6 +96,16 @@ def _numbers(name: str, given: Any) -> Array:
         why = f"is an array of {array.dtype}, which does not hold numbers"
         raise TypeError(f"{printable(name)} {why}. Give floating-point numbers.")
     return np.asarray(array)
+
+
+def _is_table(given: object) -> bool:
+    return hasattr(given, "columns") and hasattr(given, "index")
+
+
+def _refuse_rows_below(name: str, given: Any, remedy: str) -> None:
+    """Refuse a table whose index says that runs lie below each other."""
+    if _is_table(given) and (given.index.nlevels > 1 or not given.index.is_unique):
+        raise invalid(name, "its index has several levels, or the same row more than once", remedy)
 
 
 def _differing(name: str, parts: list[Array]) -> InputError:
@@ -99,11 +125,11 @@ def _padded(parts: list[Array]) -> Array:
 def _of_runs(name: str, given: Any) -> tuple[Array, list[int] | None]:
     """An array, and the lengths of its runs if it is a list of runs that differ in them."""
     if not _is_nested(given):
-        return _numbers(name, given), None
-    parts = [_numbers(name, one) for one in given]
+        return numbers(name, given), None
+    parts = [numbers(name, one) for one in given]
     if len({part.shape for part in parts}) == 1:
         return np.array(parts), None
-    if len({part.shape[1:] for part in parts}) > 1 or parts[0].ndim - 1 not in _behind_steps(name):
+    if len({part.shape[1:] for part in parts}) > 1 or parts[0].ndim - 1 not in behind_steps(name):
         raise _differing(name, parts)
     return _padded(parts), [len(part) for part in parts]
 
@@ -119,10 +145,6 @@ def _labels(table: Any, runs: str) -> tuple[Any, Any]:
 
 def _is_gap(label: Any) -> bool:
     return label is None or type(label).__name__ == "NAType" or isinstance(label, list) or bool(label != label)
-
-
-def _is_table(given: object) -> bool:
-    return hasattr(given, "columns") and hasattr(given, "index")
 
 
 def _parted(arrays: Mapping[str, Any], runs: Any) -> tuple[dict[str, Array], Array]:
@@ -141,24 +163,18 @@ def _parted(arrays: Mapping[str, Any], runs: Any) -> tuple[dict[str, Array], Arr
         if others != labels:
             why = f"its column {printable(runs)} is not that of {next(iter(found))}"
             raise invalid(name, why, "Give tables with the same rows")
-    numbers = {name: _numbers(name, table) for name, table in tables.items()}
+    parted = {name: numbers(name, table) for name, table in tables.items()}
     if not isinstance(labels, list) or any(map(_is_gap, labels)):
         raise InputError("invalid runs (it is no array [row] without gaps). Give the number or name of each row's run.")
     first: dict[object, int] = {}
     run = np.array([first.setdefault(label, len(first)) for label in labels], dtype=np.intp)
     lengths = np.bincount(run)
     order = np.argsort(run, kind="stable")
-    for name, array in numbers.items():
+    for name, array in parted.items():
         if array.ndim == 0 or len(array) != len(run):
             raise invalid(name, f"is {list(array.shape)}, and runs has {len(run)} rows", "Give a row for each of runs")
-        numbers[name] = _padded(np.split(array[order], np.cumsum(lengths)[:-1]))
-    return numbers, lengths
-
-
-def _refuse_rows_below(name: str, given: Any) -> None:
-    """Refuse a table whose index says that runs lie below each other."""
-    if _is_table(given) and (given.index.nlevels > 1 or not given.index.is_unique):
-        raise invalid(name, "its index has several levels, or the same row more than once", _rows_below)
+        parted[name] = _padded(np.split(array[order], np.cumsum(lengths)[:-1]))
+    return parted, lengths
 
 
 def _refuse_unknown_times(arrays: Mapping[str, Array]) -> None:
@@ -204,30 +220,52 @@ def _note_one_run(given: Mapping[str, Any], error: Array) -> None:
         warnings.warn(f"{taken}. If it has several runs: {_rows_below}.", stacklevel=4)
 
 
+def of_one_run(name: str, given: Any) -> Array:
+    """An array of a Run, without a dimension of trials, or a number of it."""
+    _refuse_rows_below(name, given, "Give the steps of one run in their order")
+    return numbers(name, given, single=True)
+
+
+def of_many_runs(given: Mapping[str, Any]) -> dict[str, Array]:
+    """Arrays by their names; `steps` is added if runs end at different steps."""
+    arrays, ends = {}, {}
+    for name, array in given.items():
+        _refuse_rows_below(name, array, _rows_below)
+        arrays[name], lengths_or_none = _of_runs(name, array)
+        if lengths_or_none is not None:
+            ends[name] = lengths_or_none
+    for name, lengths_of_it in ends.items():
+        other = next(iter(ends))
+        if lengths_of_it != ends[other]:
+            why = f"its runs do not end at the steps of those of {printable(other)}"
+            raise invalid(name, why, "Give the same steps of both")
+        if "steps" in given:
+            raise invalid(name, "its runs say by themselves where they end, and so does steps", "Leave steps out")
+        arrays["steps"] = np.array(lengths_of_it)
+    return arrays
+
+
 def prepared(given: Mapping[str, Any], runs: object = None) -> dict[str, Array]:
     """The arrays of `judge`, by their places in a record; `steps` is added if runs end at different steps."""
-    if runs is not None:
-        if "steps" in given:
-            raise InputError("invalid steps (runs says how long each run is). Give runs or steps.")
+    if runs is None:
+        arrays = of_many_runs(given)
+    elif "steps" in given:
+        raise InputError("invalid steps (runs says how long each run is). Give runs or steps.")
+    else:
         arrays, lengths = _parted(given, runs)
         arrays["steps"] = lengths
-    else:
-        arrays, ends = {}, {}
-        for name, array in given.items():
-            _refuse_rows_below(name, array)
-            arrays[name], lengths_or_none = _of_runs(name, array)
-            if lengths_or_none is not None:
-                ends[name] = lengths_or_none
-        for name, lengths_of_it in ends.items():
-            other = next(iter(ends))
-            if lengths_of_it != ends[other]:
-                why = f"its runs do not end at the steps of those of {printable(other)}"
-                raise invalid(name, why, "Give the same steps of both")
-            if "steps" in given:
-                raise invalid(name, "its runs say by themselves where they end, and so does steps", "Leave steps out")
-            arrays["steps"] = np.array(lengths_of_it)
     if "error" in arrays:
         _note_one_run(given, arrays["error"])
         _note_what_looks_like_steps_first(arrays["error"])
     _refuse_unknown_times(arrays)
     return arrays
+
+
+def described(array: Array) -> tuple[Array, float]:
+    """Doubles and singles as they are; anything else as doubles. With the precision of the type."""
+    precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
+    if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
+        array = array.astype(float)
+    if not array.flags.aligned or any(stride % array.itemsize for stride in array.strides):
+        array = array.copy()
+    return array, precision

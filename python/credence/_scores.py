@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
-from credence._trials import Array, Run
+from credence._trials import Array
 
 OBJECTIVES = ("errors", "innovations", "nees")
 
 
 def _terms(error: Array, covariance: Array) -> tuple[Array, Array, Array]:
     """Components that are there, log det P and NEES of each step; NaN everywhere where a P is not positive definite."""
+    error, covariance = error.astype(np.float64, copy=False), covariance.astype(np.float64, copy=False)
     there = ~np.isnan(error)
     count, error = there.sum(axis=1), np.where(there, error, 0)
     if covariance.ndim == 2:
@@ -71,9 +72,3 @@ def run_score(objective: str, arrays: Mapping[str, Array], texts: Mapping[str, A
     scores = step_scores(objective, arrays)
     scores = scores[~np.isnan(scores)]
     return float(scores.mean()) if scores.size else math.nan
-
-
-def arrays_of(run: Run) -> dict[str, Array]:
-    """The arrays of a run as doubles."""
-    arrays = {name: np.asarray(array, dtype=float) for name, array in run.arrays.items()}
-    return arrays | ({} if run.steps is None else {"steps": np.asarray(run.steps)})

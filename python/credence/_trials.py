@@ -23,7 +23,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from credence import InputError
+from credence import InputError, _arrays, _core
+from credence._calls import said_of_arrays
 from credence._names import dimensions, printable, texts_and_lists
 
 Array = npt.NDArray[Any]
@@ -33,17 +34,6 @@ BATCH = 256  # trials that a function of many generators gets at once
 MAGIC = b"crtrial1"
 _SUM = 16  # bytes of a frame's checksum
 START = len(MAGIC) + 16  # bytes of a frame before its parts: its mark, and two lengths
-# Dimensions of an array of one run, that of its steps among them.
-_ranks = {
-    "error": (2,),
-    "covariance": (2, 3),
-    "innovation": (2,),
-    "innovation_covariance": (3,),
-    "truth": (2,),
-    "estimate": (2,),
-    "nees": (1,),
-    "time": (1,),
-}
 
 
 class Run:
@@ -251,14 +241,10 @@ def limited(seconds: float | None, ends_process: bool) -> Iterator[None]:
             faulthandler.cancel_dump_traceback_later()
 
 
-def _number_array(name: str, given: object) -> Array:
-    """A copy, because the function may use its array again: doubles and singles as they are, else doubles."""
-    array = np.array(given)
-    if array.dtype.kind not in "fiub":
-        raise InputError(
-            f"{printable(name)}: is an array of {array.dtype}, not of numbers. Give floating-point numbers."
-        )
-    return array if array.dtype in (np.float64, np.float32) else array.astype(np.float64)
+def _kept(array: Array, as_double: bool) -> Array:
+    """A copy, because the function may use its array again: doubles, singles and halves as they are, else doubles."""
+    is_kept = array.dtype.kind == "f" and array.dtype.itemsize <= 8 and not as_double
+    return np.array(array, dtype=array.dtype.newbyteorder("=") if is_kept else np.float64)
 
 
 def _shape(array: Array) -> str:
@@ -296,11 +282,12 @@ class Taken(NamedTuple):
 def _checked_steps(arrays: Mapping[str, Array], behind: int) -> int:
     """How many steps the arrays have; InputError where they do not fit each other."""
     first = next(iter(arrays))
-    steps, sizes = arrays[first].shape[behind], {"error": 0, "innovation": 0}
+    steps, sizes = (*arrays[first].shape, 0)[behind], {"error": 0, "innovation": 0}
     for name, array in arrays.items():
         last = name.rsplit("/", 1)[-1]
-        if array.ndim - behind not in _ranks[last]:
-            expected = " or ".join(f"{rank}" for rank in _ranks[last])
+        ranks = [1 + behind_it for behind_it in _arrays.behind_steps(name)]
+        if array.ndim - behind not in ranks:
+            expected = " or ".join(map(str, ranks))
             why = f"is {_shape(array)}, and has {array.ndim - behind} dimensions in place of {expected}"
             raise InputError(f"{printable(name)}: {why}. Give an array whose first dimension is that of the steps.")
         if array.shape[behind] != steps:
@@ -320,17 +307,21 @@ def take(result: object, known: _Texts, batch: int = 0) -> Taken:
     if not isinstance(result, Run):
         raise TypeError(f"the function returned {type(result).__name__}, not a credence.Run")
     behind = 1 if batch else 0
-    arrays = {name: _number_array(name, array) for name, array in result.arrays.items()}
-    if not arrays.keys() & {"error", "estimate", "nees"} and not any(name.startswith("group/") for name in arrays):
-        raise InputError("a Run has neither error, nor truth and estimate, nor nees. Give one of them.")
-    steps = _checked_steps(arrays, behind)
+    columns = {f"column/{name}": value for name, value in result.columns.items()}
+    given = {**result.arrays, **columns, **({} if result.steps is None else {"steps": result.steps})}
+    if batch:
+        arrays = _arrays.of_many_runs(given)
+    else:
+        arrays = {name: _arrays.of_one_run(name, array) for name, array in given.items()}
+    arrays = {name: _kept(array, name in columns or name == "steps") for name, array in arrays.items()}
+    of_steps = {name: array for name, array in arrays.items() if name in result.arrays}
+    judged = {"error", "estimate", "nees", "innovation"}
+    if not of_steps.keys() & judged and not any(name.startswith("group/") for name in of_steps):
+        raise InputError("a Run has neither error, nor truth and estimate, nor nees, nor innovation. Give one of them.")
+    steps = _checked_steps(of_steps, behind)
     if steps == 0:
         raise InputError("a Run has no steps. Give one at least.")
-    numbers = {f"column/{name}": value for name, value in result.columns.items()}
-    if result.steps is not None:
-        numbers["steps"] = result.steps
-    for name, value in numbers.items():
-        arrays[name] = _number_array(name, value).astype(np.float64)
+    for name in arrays.keys() - of_steps.keys():
         if arrays[name].ndim != behind or "/" in name[7:]:
             raise InputError(f"{printable(name)}: is no number of a trial, or its name has a slash. Give a number.")
     if batch and {len(array) for array in arrays.values()} != {batch}:
@@ -357,12 +348,40 @@ def _traceback(error: BaseException) -> str:
     return "".join(traceback.format_exception(type(error), error, frames))
 
 
+def _refusals(arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> dict[int, str]:
+    """What `judge` would refuse of single trials: {place in the arrays: its message}."""
+    judged = {name: array for name, array in arrays.items() if not name.startswith("column/")}
+
+    def refusal(part: slice) -> str:
+        try:
+            described = {name: _arrays.described(array[part]) for name, array in judged.items()}
+            _core.check(described, texts["texts"], texts["lists"], texts["dimensions"])
+        except InputError as error:
+            said = said_of_arrays(str(error)).replace("trial 0, step", "step")
+            return said.replace("(both counted from 0)", "(counted from 0)")
+        return ""
+
+    if not refusal(slice(None)):
+        return {}
+    found = {i: refusal(slice(i, i + 1)) for i in range(len(next(iter(judged.values()))))}
+    return {i: said for i, said in found.items() if said}
+
+
 class Chunk:
-    """Collects trials: those of the same form become one segment, whose arrays have a dimension of trials."""
+    """Collects trials: those of the same form become one segment, whose arrays have a dimension of trials.
+
+    Attributes
+    ----------
+    segments : list of dict
+    failures : list of Failure
+    refused : dict of str
+        {arm: why `judge` would refuse its trial 0}.
+    """
 
     def __init__(self) -> None:
         self.segments: list[dict[str, Any]] = []
         self.failures: list[Failure] = []
+        self.refused: dict[str, str] = {}
 
     def add(self, arm: str, trial: int, run: Taken) -> None:
         form = [[name, array.dtype.str, list(array.shape)] for name, array in run.arrays.items()]
@@ -373,6 +392,21 @@ class Chunk:
         last["trials"].append(trial)
         last["parts"].append(list(run.arrays.values()))
 
+    def finish(self) -> None:
+        """Make arrays of the segments. A trial that `judge` would refuse has failed."""
+        for segment in self.segments:
+            trials, parts = segment["trials"], zip(*segment.pop("parts"))
+            arrays = {name: np.array(each) for (name, _, _), each in zip(segment["form"], parts)}
+            refusals = _refusals(arrays, segment["texts"])
+            for i, said in refusals.items():
+                self.failures.append(Failure(segment["arm"], trials[i], f"InputError: {said}"[:500]))
+                if trials[i] == 0:
+                    self.refused[segment["arm"]] = said
+            kept = [i for i in range(len(trials)) if i not in refusals]
+            segment["trials"] = [trials[i] for i in kept]
+            segment["arrays"] = {name: array[kept] for name, array in arrays.items()} if refusals else arrays
+        self.segments = [segment for segment in self.segments if segment["trials"]]
+
     def frame(
         self, numbers: Sequence[int], seconds: float, metrics: Sequence[str], repeats: Mapping[str, bool]
     ) -> bytes:
@@ -380,13 +414,13 @@ class Chunk:
             "numbers": list(numbers),
             "seconds": seconds,
             "repeats": dict(repeats),
+            "refused": self.refused,
             "segments": [],
         }
         body: list[bytes] = []
         for segment in self.segments:
-            arrays = {name: np.array(each) for (name, _, _), each in zip(segment["form"], zip(*segment["parts"]))}
-            body += [array.tobytes() for array in arrays.values()]
-            values = {name: metric(name, arrays).tolist() for name in metrics}
+            body += [array.tobytes() for array in segment["arrays"].values()]
+            values = {name: metric(name, segment["arrays"]).tolist() for name in metrics}
             kept = {key: segment[key] for key in ("arm", "form", "texts", "trials")}
             header["segments"].append({**kept, "values": values})
         header["failures"] = [list(one) for one in self.failures]
@@ -416,6 +450,7 @@ def collected(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> Chunk:
                     chunk.add(arm, number, taken)
                 elif number in keep:
                     chunk.add(arm, number, Taken({name: array[i] for name, array in taken.arrays.items()}, taken.texts))
+    chunk.finish()
     return chunk
 
 
@@ -510,9 +545,9 @@ def metric(name: str, arrays: Mapping[str, Array]) -> Array:
     if name != "nees_ratio":
         column = arrays.get(f"column/{name}")
         return np.full(len(next(iter(arrays.values()))), np.nan) if column is None else column
-    error, covariance = arrays.get("error"), arrays.get("covariance")
-    if error is None or covariance is None:
+    if "error" not in arrays or "covariance" not in arrays:
         return np.full(len(next(iter(arrays.values()))), np.nan)
+    error, covariance = (arrays[name].astype(np.float64, copy=False) for name in ("error", "covariance"))
     there = ~np.isnan(error)
     if "steps" in arrays:
         there &= (np.arange(error.shape[1]) < arrays["steps"][:, None])[..., None]

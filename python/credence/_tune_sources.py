@@ -20,8 +20,8 @@ import numpy as np
 
 from credence import Failure, InputError
 from credence._names import printable
-from credence._scores import arrays_of, run_score, step_scores
-from credence._trials import Array, Run, Work, collected
+from credence._scores import run_score, step_scores
+from credence._trials import Array, Run, Work, _Texts, collected, take
 from credence._workers import Workers
 from credence.judging import Verdict, _Printed, judge
 
@@ -61,8 +61,8 @@ def score_chunk(shared: tuple[Work, str], values: Values, numbers: list[int]) ->
     chunk = collected(replace(work, arms={"tuned": dict(values)}), numbers, numbers)
     seconds = time.perf_counter() - begun
     for segment in chunk.segments:
-        for trial, parts in zip(segment["trials"], segment["parts"]):
-            arrays = {name: array for (name, _, _), array in zip(segment["form"], parts)}
+        for i, trial in enumerate(segment["trials"]):
+            arrays = {name: array[i] for name, array in segment["arrays"].items()}
             scores[trial] = run_score(objective, arrays, segment["texts"])
     first = chunk.failures[0] if chunk.failures else None
     return seconds, scores, f"trial {first.trial}: {first.reason}\n{first.traceback}".strip() if first else ""
@@ -237,7 +237,7 @@ class LogSource:
             raise InputError(f"invalid held_out={held_out} (the log has {steps} steps). Leave some to tune on.")
         self.rest = slice(self.first % steps, None)  # where nothing is held out, all of it
         said = self._judged(arrays, texts, slice(None))
-        each = (said["segments"] or {}).get("steps") or self.first // FEW_SEGMENTS
+        each = (said.json[0].get("segments") or {}).get("steps") or self.first // FEW_SEGMENTS
         self.segments = max(2, self.first // max(1, int(each)))
 
     def _arrays(self, values: Values) -> tuple[dict[str, Array], dict[str, Any]]:
@@ -251,7 +251,7 @@ class LogSource:
             raise Failure(f"{said}. Mend it, or give another start.") from error
         if not isinstance(run, Run):
             raise InputError(f"the function returned {type(run).__name__}, not a credence.Run. Return one.")
-        return arrays_of(run), run.texts
+        return take(run, _Texts()).arrays, run.texts
 
     def _judged(self, arrays: Mapping[str, Array], texts: Mapping[str, Any], steps: slice) -> Verdict:
         """The verdict on steps of the log; on its innovations, as if they were errors, where it has no errors."""

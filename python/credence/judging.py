@@ -12,10 +12,6 @@ from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    Numbers = npt.NDArray[np.floating[Any]]
     Groups = str | Mapping[str, int | Sequence[int]] | Sequence[str]
 
 
@@ -98,18 +94,6 @@ class Verdict:
         ``ci95``, ``median``, ``sd`` over the runs, each the mean over its steps. A proper score [Gneiting and Raftery
         2007]."""
         return dict(self["log_score"])
-
-
-def _array(array: npt.NDArray[Any]) -> tuple[Numbers, float]:
-    """Doubles and singles as they are; anything else as doubles. With the precision of the type."""
-    import numpy as np
-
-    precision = float(max(np.finfo(array.dtype).eps, 2.0**-52)) if array.dtype.kind == "f" else 2.0**-52
-    if array.dtype not in (np.dtype("f8"), np.dtype("f4")):
-        array = array.astype(float)
-    if not array.flags.aligned or any(stride % array.itemsize for stride in array.strides):
-        array = array.copy()
-    return array, precision
 
 
 def _refuse_what_is_not_used(given: Mapping[str, object]) -> None:
@@ -277,7 +261,7 @@ def judge(
     _refuse_what_is_not_used({**given_arrays, **given_texts})
     plain, lists = _names.texts_and_lists(given_texts)
     dimensions = _names.dimensions(dimension, groups, nees is not None, own["nees"])
-    taken = {path: _array(array) for path, array in _arrays.prepared(given_arrays, runs).items()}
+    taken = {path: _arrays.described(array) for path, array in _arrays.prepared(given_arrays, runs).items()}
     with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
         return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 

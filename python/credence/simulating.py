@@ -473,6 +473,8 @@ class _Engine:
     def _check_first(self, frame: Frame) -> None:
         """Refuse what cannot be judged as soon as trial 0 is there, and note where it does not repeat itself."""
         self._checked = True
+        for arm, said in frame.header.get("refused", {}).items():
+            raise _core.InputError(f"trial 0 of {arm}: {said}")
         for segment, arrays in frame.segments():
             if segment["trials"][0] != 0:
                 continue
@@ -482,15 +484,6 @@ class _Engine:
                     known = [name[7:] for name in arrays if name.startswith("column/")] + ["nees_ratio"] * has_nees
                     why = f"until: the trials have no number {printable(goal.metric)}"
                     raise _core.InputError(f"{why}. Take one of {', '.join(known) or 'columns that Run is given'}.")
-            numbers = {name: array[:1] for name, array in arrays.items() if not name.startswith("column/")}
-            if all(np.isnan(array).all() for name, array in numbers.items() if name != "steps"):
-                continue
-            texts = segment["texts"]
-            with errors_of_arguments(lambda said: f"trial 0 of {segment['arm']}: {said_of_arrays(said)}"):  # noqa: B023
-                _core.judge(
-                    {name: (array, float(np.finfo(array.dtype).eps)) for name, array in numbers.items()},
-                    texts["texts"], texts["lists"], texts["dimensions"], {"segments": "off"}, b"trial 0", None,
-                )  # fmt: skip
         for arm, is_same in frame.header["repeats"].items():
             if not is_same:
                 self.is_repeatable = False

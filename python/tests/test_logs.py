@@ -390,7 +390,7 @@ class TestTables:
         [
             ({"error": "x"}, "takes error, or estimate and truth, and one of sigma"),
             ({"error": "e", "sigma": "s"}, "there is no column e in it \\(it has t, x"),
-            ({"error": "run", "sigma": "s"}, "column run: could not convert"),
+            ({"error": "run", "sigma": "s"}, "the table: column run is an array of .* does not hold numbers"),
             ({"error": "x", "sigma": ["s", "s"]}, "sigma has 2 columns \\(must be 1"),
             ({"error": ["x", "y"], "covariance": ["s", "s"]}, "covariance has 2 columns \\(must be 4 or 3"),
             ({"error": "x", "sigma": "s", "angles": "y"}, "y is no column of the errors"),

@@ -496,10 +496,63 @@ def test_a_share_of_failures_may_be_allowed():
     def run(rng):
         if filters.number_of(rng) == 3:
             raise ValueError
-        return filters.drawn(np.random.default_rng(1))
+        return filters.drawn(rng)
 
     assert credence.simulate(run, trials=40).verdicts["run"].verdict == "failed"
     assert credence.simulate(run, trials=40, failed="5%").verdicts["run"].verdict != "failed"
+
+
+def of_covariance(spoilt, covariance):
+    covariance[2, 0, 1] += 1e-6 * spoilt
+    return {}
+
+
+def of_time(spoilt, covariance):
+    return {"time": np.array([0.0, 1.0, 3.0, 2.0 if spoilt else 4.0])}
+
+
+def of_halves(spoilt, covariance):
+    """Halves may be asymmetric by 16 of their epsilons."""
+    own = {name: np.broadcast_to(np.eye(n, dtype="f2"), (4, n, n)).copy() for n, name in enumerate("ab", 1)}
+    own["b"][3, 0, 1] = 0.05 if spoilt else 0.01
+    return {"groups": {"a": [0], "b": [0, 1]}, "group_covariance": own}
+
+
+@pytest.mark.parametrize("batch", [False, 64])
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (of_covariance, "covariance: step 2 (counted from 0) is not symmetric: [0, 1] is 1e-06, [1, 0] is 0. Write"),
+        (of_time, "time: step 3 (counted from 0) has 2, and the time before is 3. Write times that"),
+        (of_halves, "group/b/covariance: step 3 (counted from 0) is not symmetric: [0, 1] is 0.0"),
+    ],
+)
+def test_a_trial_that_judge_would_refuse_has_failed_with_its_reason(fault, said, batch):
+    mended = []
+
+    def single(rng):
+        error, covariance = rng.standard_normal((4, 2)), np.broadcast_to(np.eye(2), (4, 2, 2)).copy()
+        return credence.Run(error, covariance, **fault(not mended and np.array_equal(error, spoilt), covariance))
+
+    def many(rngs):
+        runs = [single(rng) for rng in rngs]
+
+        def together(name):
+            return np.array([run.arrays[name] for run in runs])
+
+        own = {name.split("/")[1]: together(name) for name in runs[0].arrays if name.startswith("group/")}
+        plain = {name: together(name) for name in runs[0].arrays if not name.startswith("group/")}
+        return credence.Run(**plain, group_covariance=own, groups=runs[0].texts.get("groups"))
+
+    spoilt = filters.drawn(_trials.generator(1, 137)).arrays["error"]
+    for trials in (300, 320):
+        study = credence.simulate(many if batch else single, trials=trials, batch=batch, output="a.h5", resume=True)
+        assert [one.trial for one in study.failures] == [137]
+        assert study.failures[0].reason.startswith(f"InputError: {said}")
+        assert study.verdicts["run"]["failed_trials"] == 1
+        assert study.verdicts["run"].verdict != "failed"
+        assert np.isnan(study.arm("run").read("error")[137]).all()
+        mended.append(True)  # what was kept of the others is the same
 
 
 def test_a_function_that_always_fails_stops_the_study():
@@ -612,7 +665,7 @@ def test_a_run_says_what_does_not_fit():
     )
     assert "error: is [4], and has 1 dimensions in place of 2" in said(np.ones(4), np.ones((4, 2, 2)))
     assert "a Run has neither error, nor truth" in said(None, np.ones((4, 2, 2)))
-    assert "error: is an array of <U1, not of numbers" in said([["a"]], np.ones((1, 1, 1)))
+    assert "error is an array of <U1, which does not hold numbers" in said([["a"]], np.ones((1, 1, 1)))
     assert "steps: is not a whole number from 1 to 4" in said(np.ones((4, 2)), np.ones((4, 2)), steps=5)
     assert "column/a: is no number of a trial" in said(np.ones((4, 2)), np.ones((4, 2)), columns={"a": [1, 2]})
 

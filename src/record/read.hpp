@@ -18,6 +18,9 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 void each_step(const RecordReader& reader, const std::function<void(const RecordStep&)>& use,
                const ReportProgress& progress = {});
 
+/// Throws InputError where `read_record` would, and reads no more than this needs.
+void check_record(const RecordArrays& arrays);
+
 /// Reads the record in its own chart, or in another one of its manifold [manifold.hpp, take_chart]. `name` names the
 /// scenario; `read_again(chart)` does the same once more. Throws PlacedError.
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,

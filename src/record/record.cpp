@@ -2,6 +2,7 @@
 
 #include <credence/error.hpp>
 
+#include "record/presence.hpp"
 #include "record/segments.hpp"
 #include "record/totals.hpp"
 
@@ -63,22 +64,41 @@ Record read_in_chart(RecordReader reader, const std::string& name, const ReportP
 
 namespace {
 
-Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments,
-                     int chart) {
-    constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;  // the arrays are in memory: a part fits a cache
+/// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the remedies of arrays.
+template <class Use>
+auto with_reader(const RecordArrays& arrays, const Use& use) {
+    constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;
     try {
-        return read_in_chart(
-            RecordReader(ArraySource(arrays), part_numbers), name, progress, segments, chart,
-            [&arrays, name, segments](int again) { return read_in_chart(arrays, name, {}, segments, again); });
+        return use(RecordReader(ArraySource(arrays), part_numbers));
     } catch (const RecordError& error) {
         throw InputError(error.what() + (". " + error.remedy_of_arrays()) + ".");
     }
+}
+
+Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments,
+                     int chart) {
+    return with_reader(arrays, [&](RecordReader reader) {
+        return read_in_chart(
+            std::move(reader), name, progress, segments, chart,
+            [&arrays, name, segments](int again) { return read_in_chart(arrays, name, {}, segments, again); });
+    });
 }
 
 }  // namespace
 
 Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
     return read_in_chart(arrays, name, progress, segments, 0);
+}
+
+void check_record(const RecordArrays& arrays) {
+    with_reader(arrays, [](const RecordReader& reader) {
+        PresenceChecker presence(reader.shape());
+        CheckedStep checked;
+        each_step(reader, [&](const RecordStep& step) {
+            if (step.step == 0) presence.start_trial();
+            if (reader.shape().covers(step.trial, step.step)) presence.check(step, checked);
+        });
+    });
 }
 
 }  // namespace credence

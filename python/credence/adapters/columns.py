@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
+from credence._arrays import numbers
 from credence.adapters.tables import (
     UNITS,
     Array,
@@ -89,11 +90,14 @@ class _Table:
 
     def column(self, name: str) -> Array:
         values = self.values(name)
-        if isinstance(values, list):
-            values = [value if isinstance(value, (int, float)) or value.strip() else "nan" for value in values]
         try:
+            if not isinstance(values, list):
+                return numbers(f"column {name}", values).astype(float)
+            values = [value if isinstance(value, (int, float)) or value.strip() else "nan" for value in values]
             return np.asarray(values, dtype=float)
-        except (TypeError, ValueError) as error:
+        except (TypeError, InputError) as error:
+            raise InputError(f"{self.source}: {error}") from None
+        except ValueError as error:
             raise InputError(f"{self.source}: column {name}: {error}. Give columns of numbers.") from None
 
     def array(self, names: Sequence[str]) -> Array:
@@ -302,7 +306,7 @@ def from_table(
     if times is not None:
         arguments["time"] = times[kept]
     if runs is not None:
-        arguments["runs"] = np.asarray(rows.values(runs))
+        arguments["runs"] = np.asanyarray(rows.values(runs))
     else:
         arguments = {name: array[None] for name, array in arguments.items()}
     component_names = ["_".join(name.split()).replace(",", "_") for name in names]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from credence import InputError
+from credence._arrays import numbers
 from credence.adapters.tables import stacked
 
 _rotation_last = [3, 4, 5, 0, 1, 2]
@@ -55,7 +56,7 @@ def from_gtsam_poses(
     """
     runs = [[list(run) for run in poses] for poses in (truth, estimate)]
     steps = [len(run) for run in runs[0]]
-    matrices = [np.asarray(run, dtype=float) for run in covariance]
+    matrices = [numbers("covariance", run, single=True) for run in covariance]
     if not steps == [len(run) for run in runs[1]] == [len(run) for run in matrices]:
         raise InputError("truth, estimate and covariance do not have the same steps. Give one of each for every pose.")
     joint = stacked(matrices)
@@ -153,8 +154,8 @@ def from_navlie(results: Any) -> dict[str, Any]:
     if not runs:
         raise InputError("there are no results of navlie. Give a MonteCarloResult, or a list of GaussianResultList.")
     return {
-        "error": stacked([-np.asarray(run.error, dtype=float) for run in runs]),
-        "covariance": stacked([np.asarray(run.covariance, dtype=float) for run in runs]),
+        "error": -stacked([numbers("error", run.error, single=True) for run in runs]),
+        "covariance": stacked([numbers("covariance", run.covariance, single=True) for run in runs]),
         "steps": np.array([len(run.stamp) for run in runs]),
-        "time": stacked([np.asarray(run.stamp, dtype=float) for run in runs]),
+        "time": stacked([numbers("time", run.stamp, single=True) for run in runs]),
     }
