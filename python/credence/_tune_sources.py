@@ -93,6 +93,7 @@ class FunctionSource:
         results = self._workers.results(
             lambda: left.pop() if left else None, lambda numbers: (values, numbers), self._parts
         )
+        is_first = self._seconds == 0
         for numbers, result in results:
             seconds, scores, trouble = result or (0.0, {}, "a worker was lost")
             self._seconds = max(seconds / len(numbers), 1e-7)
@@ -100,6 +101,9 @@ class FunctionSource:
             for trial, score in scores.items():
                 if trial < count:
                     found[trial] = score
+        if is_first and count > 1 and np.ptp(found) == 0:  # not NaN
+            said = f"the first {count} trials have the same score, to the last bit: the function does not use rng"
+            raise InputError(f"{said}. Draw every random number from rng.")
         return found
 
     def _parts(self, numbers: list[int]) -> list[list[int]]:

@@ -51,7 +51,8 @@ __all__ = ["Run", "SimulatedArm", "Simulation", "simulate"]
 
 FIRST_ANALYSIS = 256  # trials
 ALPHA = 0.05
-HOPELESS = 20  # an arm whose first trials all fail, this many, stops the study
+HOPELESS = 20  # an arm whose first trials all fail or are all the same, this many, stops the study
+LEADING = ("error", "estimate", "nees", "innovation")
 CHUNK_SECONDS, CHUNK_BYTES, CHUNK_TRIALS = 0.25, 2**25, 1024
 ONLY_ARM = "run"
 
@@ -391,6 +392,7 @@ class _Engine:
         self._checked = False
         self._unmet: Goal | None = None  # a mean that is not yet as precise as asked
         self._failed_first: dict[str, set[int]] = {arm: set() for arm in work.arms}
+        self._errors_first: dict[str, dict[int, bytes]] = {arm: {} for arm in work.arms}
         self._count_failures(trials.failures())
 
     def run(self, workers: Workers[Payload]) -> int:
@@ -463,6 +465,7 @@ class _Engine:
         header = frame.header
         if 0 in header["numbers"] and not self._checked:
             self._check_first(frame)
+        self._refuse_unused_generator(frame)
         self.trials.append(frame)
         count = len(header["numbers"])
         self._seconds = max(header["seconds"] / count, 1e-7)
@@ -490,6 +493,21 @@ class _Engine:
                 why = f"trial 0 of {arm} gives other numbers from the same generator a second time"
                 remedy = "Draw every random number from rng, and keep nothing from trial to trial"
                 warnings.warn(f"{why} (a global generator, the time, or a state that is kept). {remedy}.", stacklevel=5)
+
+    def _refuse_unused_generator(self, frame: Frame) -> None:
+        """Refuse an arm whose first trials have the same errors, to the last bit; one number may be so by chance."""
+        needed = min(HOPELESS, self.ceiling)
+        if min(frame.header["numbers"]) >= needed:
+            return
+        for segment, arrays in frame.segments():
+            first = self._errors_first[segment["arm"]]
+            leading = [array for name, array in arrays.items() if name.split("/")[-1] in LEADING]
+            for i, trial in enumerate(segment["trials"]):
+                if trial < needed and sum(array[i].size for array in leading) > 1:
+                    first[trial] = b"".join(array[i].tobytes() for array in leading)
+            if len(first) == needed > 1 and len(set(first.values())) == 1:
+                why = f"the first {needed} trials of {segment['arm']} have the same errors, to the last bit"
+                raise _core.InputError(f"{why}: the function does not use rng. Draw every random number from rng.")
 
     def _compare_with_what_is_kept(self, workers: Workers[Payload]) -> None:
         """Run a trial once more, and refuse to add to trials that another function or another library made.
@@ -647,7 +665,8 @@ def simulate(
     Raises
     ------
     InputError
-        A ValueError: an argument cannot be used, or what trial 0 returned cannot be judged.
+        A ValueError: an argument cannot be used, what trial 0 returned cannot be judged, or the first twenty trials of
+        an arm have the same errors.
     Failure
         The first twenty trials of an arm all failed; or an executor broke that cannot be made again.
     Interrupted

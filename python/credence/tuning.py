@@ -26,7 +26,7 @@ from credence._calls import note
 from credence._names import printable
 from credence._scores import OBJECTIVES
 from credence._trials import Array, Work
-from credence._tune_search import Known, Objective, Space, known, search
+from credence._tune_search import FAILED, Known, Objective, Space, known, search
 from credence._tune_sources import FunctionSource, LogSource, ScenarioSource, Source, held_out_seed
 from credence.judging import NOT_REFUTED, Verdict
 from credence.program import SEED
@@ -311,6 +311,11 @@ def _said(tuned: Tuned) -> list[str]:
     if tuned._failing:
         first = (objective.source.trouble or "its numbers are not finite").splitlines()[0]
         notes.append(f"{tuned._failing} points that were tried had no result, the first: {first}")
+    scores = objective.scores(tuned._w)
+    distinct = len(np.unique(scores))
+    if len(scores) - distinct > max(1, FAILED * len(scores)):  # those that failed have the score of the worst
+        told = f"Only {distinct} of the {len(scores)} trials are distinct: their scores agree to the last bit."
+        notes.append(f"{told} Copies are not independent, and the errors are too small: draw every number from rng.")
     if tuned.score_after > tuned.score_before:
         notes.append("On what was held out the score is no better than before: tune on more, or keep the start.")
     if tuned.verdict.verdict not in NOT_REFUTED:

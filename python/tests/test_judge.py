@@ -328,3 +328,36 @@ def test_the_exact_hypothesis_has_students_p():
     errors = 1.02 * rng.normal(size=(500, 4, 1))
     verdict = credence.judge(errors, np.ones((500, 4, 1, 1)))
     assert verdict["p_exact"] == pytest.approx(stats.ttest_1samp((errors**2).mean((1, 2)), 1).pvalue, rel=1e-9)
+
+
+def test_copies_of_runs_are_no_runs_of_their_own(tmp_path, program):
+    record = {name: array[:30] for name, array in records.joint(np.random.default_rng(11)).items()}
+    twice = {name: np.concatenate([array, array[[4, 7]]]) for name, array in record.items()}
+    path = records.write(tmp_path / "twice.h5", twice)
+    verdict, expected = credence.judge(**twice, name=str(path), failed=0.1), credence.judge(**record)
+    assert verdict.json == json.loads(program("judge", path, "--failed=10%", "--format=json", "--quiet")[1])
+    assert (verdict["trials"], verdict["failed_trials"]) == (32, 2)
+    assert verdict["groups"][0]["nees_ratio"] == expected["groups"][0]["nees_ratio"]
+    assert credence.judge(**twice).verdict == "failed"  # two of 32 are more than 1 %
+    code, said, _ = program("judge", path, "--quiet", "--require=no-finding")
+    assert (code, said.count("it is a copy")) == (1, 2)
+    assert "trial 31, step 1 ([31, 0] in the file): its errors are those of trial 7, to the last bit" in said
+    assert "Only 30 of the 32 runs are distinct: 2 have the errors of another one, to the last bit" in said
+    assert "with status" not in said
+
+
+def test_runs_that_agree_by_chance_are_no_copies():
+    rng = np.random.default_rng(12)
+    for shape in ((400, 1, 1), (400, 1, 2), (400, 2, 1), (400, 3, 1)):
+        errors = np.rint(rng.normal(size=shape))
+        assert len(np.unique(errors.reshape(400, -1), axis=0)) < 400
+        assert credence.judge(errors, np.ones(shape))["failed_trials"] == 0
+    errors = rng.normal(size=(400, 5, 2))
+    errors[:, 0] = 0.3  # a start that is always the same, and components without an error
+    errors[..., 1] = 0
+    time, variances = np.tile(np.arange(5.0), (400, 1)), np.ones((400, 5, 2))
+    assert credence.judge(errors, variances, time=time)["failed_trials"] == 0
+    errors[200:] = errors[:200]
+    assert credence.judge(errors, variances)["failed_trials"] == 200
+    nees = rng.chisquare(2, (200, 4))
+    assert credence.judge(nees=np.concatenate([nees, nees]), dimension=2)["failed_trials"] == 200

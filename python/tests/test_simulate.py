@@ -681,6 +681,41 @@ def test_a_run_is_made_of_a_record_of_one_trial():
     assert "error: has 40 trials. Give one" in refusal(lambda: credence.Run.of_record(given))
 
 
+# Copies.
+
+
+@pytest.mark.parametrize("executor", [None, 2])
+def test_a_function_that_does_not_use_its_generator_is_refused(executor):
+    def fixed(rng):
+        return filters.drawn(np.random.default_rng(1))
+
+    said = refusal(lambda: credence.simulate(fixed, trials=300, executor=executor))
+    assert said.startswith("the first 20 trials of run have the same errors, to the last bit: the function does not us")
+    assert "the first 2 trials of" in refusal(lambda: credence.simulate(fixed, trials=2))
+    assert credence.simulate(fixed, trials=1).failures == []
+
+    def of_one_number(rng):
+        return credence.Run(np.ones((1, 1)), np.ones((1, 1, 1)), time=[0.0])
+
+    assert credence.simulate(of_one_number, trials=30).verdicts["run"]["failed_trials"] == 0
+
+
+def test_few_seeds_are_copies():
+    """Of 30 seeds for 300 trials; the verdict rests on those that are distinct."""
+
+    def run(rng):
+        return filters.drawn(np.random.default_rng(rng.integers(30)))
+
+    study = credence.simulate(run, trials=300)
+    verdict, error = study.verdicts["run"], study.arm("run").read("error")
+    distinct = np.unique(error.reshape(300, -1), axis=0)
+    assert (verdict.verdict, verdict["failed_trials"]) == ("failed", 300 - len(distinct))
+    assert f"Only {len(distinct)} of the 300 runs are distinct: {300 - len(distinct)} have the errors" in str(study)
+    alone = credence.judge(distinct.reshape(-1, 4, 2), np.broadcast_to(np.eye(2), (len(distinct), 4, 2, 2)))
+    ratio = study.arm("run").judge(failed=0.95)["groups"][0]["nees_ratio"]
+    assert ratio == pytest.approx(alone["groups"][0]["nees_ratio"], rel=1e-12)
+
+
 # Batches, precision, and what a simulation says.
 
 

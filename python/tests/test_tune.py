@@ -207,6 +207,18 @@ def test_many_at_once():
     assert found.parameters["s"].value == pytest.approx(rms(), rel=1e-4)
 
 
+def test_copies_of_trials_are_noticed():
+    def seeded(seed):
+        return lambda rng, s=1.0: normal(np.random.default_rng(seed(rng)), s)
+
+    said = refusal(lambda: credence.tune(seeded(lambda rng: 1), free={"s": (0.05, 50)}, trials=FEW))
+    assert said.startswith("the first 20 trials have the same score, to the last bit: the function does not use rng")
+    few = credence.tune(seeded(lambda rng: rng.integers(5)), free={"s": (0.05, 50)}, trials=FEW, held_out=40)
+    assert f"Only 5 of the {FEW} trials are distinct: their scores agree to the last bit." in str(few)
+    assert few.verdict.verdict == "failed"
+    assert "are distinct" not in str(tuned())
+
+
 # One log.
 
 

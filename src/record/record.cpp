@@ -33,13 +33,15 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
 namespace {
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments,
-                   LostTrials lost) {
+                   LostTrials lost, Copies copies) {
     SegmentPlanner planner(reader.shape(), segments);
-    RecordTotals totals(reader.shape(), name, lost, &planner);
+    RecordTotals totals(reader.shape(), name, lost, copies, &planner);
     each_step(reader, [&](const RecordStep& one) { totals.add(one); }, progress);
+    if (totals.agree_by_chance()) return read_record(reader, name, progress, segments, lost, Copies::count);
     Record record = totals.finish();
     const TrialTotals& trials = record.results.arms.front().totals.trials;
-    if (trials.lost() > trials.counted()) return read_record(reader, name, progress, segments, LostTrials::counted);
+    if (trials.lost() > trials.counted())
+        return read_record(reader, name, progress, segments, LostTrials::counted, copies);
     record.segments = planner.finish(reader, name);
     return record;
 }
@@ -47,7 +49,7 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 }  // namespace
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
-    return read_record(reader, name, progress, segments, LostTrials::set_aside);
+    return read_record(reader, name, progress, segments, LostTrials::set_aside, Copies::fail);
 }
 
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,

@@ -74,7 +74,7 @@ ScenarioResults SegmentPlanner::results(const RecordReader& reader, const std::s
     shape.trials = std::ssize(found_.run);
     shape.steps = shape.longest = found_.steps;
     shape.declared = declared_;
-    RecordTotals totals(shape, name, LostTrials::counted);
+    RecordTotals totals(shape, name, LostTrials::counted, Copies::count);
     std::size_t next = 0;
     each_step(reader, [&](const RecordStep& one) {
         if (next == first_.size() || one.trial != found_.run[next] || one.step < first_[next]) return;

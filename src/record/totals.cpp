@@ -32,10 +32,12 @@ std::size_t steps_between_kept(const RecordShape& shape) {
 
 }  // namespace
 
-RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, SegmentPlanner* planner)
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, Copies copies,
+                           SegmentPlanner* planner)
     : shape_(shape),
       every_(steps_between_kept(shape_)),
       lost_(lost),
+      copies_(copies),
       planner_(planner),
       all_series_(record_series(shape_)),
       alike_(shape_),
@@ -87,12 +89,22 @@ void RecordTotals::add_covered(const RecordStep& step) {
 void RecordTotals::check_end(std::int64_t trial) {
     if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
     const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);
-    if (end == asked) return;
+    if (end == asked) return check_copy(trial);
     const std::string of = "the trial ends after " + std::to_string(end) + " of ";
     const bool declared = !shape_.declared.empty();
     note({trial, end}, Status::non_finite,
          of + (declared ? "the " : "") + std::to_string(asked) + " steps" +
              (declared ? " that `steps` declares" : ", and no dataset `steps` declares that it is shorter"));
+}
+
+void RecordTotals::check_copy(std::int64_t trial) {
+    if (copies_ == Copies::count) return;
+    const std::optional<std::int64_t> first = copy_finder_.end_trial(trial);
+    if (!first) return;
+    ++copies_found_;
+    note({trial, 0}, Status::non_finite,
+         "its errors are those of trial " + std::to_string(*first) + ", to the last bit: it is a copy");
+    trouble_.status = Status::completed;
 }
 
 void RecordTotals::start_trial() {
@@ -101,6 +113,7 @@ void RecordTotals::start_trial() {
     present_.clear();
     products_.start_trial();
     moments_.start_trial();
+    copy_finder_.start_trial();
     log_score_ = 0;
 }
 
@@ -121,6 +134,8 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     set_dimension(k);
     log_score_ += judge_.log_score();
     present_.push_back(k);
+    for (std::size_t j = 0; shape_.has_errors && j < size(shape_.n); ++j) copy_finder_.add(step.error[j]);
+    for (const double nees : checked.nees) copy_finder_.add(nees);
     keep_details(step.trial, k, checked);
     if (record_.has_innovations) products_.correlate();
 }
@@ -341,6 +356,14 @@ Record RecordTotals::finish() {
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");
+    if (copies_found_ > 0) {
+        const std::string all = std::to_string(shape_.trials), distinct = std::to_string(shape_.trials - copies_found_),
+                          copies = std::to_string(copies_found_);
+        std::vector<std::string>& said = record_.results.not_judged;
+        said.insert(said.begin(), "Only " + distinct + " of the " + all + " runs are distinct: " + copies +
+                                      " have the errors of another one, to the last bit. A copy is not independent and "
+                                      "counts as failed: give each run once, and draw the random numbers of each anew.");
+    }
     if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(kept_steps(), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
         arm().totals.distribution_distance[k] = uniform_distance(std::move(nees_[k]));

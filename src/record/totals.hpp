@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "record/alike.hpp"
+#include "record/copies.hpp"
 #include "record/gaps.hpp"
 #include "record/presence.hpp"
 #include "record/reader.hpp"
@@ -26,12 +27,16 @@ enum class LostTrials { set_aside, counted };
 class RecordTotals {
 public:
     /// `path` names the scenario; `planner` learns of the runs.
-    RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, SegmentPlanner* planner = nullptr);
+    RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, Copies copies,
+                 SegmentPlanner* planner = nullptr);
     RecordTotals(const RecordTotals&) = delete;
     RecordTotals& operator=(const RecordTotals&) = delete;
 
     /// Adds a step; every step of every trial comes once, in order. Throws RecordError for bad input.
     void add(const RecordStep& step);
+
+    /// Whether trials that were taken for copies agree by chance.
+    bool agree_by_chance() const { return copies_found_ > 0 && copy_finder_.by_chance(); }
 
     /// The results, after the last step.
     Record finish();
@@ -46,6 +51,7 @@ private:
     void note(const RecordStep& step, Status status, const std::string& what);
     void note_lost(std::int64_t trial, double nees_ratio);
     void check_end(std::int64_t trial);
+    void check_copy(std::int64_t trial);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
     void end_trial(std::int64_t trial);
     void keep_curves(std::size_t trial);
@@ -67,14 +73,17 @@ private:
     RecordShape shape_;
     std::size_t every_;                          ///< [Record::every]
     LostTrials lost_;
+    Copies copies_;
     SegmentPlanner* planner_;
     StateSeries all_series_;
     AlikeSums alike_;
     StepEvaluator judge_;
     PresenceChecker presence_;
     GapCounter gaps_;
+    CopyFinder copy_finder_;
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
+    std::int64_t copies_found_ = 0;              ///< of runs
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
     /// [kept steps, 1 + groups] trials with the step or one behind it that is not kept, sums over them of the bounds.
     std::vector<double> roundings_;

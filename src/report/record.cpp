@@ -173,6 +173,8 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
         report.not_judged.push_back("Figures by step are of one step in " + every +
                                     ": their step k is step " + every + " (k - 1) + 1 of the record.");
     }
+    const auto is_copy = [](const RecordTrouble& trouble) { return trouble.status == Status::completed; };
+    if (std::ranges::any_of(record.troubles, is_copy)) arm.cause.reset();  // their status says less
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     hint_at_gate(record, arm.evidence, arm.consistency);

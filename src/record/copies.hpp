@@ -1,0 +1,58 @@
+#pragma once
+// Runs of a record that are copies of others.
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace credence {
+
+/// Whether a run whose errors are those of an earlier one, bit for bit, is no run of its own.
+enum class Copies { fail, count };
+
+/// Notices such runs. Errors of few values may agree by chance: then runs that differ also agree in a part of their
+/// numbers.
+class CopyFinder {
+public:
+    void start_trial() {
+        now_ = {};
+        count_ = 0;
+    }
+
+    /// The next value of the run, which is no number if it is NaN. Numbers go to two parts by turns.
+    void add(double value) {
+        if (std::isnan(value)) return;
+        std::uint64_t& part = now_[count_++ % 2];
+        part = (part ^ std::bit_cast<std::uint64_t>(value)) * 0x9e3779b97f4a7c15;
+        part ^= part >> 32;
+    }
+
+    /// Whether what agrees may do so by chance.
+    bool by_chance() const { return chance_[0] && chance_[1]; }
+
+    /// The run with which this one agrees in all numbers, if there are two or more.
+    std::optional<std::int64_t> end_trial(std::int64_t trial) {
+        constexpr std::size_t most = 1 << 18;  // runs that are remembered; together some 50 MB
+        if (count_ < 2) return std::nullopt;
+        if (const auto found = runs_.find(now_); found != runs_.end())
+            return found->second;
+        if (runs_.size() == most) return std::nullopt;
+        runs_.emplace(now_, trial);
+        for (std::size_t i = 0; i < 2; ++i)
+            if (!parts_[i].insert(now_[i]).second) chance_[i] = true;
+        return std::nullopt;
+    }
+
+private:
+    std::array<std::uint64_t, 2> now_{};
+    std::size_t count_ = 0;                                      ///< numbers of the run
+    std::map<std::array<std::uint64_t, 2>, std::int64_t> runs_;  ///< the first run of each kind
+    std::array<std::set<std::uint64_t>, 2> parts_;
+    std::array<bool, 2> chance_{};                               ///< whether runs that differ agree in this part
+};
+
+}  // namespace credence
