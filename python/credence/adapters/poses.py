@@ -32,6 +32,8 @@ class Poses(NamedTuple):
     counted: bool = False  # its times are the numbers of its lines
 
     def at(self, rows: NDArray[np.intp]) -> Poses:
+        if np.array_equal(rows, np.arange(len(self.time))):
+            return self
         covariance = None if self.covariance is None else self.covariance[rows]
         return self._replace(time=self.time[rows], pose=self.pose[rows], covariance=covariance)
 
@@ -143,9 +145,10 @@ def found_offset(estimate: Poses, truth: Poses) -> tuple[float, float]:
     if len(rows) < 20:
         return 0.0, 0.0
     offsets = np.linspace(-_longest_offset, _longest_offset, 401)
+    columns = np.ascontiguousarray(truth.pose[:, :3].T)
 
     def spread(offset: float) -> float:
-        true = [np.interp(estimate.time[rows] + offset, truth.time, truth.pose[:, i]) for i in range(3)]
+        true = [np.interp(estimate.time[rows] + offset, truth.time, column) for column in columns]
         return float(np.var(estimate.pose[rows, :3] - np.transpose(true), axis=0).sum())
 
     spreads = [spread(offset) for offset in offsets]
@@ -205,7 +208,7 @@ def estimated_components(runs: Sequence[Poses]) -> list[int]:
     one and the same number from 10^4 on); nor are z, roll and pitch where twenty poses or more do not change them.
     """
     poses = np.concatenate([run.pose for run in runs])
-    variances = np.diagonal(np.concatenate(_covariances(runs)), axis1=1, axis2=2)
+    variances = np.concatenate([np.diagonal(each, axis1=1, axis2=2) for each in _covariances(runs)])
     none = ~((variances > 0) & (variances < 1e6)).any(axis=0)
     none |= (variances >= 1e4).all(axis=0) & (np.ptp(variances, axis=0) == 0)
     if len(poses) >= 20:  # of fewer poses none may have left the plane yet
@@ -238,7 +241,7 @@ def _of_components(
 ) -> dict[str, Any]:
     """The arguments with the components that are kept."""
     names = {"component_names": [COMPONENTS[i] for i in kept], "component_units": [_units[i] for i in kept]}
-    arguments = names | {"covariance": covariance[..., kept, :][..., kept]}
+    arguments = names | {"covariance": covariance if len(kept) == 6 else covariance[..., kept, :][..., kept]}
     states: dict[str, Any] = {"chart": chart}
     if kept == list(range(6)):
         names["component_names"][3:] = ["rx", "ry", "rz"]

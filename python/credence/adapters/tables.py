@@ -197,6 +197,8 @@ def from_upper(upper: Array, dimension: int) -> Array:
 
 def stacked(arrays: Sequence[Array]) -> Array:
     """One array of all runs, padded with NaN behind the shorter ones."""
+    if len(arrays) == 1:
+        return arrays[0][None]
     joint = np.full((len(arrays), max(map(len, arrays)), *arrays[0].shape[1:]), np.nan)
     for run, array in zip(joint, arrays):
         run[: len(array)] = array
