@@ -89,7 +89,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--batch", type=int, nargs="?", const=True, default=False, help="the function takes many generators"
     )
-    made.add_argument("-o", "--output", metavar="FILE.h5", help="the record; with arms FILE.ARM.h5")
+    made.add_argument("-o", "--output", metavar="FILE.h5", help="the record, with a group for each arm")
     made.add_argument("--resume", action="store_true", help="resume from the trials that are kept beside the output")
     made.add_argument("--until", action="append", metavar="NUMBER=WIDTH", help="stop at a precision: nees_ratio=1%%")
     made.add_argument("--timeout", type=float, metavar="SECONDS", help="of a trial")

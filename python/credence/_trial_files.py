@@ -24,7 +24,7 @@ import numpy as np
 from credence import InputError
 from credence._names import printable
 from credence._outputs import whole
-from credence._trials import MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
+from credence._trials import LARGE, MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
 
 FORMAT = "credence trials 2"
 BLOCK = 2**20  # bytes that are searched at once
@@ -80,12 +80,12 @@ class Trials:
     done : set of int
         The trials that are there, under every arm.
     study : str
-        A checksum of what decides them, which their records have as well.
+        A checksum of seed and arms, which the record has as well: it is the same for any `batch`.
     """
 
     def __init__(self, path: Path, seed: int, arms: Arms, batch: int) -> None:
         description = _description(seed, arms, batch)
-        self.path, self.done, self.study = path, set[int](), _sum(json.dumps(description).encode())
+        self.path, self.done, self.study = path, set[int](), _sum(json.dumps([seed, description["arms"]]).encode())
         self._places: list[tuple[int, int]] = []  # where each chunk's frame begins, and its length
         is_new = not path.exists()
         self._file = open(path, "x+b" if is_new else "r+b", buffering=0)  # noqa: SIM115
@@ -254,7 +254,12 @@ def _chunk(shape: tuple[int, ...], trials: int) -> tuple[int, ...]:
 
 
 def _is_compressible(array: Array) -> bool:
-    """Whether compression halves these numbers: those that are missing, and those that are the same in all trials."""
+    """Whether compression halves these numbers: those that are missing, and those that are the same in all trials.
+
+    It takes as long as a short trial, so that arrays which are small in each trial are left as they are.
+    """
+    if array.nbytes < LARGE * len(array):
+        return False
     planes = np.ascontiguousarray(array).view(np.uint8).reshape(-1, array.itemsize).T.tobytes()
     return 2 * len(zlib.compress(planes, LEVEL)) < len(planes)
 

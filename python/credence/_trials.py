@@ -10,6 +10,7 @@ import contextlib
 import faulthandler
 import hashlib
 import json
+import math
 import os
 import signal
 import struct
@@ -30,6 +31,7 @@ from credence._names import dimensions, printable, texts_and_lists
 Array = npt.NDArray[Any]
 Arms = dict[str, dict[str, Any]]
 
+LARGE = 2**16  # bytes of a trial, from which on it is worth while to store an array in less room
 BATCH = 256  # trials that a function of many generators gets at once
 MAGIC = b"crtrial1"
 _SUM = 16  # bytes of a frame's checksum
@@ -367,6 +369,14 @@ def _refusals(arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> dict[int
     return {i: said for i, said in found.items() if said}
 
 
+def _is_constant(array: Array) -> bool:
+    """Whether it is the same in all of several trials, bit for bit, and large: then a frame has it once."""
+    if len(array) < 2 or array.nbytes < LARGE * len(array):
+        return False
+    rows = array.reshape(len(array), -1).view(np.uint8)
+    return all(np.array_equal(row, rows[0]) for row in rows[1:])
+
+
 class Chunk:
     """Collects trials: those of the same form become one segment, whose arrays have a dimension of trials.
 
@@ -419,10 +429,12 @@ class Chunk:
         }
         body: list[bytes] = []
         for segment in self.segments:
-            body += [array.tobytes() for array in segment["arrays"].values()]
-            values = {name: metric(name, segment["arrays"]).tolist() for name in metrics}
+            arrays = segment["arrays"]
+            once = [name for name, array in arrays.items() if _is_constant(array)]
+            body += [(array[0] if name in once else array).tobytes() for name, array in arrays.items()]
+            values = {name: metric(name, arrays).tolist() for name in metrics}
             kept = {key: segment[key] for key in ("arm", "form", "texts", "trials")}
-            header["segments"].append({**kept, "values": values})
+            header["segments"].append({**kept, "once": once, "values": values})
         header["failures"] = [list(one) for one in self.failures]
         return framed(header, body)
 
@@ -498,8 +510,10 @@ class Frame:
             arrays = {}
             for name, dtype, shape in segment["form"]:
                 whole = (len(segment["trials"]), *shape)
-                arrays[name] = np.frombuffer(self.data, dtype, int(np.prod(whole)), at).reshape(whole)
-                at += arrays[name].nbytes
+                stored = (1, *shape) if name in segment["once"] else whole
+                array = np.frombuffer(self.data, dtype, math.prod(stored), at).reshape(stored)
+                arrays[name] = np.broadcast_to(array, whole)
+                at += array.nbytes
             yield segment, arrays
 
     def failures(self) -> list[Failure]:

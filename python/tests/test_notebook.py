@@ -17,8 +17,8 @@ def test_the_notebook_comes_to_both_verdicts(tmp_path):
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     said = "".join(output.get("text", "") for output in outputs)
-    assert re.search(r"run_right/record +consistent ", said)
-    assert re.search(r"run_wrong/record +optimistic ", said)
+    assert re.search(r"run/right +consistent ", said)
+    assert re.search(r"run/wrong +optimistic ", said)
     assert "AssertionError: the filter is not consistent" in said
     shown = [output["data"] for output in outputs if "data" in output]
     kinds = [next(kind for kind in ("text/html", "image/png", "image/gif") if kind in data) for data in shown]
