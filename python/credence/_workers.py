@@ -103,6 +103,11 @@ class _Processes:
             self.wait()
         future: Future[Any] = Future()
         with _uninterrupted():
+            for process, pipe in self._idle:
+                if not process.is_alive():
+                    self._end(process, pipe)
+            alive = [one for one in self._idle if one[0].exitcode is None]
+            self._idle, self._left = alive, self._left + len(self._idle) - len(alive)
             process, pipe = self._idle.pop() if self._idle else self._another()
             self._busy[pipe] = (process, future)
         with contextlib.suppress(OSError):  # it has ended, which is noticed in the next line but one

@@ -31,8 +31,9 @@ def slow(rng, seconds=0.002):
     return drawn(rng)
 
 
-def large(rng, steps=20, n=80):
+def large(rng, steps=20, n=80, seconds=0):
     """A trial of 1 MB, which differs from all others."""
+    time.sleep(seconds)
     return credence.Run(rng.standard_normal((steps, n)), rng.uniform(0.9, 1.1, (steps, 1, 1)) * (np.eye(n) + 0.1))
 
 

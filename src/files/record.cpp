@@ -111,27 +111,32 @@ std::vector<std::string> arms_of(const Handle& root) {
                                              : std::vector<std::string>();
 }
 
+std::vector<std::string> paths_of(const std::string& file, std::vector<std::string> arms) {
+    for (std::string& arm : arms) arm = file + ":" + arm;
+    return arms;
+}
+
 /// Calls `use` with the record of one arm, which is the file's root where it has no arms.
 template <class Use>
-auto of_arm(const Handle& root, const std::string& path, const std::string& arm, const Use& use) {
+auto of_arm(const Handle& root, const std::string& file, const std::string& arm, const Use& use) {
     const std::vector<std::string> arms = arms_of(root);
     if (arms.empty() && arm.empty()) return use(root);
     const std::string& name = arms.size() == 1 && arm.empty() ? arms.front() : arm;
     if (std::ranges::find(arms, name) == arms.end())
         throw RecordError("/", name.empty() ? "holds several arms" : "has no arm " + printable(name),
-                          arms.empty() ? "It is one record" : "Name one as " + path + ":" + joined(arms, " or " + path + ":"));
-    return use(hdf5::open_group(root, name));
+                          arms.empty() ? "It is one record" : "Name one as " + joined(paths_of(file, arms), " or "));
+    return at_path(root, name + "/", [&](const Handle& record, const std::string&) { return use(record); });
 }
 
 Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
                      int chart) {
-    const auto [file, arm] = parted(path);
-    return hdf5::read_file(file,
+    const auto named = parted(path);
+    return hdf5::read_file(named.first,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
-                           [&, arm = arm](const Handle& root) {
-                               return of_arm(root, path, arm, [&](const Handle& group) {
+                           [&](const Handle& root) {
+                               return of_arm(root, named.first, named.second, [&](const Handle& group) {
                                    const FileSource source(group);
                                    Record record = read_in_chart(
                                        RecordReader(source), path, progress, segments, chart,
@@ -153,16 +158,16 @@ Record read_record(const std::string& path, const std::function<void(const Progr
 std::string record_file(const std::string& path) { return parted(path).first; }
 
 std::vector<std::string> records_in(const std::string& path) {
-    std::vector<std::string> records = hdf5::read_file(path, "A record", arms_of);
-    for (std::string& record : records) record = path + ":" + record;
+    const std::vector<std::string> records = paths_of(path, hdf5::read_file(path, "A record", arms_of));
     return records.empty() ? std::vector{path} : records;
 }
 
 void require_same_runs(const std::string& first, const std::string& path) {
     const std::string what = "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n]";
     const auto read = [&](const std::string& one, const std::function<bool(const Handle&)>& use) {
-        const auto [file, arm] = parted(one);
-        return hdf5::read_file(file, what, [&, arm = arm](const Handle& root) { return of_arm(root, one, arm, use); });
+        const auto named = parted(one);
+        return hdf5::read_file(named.first, what,
+                               [&](const Handle& root) { return of_arm(root, named.first, named.second, use); });
     };
     read(first, [&](const Handle& one) {
         return read(path, [&](const Handle& other) {
