@@ -69,10 +69,15 @@ def above_zero(name: str, value: Any) -> Any:
     return value
 
 
-def text(name: str, value: Any) -> str:
+def title(name: str, value: Any) -> str:
+    """A text that may be the name of a file, which need not be UTF-8."""
     if not isinstance(value, str) or not value:
         raise invalid(name, value, "must be a text", "Give one, or leave it out")
-    return str(plain(name, value))
+    return value
+
+
+def text(name: str, value: Any) -> str:
+    return str(plain(name, title(name, value)))
 
 
 def plain(name: str, value: Any) -> Any:

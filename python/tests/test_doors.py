@@ -95,7 +95,7 @@ BAD = {
     "show": {"path_or_text": NO_OUTPUT[:6], "set": OF_RUN["set"], "sweep": OF_RUN["sweep"]},
     "judge": {"margin": [*NO_SHARE, 0, 1], "margin_direction": [*NO_SHARE, 0, 1], "bias": NO_SHARE, "failed": NO_SHARE,
               "segments": [*NO_SHARE, "0", 1.5], "groups": [5, {5: [0]}, {"a": Odd()}, [5], "\udcff"],
-              "component_names": [5, [5], ["\udcff"]], "component_units": [5, [5]], "name": NO_TEXT,
+              "component_names": [5, [5], ["\udcff"]], "component_units": [5, [5]], "name": NO_TEXT[:7],
               "progress": NO_FLAG, "group_covariance": NO_DICT, "group_nees": NO_DICT, "manifold": [5, [], "SE3"],
               "chart": [5, "local"], "quaternion": [5, "wxyz"]},
     "assert_consistent": {"within": [*NO_SHARE, 0, 1], "strict": NO_FLAG},

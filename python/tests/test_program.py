@@ -125,7 +125,7 @@ def test_show_resolves_a_scenario(scenario, program):
     [
         (lambda: credence.run("[scenario]\nposes = -1\n"), "invalid scenario.poses=-1"),
         (lambda: credence.run("missing.ini"), "missing.ini"),
-        (lambda: credence.run(SCENARIO, trials=0), "invalid trials=0 (must be at least 1)"),
+        (lambda: credence.run(SCENARIO, trials=0), "invalid trials=0 (must be a whole number from 1 to"),
         (lambda: credence.compare("/missing.h5"), "/missing.h5: the file: cannot be found"),
         (lambda: credence.judge("/missing.h5"), "/missing.h5: the file: cannot be found"),
         (lambda: credence.show(SCENARIO, set={"noise.haeding": 1}), "noise.heading"),

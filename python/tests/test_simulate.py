@@ -635,7 +635,7 @@ def test_what_cannot_be_judged_is_refused_at_trial_0(run, said):
         ({"seed": -1}, "invalid seed=-1 "),
         ({"seed": 2**64}, f"invalid seed={2**64} "),
         ({"batch": 0}, "invalid batch=0 "),
-        ({"timeout": 0}, "invalid timeout=0 (must be above 0). Give seconds, or None."),
+        ({"timeout": 0}, "invalid timeout=0 (must be a number above 0"),
         ({"arms": {}}, "invalid arms (there is none). "),
         ({"arms": {"../x": {}}}, "invalid arms (../x is no name of letters"),
         ({"arms": {"x": 3}}, "invalid arms (x has no dict of options)"),
