@@ -98,9 +98,10 @@ def _tqdm(shown: bool | None) -> Any:
 
 
 def say(text: str) -> None:
-    """Print a command's result, or end the process as SIGPIPE does where nobody reads it."""
+    """Print a command's result; end the process as SIGPIPE does where nobody reads it."""
     try:
-        sys.stdout.write(text)
+        if text:
+            sys.stdout.write(text)
         sys.stdout.flush()
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes it once more at its end

@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeVar
 
-from credence import Failure, InputError
+from credence._errors import Failure, InputError
 from credence._names import not_utf8, printable
 
 Function = TypeVar("Function", bound=Callable[..., Any])

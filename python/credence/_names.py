@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 from typing import Any
 
-from credence import InputError
+from credence._errors import InputError
 
 Entries = list[list[str]]
 _example = '{"pose": [0, 1, 2]}'

@@ -7,14 +7,12 @@ import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from credence._errors import InputError
+
 File = str | os.PathLike[str]
 
 
-def _refused(path: File, why: str, remedy: str) -> Exception:
-    try:
-        from credence import InputError
-    except ImportError:  # pictures do without the compiled module
-        return ValueError(f"cannot write {os.fspath(path)} ({why}). {remedy}.")
+def _refused(path: File, why: str, remedy: str) -> InputError:
     return InputError(f"cannot write {os.fspath(path)} ({why}). {remedy}.")
 
 
@@ -68,5 +66,8 @@ def whole(path: File) -> Iterator[Path]:
         with open(part, "rb+") as file:
             os.fsync(file.fileno())
         part.replace(target)
+    except OSError as error:
+        error.filename = str(target)
+        raise
     finally:
         part.unlink(missing_ok=True)

@@ -150,6 +150,25 @@ def test_what_has_verdicts_of_its_own_is_not_judged():
     assert refusal(lambda: credence.judge(study)).endswith("Take credence.report(study).")
 
 
+def test_without_the_compiled_module_files_are_read_and_drawn():
+    credence.run(SCENARIO, trials=256, output="study.h5")
+    script = """
+import sys
+sys.modules["credence._core"] = None
+import credence
+study = credence.open("study.h5")
+credence.plot(study, "nees", path="nees.png")
+try:
+    credence.plot("study.h5", path="missing/nees.png")
+except ValueError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True,
+                          env=environment(str(pathlib.Path.cwd())))  # fmt: skip
+    assert done.stdout.startswith("cannot write path=missing/nees.png (there is no folder")
+    assert pathlib.Path("nees.png").exists()
+
+
 # What the system refuses.
 
 

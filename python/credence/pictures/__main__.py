@@ -14,6 +14,7 @@ import sys
 from collections.abc import Sequence
 
 try:
+    from .._errors import Failure
     from .._outputs import check_output
     from . import program, style
     from .drawing import animate, plot
@@ -84,7 +85,7 @@ def main(arguments: Sequence[str]) -> int:
                     written += 1
             except program.NoProgram as reason:
                 left_out.append(f"no picture of {job[2]}: {reason} Give --credence PATH.")
-    except (OSError, ValueError) as problem:
+    except (OSError, ValueError, Failure) as problem:
         print(f"credence.pictures: {problem}", file=sys.stderr)
         return 2
     except KeyError as missing:

@@ -21,6 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from PIL import Image
 
+from .. import _doors as doors
 from .._file import FloatArray
 from .._outputs import whole
 
@@ -81,6 +82,7 @@ class Picture(Figure):
         with matplotlib.rc_context(PRINT):
             super().draw(renderer)
 
+    @doors.door(path=doors.output)
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a .pdf, .svg or .png, the same bytes each time; a .png with 128 colours, which make it small."""
         ending = os.path.splitext(path)[1].lower()
