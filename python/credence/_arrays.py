@@ -7,7 +7,6 @@ to a run, and where a run ends.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from credence import InputError
+from credence._calls import note
 from credence._names import printable
 
 Array = npt.NDArray[Any]
@@ -210,14 +210,14 @@ def _note_what_looks_like_steps_first(error: Array) -> None:
             f"error: neighbours among its {trials} trials are alike, and neighbours among its {steps} steps are not, "
             "as if it were [step, trial, n]. If so, give error.swapaxes(0, 1), and the other arrays likewise."
         )
-        warnings.warn(message, stacklevel=4)
+        note(message)
 
 
 def _note_one_run(given: Mapping[str, Any], error: Array) -> None:
     """Warn if a table is one run by its shape: its errors alone can show nothing."""
     if _is_table(given.get("error")) and error.ndim == 2 and "innovation" not in given:
         taken = f"error: a table of {len(error)} rows is taken for the steps of one run"
-        warnings.warn(f"{taken}. If it has several runs: {_rows_below}.", stacklevel=4)
+        note(f"{taken}. If it has several runs: {_rows_below}.")
 
 
 def of_one_run(name: str, given: Any) -> Array:

@@ -13,7 +13,6 @@ import math
 import mmap
 import os
 import time
-import warnings
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -22,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
+from credence._calls import note
 from credence._names import printable
 from credence._outputs import whole
 from credence._trials import LARGE, MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
@@ -135,7 +135,7 @@ class Trials:
             self._file.truncate(end)
 
     def _warn_of(self, what: str) -> None:
-        warnings.warn(f"{self.path}: {what}; the trials that were there run again.", stacklevel=7)
+        note(f"{self.path}: {what}; the trials that were there run again.")
 
     def _next_frame(self, at: int, size: int) -> int:
         """Where the next frame may begin; the end of the file where none does."""

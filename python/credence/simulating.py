@@ -20,7 +20,6 @@ import os
 import re
 import shutil
 import tempfile
-import warnings
 import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -492,7 +491,7 @@ class _Engine:
                 self.is_repeatable = False
                 why = f"trial 0 of {arm} gives other numbers from the same generator a second time"
                 remedy = "Draw every random number from rng, and keep nothing from trial to trial"
-                warnings.warn(f"{why} (a global generator, the time, or a state that is kept). {remedy}.", stacklevel=5)
+                note(f"{why} (a global generator, the time, or a state that is kept). {remedy}.")
 
     def _refuse_unused_generator(self, frame: Frame) -> None:
         """Refuse an arm whose first trials have the same errors, to the last bit; one number may be so by chance."""

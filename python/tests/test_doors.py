@@ -188,6 +188,23 @@ def test_a_precision_that_is_not_reached_is_said():
     assert said[0].filename == __file__
 
 
+def test_what_is_noted_is_at_the_line_that_called():
+    kept = []
+
+    def repeats_nothing(rng):
+        kept.append(0.0)
+        return credence.Run(rng.standard_normal((3, 1)) + len(kept), np.ones((3, 1, 1)))
+
+    pandas = pytest.importorskip("pandas")
+    errors = pandas.DataFrame(np.random.default_rng(1).standard_normal((60, 2)))
+    for call in (lambda: credence.judge(errors, np.ones((60, 2))), lambda: credence.simulate(repeats_nothing, 4),
+                 lambda: credence.run(SCENARIO, until="trace_P=0.0001%", trials=256),
+                 lambda: credence.tune(run, {"q": (0.5, 2)}, trials=4, objective="nees", held_out=30)):  # fmt: skip
+        with pytest.warns(UserWarning, match=".") as said:
+            call()
+        assert {one.filename for one in said} == {__file__}
+
+
 def test_a_log_whose_filter_fails_is_said():
     def fails(q):
         raise OSError(28, "No space left on device")
