@@ -74,10 +74,6 @@ TEST_CASE("aggregates: shards, a crash, a grown study and a partial block taken 
         shards.push_back(folder / (std::to_string(index) + ".h5"));
         run_to_end(shards.back(), part);
     }
-    Asked half = asked;
-    half.shard = {0, 2};
-    shards.push_back(folder / "half.h5");  // has blocks that others have too
-    run_to_end(shards.back(), half);
     const Study merged = merge_results(shards);
     CHECK(merged.complete);
     write_results(folder / "merged.h5", merged, run_facts);
