@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,12 @@ public:
     virtual void finished(const Study& study) = 0;
 };
 
+/// What a run computed of an arm, of all scenarios and on all threads.
+struct ArmTime {
+    std::int64_t trials = 0;
+    double seconds = 0;
+};
+
 struct RunOptions {
     std::int64_t trials = 10000;
     int threads = 0;                    ///< 0: as many as the machine has
@@ -91,6 +98,7 @@ struct RunOptions {
     Shard shard{};
     std::function<bool()> stop{};       ///< asked before every block, from several threads; may be empty
     BlockKeeper* keeper = nullptr;      ///< none: kept columns and all totals stay in memory
+    std::map<std::string, ArmTime>* times = nullptr;  ///< to which each arm's are added; may be none
     /// Beyond this many bytes, totals of finished scenarios are dropped where the keeper can provide them again.
     std::int64_t most_totals = most_totals_in_memory;
 };

@@ -3,6 +3,7 @@
 #include "numeric/chi_square.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -203,6 +204,7 @@ Workspaces& workspaces() {
 
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
                  std::uint64_t root_seed, std::int64_t index, int trials, Workspace& workspace) {
+    const auto start = std::chrono::steady_clock::now();
     const SimulationShape& shape = simulation.shape();
     Octets& octets = workspace.octets;
     octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
@@ -218,6 +220,7 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
     if (distribution_counted(shape.poses - 1))
         store_cells(octets, *equiprobable_cells(shape.state_size), statuses, arm);
     if (detailed(shape, index)) store_details(octets, statuses, arm);
+    arm.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return arm;
 }
 

@@ -115,6 +115,11 @@ private:
         if (at_odds_) return false;
         at_odds_ = true;
         add_totals(study_.scenarios[task.scenario], block, of_trials);
+        for (std::size_t a = 0; a < block.arms.size() && options_.times != nullptr; ++a) {
+            ArmTime& time = (*options_.times)[study_.scenarios[task.scenario].arms[a].name];
+            time.trials += block.trials;
+            time.seconds += block.arms[a].seconds;
+        }
         commits_.take(task.scenario, block);
         if (schedule_.finish(task)) commits_.finished(study_, task.scenario);
         report();

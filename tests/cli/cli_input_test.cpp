@@ -379,6 +379,16 @@ TEST_CASE("cli: a run that asks for fewer trials than there are says so, and kee
     CHECK(here.credence("run small.ini --resume --quiet -o small.h5").err.empty());
 }
 
+TEST_CASE("cli: a run says how many trials a second it computed of each arm") {
+    const Workplace here;
+    here.write("small.ini", small_world);
+    const Outcome run = here.credence("run small.ini --trials 2000 -o small.h5");
+    const std::string head = "\ntrials a second on one thread: fixed.ekf ";
+    REQUIRE_THAT(run.out, Contains(head) && Contains(", greedy.ekf "));
+    CHECK(std::stod(run.out.substr(run.out.find(head) + head.size())) > 100);
+    CHECK_THAT(here.credence("run small.ini --resume -o small.h5").out, !Contains("trials a second"));
+}
+
 TEST_CASE("cli: lines of help, reports and progress have less than 120 columns") {
     const Workplace here;
     add_results(here);

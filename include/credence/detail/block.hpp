@@ -20,6 +20,7 @@ struct ArmBlock {
     std::vector<std::int32_t> covered;      ///< [component groups, K - 1, levels] trials below each coverage bound
     std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
     int counted = 0;                        ///< trials that did not fail
+    double seconds = 0;                     ///< that they took: no result
 
     // Of detailed trials only, else empty.
     std::vector<float> errors;              ///< [trials, K - 1, n], NaN if failed

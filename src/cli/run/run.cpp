@@ -75,6 +75,7 @@ std::string now_text() {
 struct Work {
     bool changed = false;
     double seconds = 0;
+    std::map<std::string, ArmTime> times;
     std::optional<InterimAnalysis> last_analysis;  ///< with --until
 };
 
@@ -84,6 +85,7 @@ Work work_on(StoredRun& stored, const RunRequest& request) {
     Work work;
     RunOptions options = request.options;
     options.stop = Interrupt::came;
+    options.times = &work.times;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
     // With --until the number of trials is not known yet: each interim analysis asks for its own.
     options.keeper = &stored.begin(request.goals.empty() ? options.trials : 0, request.commit_every, options.shard);
@@ -130,12 +132,22 @@ int stopped(const StoredRun& stored, const RunRequest& request, const std::strin
     return 3;
 }
 
+/// How fast each arm was computed, by a thread.
+std::string speeds_text(const Work& work) {
+    std::vector<std::string> speeds;
+    for (const auto& [arm, time] : work.times) {
+        const double rate = static_cast<double>(time.trials) / std::max(time.seconds, 1e-9);
+        speeds.push_back(arm + " " + number(rate, rate < 10 ? 2 : 0));
+    }
+    return speeds.empty() ? "" : wrapped_list("trials a second on one thread:", speeds, 0) + "\n";
+}
+
 void print_table(const Study& study, const RunRequest& request, const Work& work) {
     print(report_text(make_report(study, {})) + "\n" + (work.last_analysis ? stopping_text(*work.last_analysis) : "") +
           printable(request.output) +
           (work.changed ? ": " + file_size_text(request.output) + ", computed in " + duration_text(work.seconds) +
                               " on " + std::to_string(request.options.threads) + " threads\n"
-                        : " has these trials already\n"));
+                        : " has these trials already\n") + speeds_text(work));
 }
 
 /// Runs and writes the results. Failures are thrown with the progress that is kept.
