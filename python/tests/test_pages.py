@@ -120,3 +120,24 @@ def test_links_lead_somewhere(name):
         path = (page.parent / target).resolve() if target else page
         assert path.exists(), target
         assert not anchor or anchor in anchors(path), f"{target}#{anchor}"
+
+
+def test_the_page_on_filters_of_ones_own_shows_every_ready_part():
+    parts = re.findall(r"^//   (\w+)", (studies.ROOT / "include/credence/filters.hpp").read_text(), re.MULTILINE)
+    page = (studies.ROOT / "docs/own-filter.md").read_text()
+    assert len(parts) > 6
+    assert [part for part in parts if not re.search(rf"\b{part}\b", page)] == []
+
+
+def test_the_page_on_performance_begins_with_how_fast_every_estimator_is_here():
+    listed = (studies.ROOT / "include/credence/detail/estimator_list.hpp").read_text()
+    names = re.findall(r"ESTIMATOR\((\w+), \w+, [A-Z]\w+\)", listed)
+    start = "\n".join((studies.ROOT / "docs/performance.md").read_text().splitlines()[:16])
+    assert {"ekf", "kf"} < {*names}
+    assert [name for name in (*names, "fixed", "greedy", "credence run", "bench/run.sh") if name not in start] == []
+
+
+def test_the_page_on_other_tools_names_their_packages():
+    page = (studies.ROOT / "analysis/README.md").read_text()
+    packages = ("pip install", "octave-netcdf", "r-cran-ncdf4", "hdf5-tools", "netcdf-bin", "python3-h5netcdf")
+    assert [package for package in packages if package not in page] == []
