@@ -194,7 +194,8 @@ std::string offset_of(const Evidence& evidence, const Sizes& sizes) {
         if (means.size() < least_steps) continue;
         const auto [low, high] = std::ranges::minmax(means);
         if (high - low < std::min(std::abs(low), std::abs(high)))
-            return "errors of " + bias.component + formatted(" are %.2g", quantile(means, 0.5)) + (bias.unit.empty() ? "" : " " + bias.unit) +
+            return "errors of " + bias.component + formatted(" are %.2g", quantile(means, 0.5)) +
+                   (bias.unit.empty() ? "" : " " + bias.unit) +
                    " on average at all steps: an offset of the truth, the map or the frame?";
     }
     return {};
