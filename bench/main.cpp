@@ -76,6 +76,7 @@ std::vector<Table> measure_all(const Effort& effort) {
     for (const Table& table : trial_tables("trials", "Whole trials", seed_rows())) tables.push_back(table);
     for (const Table& table : trial_tables("growth", "Growth with M (heading, straight, constant)", growth_rows()))
         tables.push_back(table);
+    tables.push_back(estimators_table());
     tables.push_back(statistics_table(seed_rows()));
     tables.push_back(threads_table(effort));
     tables.push_back(program_table(effort));
@@ -104,6 +105,7 @@ int run(int argc, char** argv) {
     add_parts(effort);
     add_trials(seed_rows(), effort);
     add_trials(growth_rows(), effort);
+    add_estimators(effort);
     add_statistics(seed_rows(), effort);
     add_threads(effort);
     add_program(effort);

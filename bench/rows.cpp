@@ -3,6 +3,7 @@
 #include <cmath>
 #include "worlds/deformable/deformable.hpp"
 #include "worlds/deformable/keys.hpp"
+#include "worlds/values.hpp"
 #include <credence/text.hpp>
 
 namespace credence::bench {
@@ -98,6 +99,24 @@ const std::deque<Row>& growth_rows() {
                     "M=" + std::to_string(M) + "-" + controller,
                     scenario_with("growth", {"features.positions", positions(M), "arms.controllers", controller}),
                     M <= 8 ? block_size : 512 / M);
+            }
+        return made;
+    }();
+    return rows;
+}
+
+const std::deque<Row>& estimator_rows() {
+    static const std::deque<Row> rows = [] {
+        std::deque<Row> made;
+        for (std::size_t e = 0; e < estimator_names().size(); ++e)
+            for (const char* controller : {"fixed", "greedy"}) {
+                const bool heading = process_of(static_cast<Estimator>(e)) == Process::heading;
+                const std::string& estimator = estimator_names()[e];
+                made.emplace_back(controller + ("." + estimator),
+                                  scenario_with("estimator",
+                                                {"model.process", heading ? "heading" : "translation",
+                                                 "arms.estimators", estimator, "arms.controllers", controller}),
+                                  block_size);
             }
         return made;
     }();

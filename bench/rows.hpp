@@ -35,6 +35,9 @@ const std::deque<Row>& seed_rows();
 /// Growth with the number of features: M = 1 ... 64 on the fixed path, up to 16 planned; heading model, straight.
 const std::deque<Row>& growth_rows();
 
+/// Every estimator on the fixed path and on the planned one; straight, constant sigma, in its own process model.
+const std::deque<Row>& estimator_rows();
+
 /// The defaults with keys set: name and value in turns. Resolved and validated.
 DeformableSettings scenario_with(const std::string& name, const std::vector<std::string>& keys_and_values);
 

@@ -37,8 +37,8 @@ void add_baseline(const Row& row, const std::string& name, MakeBaseline make, co
 constexpr std::int64_t usual_block = 1000;
 
 /// One block an iteration.
-void add_unit(const Row& row, const Target& target, const Effort& effort) {
-    add("trial/" + row.name + "/" + target.name, effort, [&row, target](benchmark::State& state) {
+void add_unit(const std::string& name, const Row& row, const Target& target, const Effort& effort) {
+    add(name, effort, [&row, target](benchmark::State& state) {
         std::int64_t index = usual_block;
         for (auto _ : state) benchmark::DoNotOptimize(run_block(row.problem, 1, index++, row.trials, target));
         state.SetItemsProcessed(state.iterations() * row.trials);
@@ -105,10 +105,24 @@ void add_trials(const std::deque<Row>& rows, const Effort& effort) {
         add_baseline(row, "B", make_fixed, effort);
         for (const Target& target : measured_targets())
             if (!effort.quick || row.features() <= 8 || target.name == best_target().name)
-                add_unit(row, target, effort);
+                add_unit("trial/" + row.name + "/" + target.name, row, target, effort);
         for (const Kernels& kernels : runnable_kernels())
             add_peak("trial/" + row.name + "/peak-" + kernels.target, kernels, effort);
     }
+}
+
+void add_estimators(const Effort& effort) {
+    for (const Row& row : estimator_rows()) add_unit("estimator/" + row.name, row, best_target(), effort);
+}
+
+Table estimators_table() {
+    Table table{"estimators", "Estimators, straight path, constant sigma", {"arm", "us/step", "trials/s"}, {}};
+    const std::map<std::string, Samples> samples = measure("estimator");
+    for (const Row& row : estimator_rows()) {
+        const double seconds = median(samples.at(row.name).cpu) / row.trials;
+        table.rows.push_back({row.name, 1e6 * seconds / (row.problem.view().poses - 1), 1 / seconds});
+    }
+    return table;
 }
 
 std::vector<Table> trial_tables(const std::string& key, const std::string& title, const std::deque<Row>& rows) {

@@ -24,4 +24,8 @@ double peak_of(const Samples& samples, const Kernels& kernels);
 /// Measures the rows: a table for the best target, and one for the others.
 std::vector<Table> trial_tables(const std::string& key, const std::string& title, const std::deque<Row>& rows);
 
+/// Registers estimator/NAME of every estimator and controller, on the best target; and their table.
+void add_estimators(const Effort& effort);
+Table estimators_table();
+
 }  // namespace credence::bench
