@@ -720,6 +720,8 @@ def _simulated(
         engine = _Engine(work, file, ceiling, goals, bar)
         files.refuse_another_study(file.study)
         bar.show(len(file.done))
+        if not goals and len(file.done) > ceiling:
+            note(f"{files.trials} has {len(file.done)} trials; what is written has the first {ceiling}.")
         workers: Workers[Payload] = Workers(executor, run_chunk, work, is_frame)
         try:
             count = engine.run(workers)

@@ -164,7 +164,8 @@ def test_a_study_grows_to_the_same_bits():
     credence.simulate(filters.drawn, trials=1000, arms=ARMS, output="grown.h5", resume=True)
     credence.simulate(filters.drawn, trials=1000, arms=ARMS, output="whole.h5")
     assert is_same("grown", "whole")
-    shorter = credence.simulate(filters.drawn, trials=500, arms=ARMS, output="grown.h5", resume=True)
+    with pytest.warns(UserWarning, match="has 1000 trials; what is written has the first 500"):
+        shorter = credence.simulate(filters.drawn, trials=500, arms=ARMS, output="grown.h5", resume=True)
     credence.simulate(filters.drawn, trials=500, arms=ARMS, output="short.h5")
     assert shorter.trials == 500
     assert is_same("grown", "short")
