@@ -367,7 +367,7 @@ def write_records(
     wanted = set(numbers.tolist())
     for frame in trials.frames():
         for segment, arrays in frame.segments():
-            kept = np.isin(segment["trials"], numbers)
+            kept = np.array([trial in wanted for trial in segment["trials"]])
             if not kept.any():
                 continue
             if not kept.all():
